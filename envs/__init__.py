@@ -1,0 +1,1 @@
+"""Gymnasium environments around a model (installed as `kinematify.envs`)."""

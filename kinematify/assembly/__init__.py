@@ -1,0 +1,1 @@
+"""Meshes in world coordinates become an assembly of rigid parts."""

@@ -1,0 +1,125 @@
+"""Parts and assemblies: what every later stage works on."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    FloatArray = NDArray[np.float64]
+    IntArray = NDArray[np.int64]
+
+
+def read_only(array: NDArray, dtype: type) -> NDArray:  # type: ignore[type-arg]
+    """Return a C-contiguous copy of `array` that refuses to be written."""
+    copy = np.array(array, dtype=dtype, order="C", copy=True)
+    copy.setflags(write=False)
+    return copy
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Part:
+    """One rigid part: a triangle mesh in world coordinates (paper III-A, ``M_i``)."""
+
+    name: str
+    """Unique, XML-safe name; becomes the link name."""
+    vertices: FloatArray
+    """Vertex positions in the world frame [m], shape (V, 3). Read-only."""
+    faces: IntArray
+    """Vertex indices of triangles, shape (F, 3). Read-only."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))
+        object.__setattr__(self, "faces", read_only(self.faces, np.int64))
+
+    @cached_property
+    def mesh_hash(self) -> str:
+        """Hash of the geometry alone (not the name); key of every per-mesh cache."""
+        digest = hashlib.sha256(self.vertices.tobytes())
+        digest.update(self.faces.tobytes())
+        return digest.hexdigest()
+
+    @cached_property
+    def bounds(self) -> FloatArray:
+        """Axis-aligned bounds in the world frame [m], shape (2, 3): lower corner, upper corner."""
+        used = self.vertices[np.unique(self.faces)]
+        return read_only(np.stack([used.min(0), used.max(0)]), np.float64)
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the bounding box diagonal [m]."""
+        return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+
+    @cached_property
+    def face_areas(self) -> FloatArray:
+        """Area of every triangle [m^2], shape (F,)."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return read_only(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1), np.float64)
+
+    @property
+    def area(self) -> float:
+        """Surface area [m^2]."""
+        return float(self.face_areas.sum())
+
+    @cached_property
+    def centroid(self) -> FloatArray:
+        """Area-weighted surface centroid in the world frame [m], shape (3,) (paper III-A, ``c_i``)."""
+        centres = self.vertices[self.faces].mean(axis=1)
+        return read_only(np.average(centres, axis=0, weights=self.face_areas), np.float64)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetAside:
+    """A degenerate mesh that takes no part in the inference but is kept as a fixed visual."""
+
+    part: Part
+    """The mesh as it was given; may be flat, tiny or have too few vertices."""
+    reason: str
+    """One sentence for the user."""
+    nearest: str
+    """Name of the part that it is attached to."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Assembly:
+    """A set of rigid parts in one static configuration (paper III-A), z up, metres, world frame."""
+
+    parts: tuple[Part, ...]
+    """At least two parts with unique names."""
+    source: str
+    """Where it came from, for messages and the record."""
+    set_aside: tuple[SetAside, ...] = ()
+    """Degenerate input, by name and reason; nothing disappears silently."""
+    original_names: Mapping[str, str] = field(default_factory=dict)
+    """Part name -> name in the input."""
+    warnings: tuple[str, ...] = ()
+    """What the user should know about the input, one sentence each."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "original_names", MappingProxyType(dict(self.original_names)))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Part names in order."""
+        return tuple(part.name for part in self.parts)
+
+    @cached_property
+    def bounds(self) -> FloatArray:
+        """Axis-aligned bounds of all parts in the world frame [m], shape (2, 3)."""
+        lower = np.min([part.bounds[0] for part in self.parts], axis=0)
+        upper = np.max([part.bounds[1] for part in self.parts], axis=0)
+        return read_only(np.stack([lower, upper]), np.float64)
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Length of the bounding box diagonal [m]; the unit of most tolerances."""
+        return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))

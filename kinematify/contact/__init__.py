@@ -1,0 +1,1 @@
+"""An assembly becomes a contact graph with clusters of congruent parts."""

@@ -1,0 +1,77 @@
+"""Contact graph of an assembly: which parts touch, where, and how strongly (paper III-B)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactSamples:
+    """Surface samples of one part of a pair that lie near the other part."""
+
+    points: FloatArray
+    """World frame [m], shape (n, 3). Read-only."""
+    normals: FloatArray
+    """Unit face normals, shape (n, 3). Read-only."""
+    distances: FloatArray
+    """Exact unsigned distance to the other part [m], shape (n,). Read-only."""
+    areas: FloatArray
+    """Surface area that each sample stands for [m^2], shape (n,). Read-only."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactEdge:
+    """An undirected contact between parts `a` < `b`."""
+
+    a: int
+    b: int
+    gap: float
+    """Smallest exact distance between the two surfaces [m]; 0 where they touch or cross."""
+    strength: float
+    """Contact strength s(u, v) in [0, 1] (paper, R_contact)."""
+    samples_a: ContactSamples
+    """Samples of part `a` near part `b`."""
+    samples_b: ContactSamples
+    """Samples of part `b` near part `a`."""
+    bridge: bool = False
+    """True where the parts do not touch and the edge only joins components (paper: virtual edge)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactGraph:
+    """The connection graph G = (V, E); nodes are indices into `Assembly.parts`."""
+
+    n_parts: int
+    edges: tuple[ContactEdge, ...]
+    clusters: tuple[tuple[int, ...], ...]
+    """Groups of two or more congruent parts (up to mirroring), ascending; singletons are left out."""
+    tolerance: float
+    """Largest gap that counts as contact [m]."""
+
+    @cached_property
+    def by_pair(self) -> dict[tuple[int, int], ContactEdge]:
+        """Edges keyed by (a, b) with a < b."""
+        return {(edge.a, edge.b): edge for edge in self.edges}
+
+    @cached_property
+    def neighbours(self) -> tuple[tuple[int, ...], ...]:
+        """Touching parts of every part, ascending."""
+        sets: list[set[int]] = [set() for _ in range(self.n_parts)]
+        for edge in self.edges:
+            sets[edge.a].add(edge.b)
+            sets[edge.b].add(edge.a)
+        return tuple(tuple(sorted(items)) for items in sets)
+
+    @cached_property
+    def cluster_of(self) -> tuple[int, ...]:
+        """Index into `clusters` for every part, -1 for a part without twin."""
+        label = [-1] * self.n_parts
+        for index, cluster in enumerate(self.clusters):
+            for part in cluster:
+                label[part] = index
+        return tuple(label)

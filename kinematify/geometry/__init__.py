@@ -1,0 +1,1 @@
+"""Surface samples, signed distance and OpenGL-free pictures."""

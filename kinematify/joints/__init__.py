@@ -1,0 +1,1 @@
+"""A contact edge becomes ranked joint candidates, and the best becomes a joint."""

@@ -1,0 +1,1 @@
+"""A tree with joints becomes a kinematic model and its files."""

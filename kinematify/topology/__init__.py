@@ -1,0 +1,1 @@
+"""A contact graph with edge quality becomes ranked kinematic trees."""
