@@ -1,3 +1,63 @@
-"""Kinematify: a shape goes in, a mechanism that works in simulation comes out."""
+"""Kinematify: a shape goes in, a mechanism that works in simulation comes out.
+
+The public names below load on first use, so that `import kinematify` loads no engine and no torch.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from kinematify.assembly.load import load_assembly
+    from kinematify.assembly.part import Assembly, Part
+    from kinematify.config import load_config
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.errors import KinematifyError
+    from kinematify.joints.candidate import JointCandidate
+    from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.pipeline import Inference, infer
+    from kinematify.topology.tree import KinematicTree
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Assembly",
+    "ContactGraph",
+    "Inference",
+    "JointCandidate",
+    "KinematicModel",
+    "KinematicTree",
+    "KinematifyError",
+    "Part",
+    "__version__",
+    "infer",
+    "load_assembly",
+    "load_config",
+]
+
+_HOMES = {
+    "Assembly": "kinematify.assembly.part",
+    "ContactGraph": "kinematify.contact.graph",
+    "Inference": "kinematify.pipeline",
+    "JointCandidate": "kinematify.joints.candidate",
+    "KinematicModel": "kinematify.model.kinematic_model",
+    "KinematicTree": "kinematify.topology.tree",
+    "KinematifyError": "kinematify.errors",
+    "Part": "kinematify.assembly.part",
+    "infer": "kinematify.pipeline",
+    "load_assembly": "kinematify.assembly.load",
+    "load_config": "kinematify.config",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(_HOMES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,1 +1,5 @@
-"""The command line: one thin file per command."""
+"""Command line: one thin file per command."""
+
+from kinematify.cli.app import main
+
+__all__ = ["main"]

@@ -1,0 +1,73 @@
+# `make demo` shows what Kinematify does, `make test` proves it; both set up .venv first.
+# `make help` lists the rest.
+
+SHELL := bash
+PYTHON ?= python3.11
+VENV := .venv
+IN_VENV := $(VENV)/bin/python -m
+JOBS ?= $(shell getconf _NPROCESSORS_ONLN)
+# Test files or options for pytest, e.g. `make test ARGS="tests/test_cli.py -k infer"`.
+ARGS ?=
+# Folder of URDFs to measure, or `pip` for the robots of a package; see `kinematify bench --help`.
+DATA ?= pip
+
+# torch goes first and exactly: left to the resolver, another build of several GB may be chosen.
+TORCH := $(shell sed -n 's/.*"\(torch==[0-9.]*\)".*/\1/p' pyproject.toml)
+# Named after the content of pyproject.toml: while that does not change there is nothing to do.
+STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
+
+.PHONY: help setup demo test lint format types bench clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make demo     infer the joints of a bundled cabinet; writes out/cabinet/ with a URDF and a picture"
+	@echo "make test     run the tests (ARGS=... for pytest)"
+	@echo "make lint     ruff: rules and format"
+	@echo "make format   let ruff mend what it can"
+	@echo "make types    mypy --strict"
+	@echo "make bench    accuracy table beside the paper's (DATA=FOLDER or pip)"
+	@echo "make setup    create $(VENV) with everything; quick when nothing changed"
+	@echo "make clean    remove what was built, but not $(VENV)"
+
+setup: $(STAMP)
+
+$(STAMP):
+	@command -v $(PYTHON) > /dev/null || { echo "There is no $(PYTHON) on the path. Kinematify needs Python 3.11:" \
+	  "install it (Debian and Ubuntu: apt-get install python3.11 python3.11-venv) or name it:" \
+	  "make setup PYTHON=/path/to/python3.11" >&2; exit 2; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' || { echo "$(PYTHON) is" \
+	  "$$($(PYTHON) --version), but Kinematify needs Python 3.11: make setup PYTHON=/path/to/python3.11" >&2; exit 2; }
+	@[ -x $(VENV)/bin/pip ] || { echo "Creating $(VENV)"; $(PYTHON) -m venv $(VENV); }
+	@echo "Installing Kinematify and what it needs into $(VENV) (the first time takes some minutes)"
+	@$(IN_VENV) pip install --quiet $(TORCH)
+	@$(IN_VENV) pip install --quiet --editable '.[dev]' --config-settings editable_mode=compat
+	@rm -f $(VENV)/.setup-* && touch $@
+
+demo: setup
+	@$(IN_VENV) kinematify infer examples/cabinet -o out/cabinet --force
+	@echo
+	@echo "Look at  out/cabinet/preview.png       the cabinet as it was given, and with every joint moved"
+	@echo "    and  out/cabinet/model.urdf        what a simulator loads"
+	@echo "Now try  $(VENV)/bin/kinematify infer YOUR_FOLDER_OF_PARTS -o out/yours"
+	@echo "    and  $(VENV)/bin/kinematify --help"
+
+test: setup
+	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)
+
+lint: setup
+	$(IN_VENV) ruff check .
+	$(IN_VENV) ruff format --check .
+
+format: setup
+	$(IN_VENV) ruff check --fix .
+	$(IN_VENV) ruff format .
+
+types: setup
+	$(IN_VENV) mypy -p kinematify
+
+bench: setup
+	$(IN_VENV) kinematify bench $(if $(filter pip,$(DATA)),--data pip,$(DATA)) -o results
+
+clean:
+	rm -rf build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +

@@ -1,0 +1,5 @@
+"""`python -m kinematify` is the `kinematify` command."""
+
+from kinematify.cli import main
+
+main()

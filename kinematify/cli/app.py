@@ -1,0 +1,125 @@
+"""The `kinematify` command: finds the subcommand and turns every exception into a message and an exit status.
+
+Exit status: 0 fine; 1 ran and found failures; 2 unusable input or arguments; 3 an engine, the environment or
+Kinematify itself failed; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+import traceback
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from kinematify import __version__
+from kinematify.errors import KinematifyError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+COMMANDS = ("infer", "erase", "bench", "doctor")
+"""Each is a module of this package that defines `command`."""
+
+_INTERRUPTED = 130
+_USAGE = 2
+_CRASHED = 3
+
+
+@dataclass
+class _Session:
+    """What the error boundary needs to know of the arguments."""
+
+    traceback: bool = False
+    """True if the user wants the traceback under the message."""
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line and end the process with the exit status."""
+    sys.exit(run(arguments))
+
+
+def run(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit status; no exception passes but those that end the interpreter.
+
+    Args:
+        arguments: Words after `kinematify`; those of the process if absent.
+    """
+    session = _Session()
+    try:
+        status = cli.main(arguments, prog_name="kinematify", standalone_mode=False, obj=session)
+    except click.ClickException as error:
+        error.show()
+        return _USAGE
+    except click.Abort:
+        _say("Interrupted. Nothing half-written was left: a result appears at its place only when it is complete.")
+        return _INTERRUPTED
+    except KinematifyError as error:
+        _say(f"Error: {error}", with_traceback=session.traceback)
+        return error.exit_status
+    except Exception as error:  # the boundary itself: whatever is left is a defect of ours
+        _say(_crash_message(error, session), with_traceback=session.traceback)
+        return _CRASHED
+    return status if isinstance(status, int) else 0
+
+
+def _say(message: str, *, with_traceback: bool = False) -> None:
+    if with_traceback:
+        click.echo(traceback.format_exc(), err=True, nl=False)
+    click.echo(message, err=True)
+
+
+def _crash_message(error: Exception, session: _Session) -> str:
+    what = f"Error: Kinematify failed unexpectedly with {type(error).__name__}: {error}. This is a defect of ours."
+    if session.traceback:
+        return f"{what} Please report it with the traceback above, the command, and what `kinematify doctor` prints."
+    return f"{what} Run the same command with --traceback to see where, and report it with what that prints."
+
+
+class _LazyGroup(click.Group):
+    """A group that imports a command's module when the command is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Commands in the order of the work, not of the alphabet."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return the command, None if there is none of this name."""
+        if cmd_name not in COMMANDS:
+            return None
+        command: click.Command = importlib.import_module(f"kinematify.cli.{cmd_name}").command
+        if _TRACEBACK not in command.params:
+            command.params.append(_TRACEBACK)
+        return command
+
+
+def _ask_for_traceback(ctx: click.Context, _parameter: click.Parameter, value: bool) -> None:
+    if value:
+        ctx.find_object(_Session).traceback = True  # type: ignore[union-attr]  # `run` always gives one
+
+
+_TRACEBACK = click.Option(
+    ["--traceback"],
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_ask_for_traceback,
+    help="Show the Python traceback of an error.",
+)
+
+
+@click.command(
+    cls=_LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Exit status: 0 fine; 1 ran and found failures; 2 unusable input or arguments; 3 an engine or the "
+    "environment failed. `kinematify COMMAND --help` shows examples.",
+)
+@click.version_option(__version__, prog_name="kinematify")
+def cli() -> None:
+    """A shape goes in, a mechanism that works in simulation comes out.
+
+    Start with `kinematify infer ASSEMBLY -o OUT`: it takes the segmented meshes of an object (a folder with one
+    mesh per part, a GLB, a ZIP, a URDF) and writes a URDF with joints, axes, limits and masses.
+    """

@@ -1,0 +1,196 @@
+"""`kinematify doctor`: what is installed, what is missing, and how to install it."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kinematify import __version__
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.table import format_table
+
+if TYPE_CHECKING:
+    from packaging.requirements import Requirement
+
+MODULES = {
+    "numpy": ("numpy", "arrays"),
+    "scipy": ("scipy", "spatial search, optimisation"),
+    "torch": ("torch", "differentiable motions and distances"),
+    "networkx": ("networkx", "graphs"),
+    "trimesh": ("trimesh", "reading meshes"),
+    "libigl": ("igl", "exact distances, winding numbers"),
+    "python-fcl": ("fcl", "distances between meshes"),
+    "embreex": ("embreex", "ray casting"),
+    "fast-simplification": ("fast_simplification", "simplifying large meshes"),
+    "pydantic": ("pydantic", "configuration"),
+    "PyYAML": ("yaml", "configuration"),
+    "lxml": ("lxml.etree", "URDF"),
+    "pycollada": ("collada", "DAE meshes"),
+    "pillow": ("PIL.Image", "pictures"),
+    "yourdfpy": ("yourdfpy", "a second reader of our URDF"),
+    "mujoco": ("mujoco", "engine"),
+    "pybullet": ("pybullet", "engine"),
+    "pin": ("pinocchio", "engine"),
+    "ompl": ("ompl.base", "motion planning"),
+    "gymnasium": ("gymnasium", "environments"),
+    "click": ("click", "command line"),
+    "rich": ("rich", "command line"),
+    "packaging": ("packaging", "this command"),
+    "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
+    "matplotlib": ("matplotlib", "plots of the benchmark"),
+}
+"""Distribution -> module that proves that it works (empty: data only), and what it is for."""
+
+IMPORT_SECONDS = 60.0
+"""An engine that takes longer than this to import counts as broken [s]."""
+
+_ENVIRONMENT_FAILED = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """State of one package."""
+
+    package: str
+    purpose: str
+    wanted: str
+    """Version range that was tested."""
+    installed: str | None
+    state: str
+    """``ok``, ``missing``, ``version`` (outside the tested range) or ``broken`` (does not import)."""
+    optional: bool
+    """True if only an extra needs it."""
+    problem: str | None = None
+    """Last line that the failing import printed."""
+
+    @property
+    def remedy(self) -> str | None:
+        """The command that mends it, None if nothing is wrong."""
+        if self.state == "ok":
+            return None
+        force = "--force-reinstall --no-deps " if self.state == "broken" else ""
+        return f"{sys.executable} -m pip install {force}'{self.package}{self.wanted}'"
+
+
+@click.command("doctor", short_help="Versions, engines, what is missing and how to install it.")
+@json_option
+def command(json_to: str | None) -> int:
+    """Check every package that Kinematify needs, by importing each in a process of its own.
+
+    Ends with 0 if all that is required works, else with 3. Packages of extras may be missing.
+
+    \b
+    Examples:
+      kinematify doctor
+      kinematify doctor --json - | python -m json.tool
+    """
+    findings = examine_packages()
+    failed = [finding for finding in findings if finding.state != "ok" and not finding.optional]
+    if json_to:
+        write_answer(_as_answer(findings), json_to)
+    if json_to != "-":
+        click.echo(_describe(findings))
+    return _ENVIRONMENT_FAILED if failed else 0
+
+
+def examine_packages() -> tuple[Finding, ...]:
+    """Compare what is installed with what this version of Kinematify declares, and try every import."""
+    requirements = _declared_requirements()
+    with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
+        return tuple(pool.map(_examine, requirements))
+
+
+def _declared_requirements() -> list[Requirement]:
+    from packaging.requirements import Requirement
+
+    declared = [Requirement(line) for line in importlib.metadata.requires("kinematify") or ()]
+    return [requirement for requirement in declared if requirement.name in MODULES]
+
+
+def _examine(requirement: Requirement) -> Finding:
+    module, purpose = MODULES[requirement.name]
+    installed = _installed_version(requirement.name)
+    problem = _import_problem(module) if installed and module else None
+    return Finding(
+        package=requirement.name,
+        purpose=purpose,
+        wanted=",".join(sorted(map(str, requirement.specifier), reverse=True)),
+        installed=installed,
+        state=_judge(requirement, installed, problem),
+        optional=requirement.marker is not None,
+        problem=problem,
+    )
+
+
+def _judge(requirement: Requirement, installed: str | None, problem: str | None) -> str:
+    if installed is None:
+        return "missing"
+    if problem is not None:
+        return "broken"
+    return "ok" if requirement.specifier.contains(installed, prereleases=True) else "version"
+
+
+def _installed_version(package: str) -> str | None:
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return None
+
+
+def _import_problem(module: str) -> str | None:
+    """Import in a fresh process: a broken binary may end its process or hang, and engines print as they like."""
+    words = [sys.executable, "-c", f"import {module}"]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, timeout=IMPORT_SECONDS, check=False)
+    except subprocess.TimeoutExpired:
+        return f"importing {module} took more than {IMPORT_SECONDS:.0f} s"
+    if done.returncode == 0:
+        return None
+    lines = done.stderr.strip().splitlines()
+    return lines[-1] if lines else f"importing {module} ended with status {done.returncode}"
+
+
+def _system() -> dict[str, str]:
+    return {
+        "kinematify": __version__,
+        "python": platform.python_version(),
+        "executable": sys.executable,
+        "platform": platform.platform(),
+        "cores": str(os.cpu_count()),
+    }
+
+
+def _as_answer(findings: tuple[Finding, ...]) -> dict[str, Any]:
+    packages = [{**asdict(finding), "remedy": finding.remedy} for finding in findings]
+    return {"schema": 1, "system": _system(), "packages": packages}
+
+
+def _describe(findings: tuple[Finding, ...]) -> str:
+    rows = [
+        (finding.package, finding.installed or "-", finding.wanted, _describe_state(finding), finding.purpose)
+        for finding in findings
+    ]
+    system = "\n".join(f"{key:<11} {value}" for key, value in _system().items())
+    table = format_table(("package", "installed", "tested range", "state", "what for"), rows)
+    return f"{system}\n\n{table}\n\n{_describe_remedies(findings)}"
+
+
+def _describe_state(finding: Finding) -> str:
+    return "missing (optional)" if finding.optional and finding.state == "missing" else finding.state
+
+
+def _describe_remedies(findings: tuple[Finding, ...]) -> str:
+    lines = []
+    for finding in findings:
+        if finding.remedy:
+            reason = f": {finding.problem}" if finding.problem else ""
+            lines += [f"{finding.package} ({_describe_state(finding)}){reason}", f"    {finding.remedy}"]
+    return "\n".join(lines) if lines else "Everything works."

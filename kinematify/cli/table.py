@@ -1,0 +1,25 @@
+"""Plain text tables that read the same on a terminal, in a log and in a pipe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+def format_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Align the cells of every column under its heading; the last column is not padded.
+
+    Args:
+        headings: One per column.
+        rows: Cells of every row, as many as there are headings.
+    """
+    lines = [tuple(headings), *(tuple(row) for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    lines.insert(1, tuple("-" * width for width in widths))
+    return "\n".join(_format_line(line, widths) for line in lines)
+
+
+def _format_line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()

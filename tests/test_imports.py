@@ -1,0 +1,58 @@
+"""`import kinematify` and `kinematify --help` load nothing heavy; the public names are what is promised."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import kinematify
+from kinematify.cli.app import COMMANDS
+
+HEAVY = {
+    "torch", "mujoco", "pybullet", "pinocchio", "coal", "fcl", "igl", "ompl", "trimesh", "scipy", "numpy", "pydantic",
+    "networkx", "yourdfpy", "gymnasium", "matplotlib",
+}  # fmt: skip
+
+
+def loaded_after(code: str) -> set[str]:
+    """Top-level packages that a fresh process holds after running `code`."""
+    report = "import sys; print('\\nLOADED', *{name.partition('.')[0] for name in sys.modules})"
+    words = [sys.executable, "-c", f"{code}\n{report}"]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    return set(done.stdout.rsplit("LOADED", 1)[1].split())
+
+
+def test_importing_the_package_loads_no_engine() -> None:
+    loaded = loaded_after("import kinematify")
+    assert "kinematify" in loaded
+    assert loaded & HEAVY == set()
+
+
+def test_the_import_check_can_fail() -> None:
+    assert "numpy" in loaded_after("import kinematify; kinematify.Part") & HEAVY
+
+
+@pytest.mark.parametrize("words", [["--help"], ["--version"], *([command, "--help"] for command in COMMANDS)])
+def test_help_loads_no_engine(words: list[str]) -> None:
+    loaded = loaded_after(f"from kinematify.cli.app import run; assert run({words!r}) == 0")
+    assert "click" in loaded
+    assert loaded & HEAVY == set()
+
+
+def test_public_names_resolve_and_are_all_there_is() -> None:
+    resolved = {name for name in kinematify.__all__ if getattr(kinematify, name) is not None}
+    assert resolved == set(kinematify.__all__)
+    assert set(kinematify._HOMES) | {"__version__"} == set(kinematify.__all__)
+    assert set(kinematify.__all__) <= set(dir(kinematify))
+
+
+def test_each_public_name_is_the_object_of_its_home() -> None:
+    for name, home in kinematify._HOMES.items():
+        assert getattr(kinematify, name) is getattr(sys.modules[home], name)
+
+
+def test_unknown_names_raise_attribute_error() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'no_such_name'"):
+        _ = kinematify.no_such_name  # type: ignore[attr-defined]

@@ -1,0 +1,132 @@
+"""Wheel, sdist and editable install all bring the packages behind the symlinks and their data files."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tomllib
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+
+import kinematify
+from kinematify.cli.doctor import MODULES
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "kinematify", "validation", "envs", "configs")
+INSTALLED = """
+from importlib import import_module, resources
+for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
+    print(import_module("kinematify" + name).__name__)
+data = resources.files("kinematify.configs")
+print(*sorted(entry.name for entry in data.iterdir() if entry.name.endswith(".yaml")))
+print(resources.files("kinematify").joinpath("py.typed").is_file())
+"""
+
+
+def call(*words: str | Path, cwd: Path, path: str | None = None) -> str:
+    """Run a command in `cwd`; its stdout. `path` becomes PYTHONPATH."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    if path is not None:
+        environment["PYTHONPATH"] = path
+    done = subprocess.run([*map(str, words)], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of what is packaged, so that no build folder appears in the repository."""
+    target = tmp_path_factory.mktemp("tree")
+    for name in SOURCES:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, target / name, symlinks=True, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(source, target / name)
+    return target
+
+
+def empty_environment(folder: Path) -> Path:
+    """Make an environment without any package, not even pip; its interpreter."""
+    call(sys.executable, "-m", "venv", "--without-pip", folder, cwd=folder.parent)
+    return folder / "bin" / "python"
+
+
+def assert_complete(python: Path, cwd: Path) -> None:
+    """All packages and data files are importable from a folder that is not the repository."""
+    lines = call(python, "-c", INSTALLED, cwd=cwd).splitlines()
+    names = ["kinematify" + name for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model")]
+    shipped = sorted(path.name for path in (ROOT / "configs").glob("*.yaml"))
+    assert lines == [*names, " ".join(shipped), "True"]
+
+
+@pytest.mark.parametrize("options", [["--wheel"], []], ids=["from the tree", "through the sdist"])
+def test_wheel_is_complete(tree: Path, tmp_path: Path, options: list[str]) -> None:
+    call(sys.executable, "-m", "build", "--no-isolation", *options, "--outdir", tmp_path, tree, cwd=tmp_path)
+    (wheel,) = tmp_path.glob("*.whl")
+    assert len(list(tmp_path.glob("*.tar.gz"))) == (0 if options else 1)
+    python = empty_environment(tmp_path / "env")
+    call(sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", wheel, cwd=tmp_path)
+    assert_complete(python, tmp_path)
+    assert (tmp_path / "env" / "bin" / "kinematify").is_file()
+
+
+def test_editable_install_is_complete_and_sees_new_files(tree: Path, tmp_path: Path) -> None:
+    python = empty_environment(tmp_path / "env")
+    call(
+        sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", "--no-build-isolation",
+        "--config-settings", "editable_mode=compat", "--editable", tree, cwd=tmp_path, path=sysconfig.get_path("purelib"),
+    )  # fmt: skip
+    assert_complete(python, tmp_path)
+    (tree / "validation" / "added_later.py").write_text("VALUE = 7\n")
+    code = "from kinematify.validation.added_later import VALUE; print(VALUE)"
+    assert call(python, "-c", code, cwd=tmp_path) == "7\n"
+
+
+def requirement_name(line: str) -> str:
+    """Distribution name of a requirement."""
+    return re.split(r"[\[<>=!~ ]", line, maxsplit=1)[0]
+
+
+def declared(extra: str | None = None) -> set[str]:
+    """Names of the distributions that pyproject.toml asks for."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    lines = project["optional-dependencies"][extra] if extra else project["dependencies"]
+    return {requirement_name(line) for line in lines}
+
+
+def test_the_doctor_knows_every_declared_package() -> None:
+    assert set(MODULES) == declared() | declared("bench")
+
+
+def test_every_import_of_the_package_is_declared() -> None:
+    providers = {module: {name.lower() for name in names} for module, names in packages_distributions().items()}
+    providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
+    allowed = {name.lower() for name in declared() | declared("bench")}
+    missing = set()
+    for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):
+        for path in (Path(folder, file) for file in files if file.endswith(".py")):
+            for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+                for top in {name.partition(".")[0] for name in names} - sys.stdlib_module_names - {"kinematify"}:
+                    if not providers.get(top, set()) & allowed:
+                        missing.add(f"{path.relative_to(ROOT)}: {top}")
+    assert missing == set()
+
+
+def test_version_and_changelog_agree() -> None:
+    versions = re.findall(r"^## \[(.+?)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), flags=re.MULTILINE)
+    assert versions[0] == "Unreleased"
+    released = versions[1:]
+    assert kinematify.__version__ in released or (not released and kinematify.__version__ == "0.1.0")
+    assert released == sorted(released, key=lambda text: [int(n) for n in text.split(".")], reverse=True)
+    citation = (ROOT / "CITATION.cff").read_text("utf-8")
+    assert re.search(rf"^version: {re.escape(kinematify.__version__)}$", citation, flags=re.MULTILINE)
