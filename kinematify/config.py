@@ -6,6 +6,7 @@ A YAML file may name another one with `extends:` and then states only what diffe
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -40,12 +41,91 @@ class AssemblyConfig(StageConfig):
     """Unpacked size of a ZIP [bytes]."""
 
 
+class SurfaceConfig(StageConfig):
+    """Derived geometry of a part's surface."""
+
+    crease_angle: float
+    """Faces that meet at a larger dihedral angle form a sharp edge [deg]."""
+
+
+class ContactConfig(StageConfig):
+    """Which parts touch, and where; lengths as fractions of the assembly's diagonal."""
+
+    tolerance: float
+    """Largest gap that counts as contact."""
+    band: float
+    """Samples farther from the other part than this say nothing about the joint."""
+    samples: int
+    """Surface samples per side of a contact."""
+    cluster_samples: int
+    """Surface samples per part for comparing shapes."""
+    cluster_tolerance: float
+    """Largest Chamfer distance of congruent parts, as a fraction of the part's diagonal."""
+
+
+class BearingConfig(StageConfig):
+    """Fit of bearing lines to a contact edge."""
+
+    fade: float
+    """Distance to the other part over which evidence fades, fraction of the assembly's diagonal."""
+    fade_part: float
+    """The same as a fraction of the smaller part's diagonal; the smaller of the two counts."""
+    negligible: float
+    """Samples with less than this fraction of the largest weight are dropped."""
+    pairs: int
+    """Random pairs of normals per side."""
+    circles: int
+    """Circles through feature edges per side."""
+    coarse_samples: int
+    """Samples per side for the first scoring of all lines."""
+    shortlist: int
+    """Distinct lines that are refined and scored on all samples."""
+    keep: int
+    """Distinct lines kept per edge."""
+    normal_tolerance: float
+    """Angle between a normal and the meridian plane that still counts as consistent [deg]."""
+    fine_tolerance: float
+    """The same in the last round of refinement [deg]."""
+    refine_steps: int
+    """Rounds of refinement."""
+    flange_weight: float
+    """Weight of area perpendicular to the axis against area around it."""
+    circle_tolerance: float
+    """Angle by which a piece of edge may miss the tangent of a circle [deg]."""
+    circle_cell: float
+    """Radii and heights that differ by less belong to one circle, fraction of the diagonal."""
+    least_arc: float
+    """Shortest arc that counts, in full turns."""
+    circle_floor: float
+    """What an edge without any circle keeps of its score, against a full circle."""
+    circle_weight: float
+    """Weight of edge pieces against area in the refinement."""
+
+    @property
+    def normal_tolerance_sine(self) -> float:
+        """Sine of `normal_tolerance`."""
+        return math.sin(math.radians(self.normal_tolerance))
+
+    @property
+    def fine_tolerance_sine(self) -> float:
+        """Sine of `fine_tolerance`."""
+        return math.sin(math.radians(self.fine_tolerance))
+
+    @property
+    def circle_tolerance_sine(self) -> float:
+        """Sine of `circle_tolerance`."""
+        return math.sin(math.radians(self.circle_tolerance))
+
+
 class Config(StageConfig):
     """All stages."""
 
     name: str
     seed: int
     assembly: AssemblyConfig
+    surface: SurfaceConfig
+    contact: ContactConfig
+    bearing: BearingConfig
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:

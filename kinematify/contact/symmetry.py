@@ -1,0 +1,97 @@
+"""Clusters of congruent parts, up to mirroring (paper III-C: part clusters by Chamfer distance).
+
+A fingerprint that no rigid motion or mirroring changes (area, spreads, distances from the centroid) rejects nearly
+all pairs; the Chamfer distance after the best of the alignments of principal axes decides the rest.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.config import ContactConfig
+    from kinematify.geometry.surface import PartSurface
+
+_PROFILE_QUANTILES = np.linspace(0.02, 0.98, 9)
+
+
+def find_clusters(
+    assembly: Assembly, surfaces: Sequence[PartSurface], *, config: ContactConfig, seed: int
+) -> tuple[tuple[int, ...], ...]:
+    """Group congruent parts.
+
+    Args:
+        assembly: The parts.
+        surfaces: Derived geometry of each part, same order.
+        config: `cluster_samples` points per part, `cluster_tolerance` as a fraction of the part's diagonal.
+        seed: Seed of the samples.
+
+    Returns:
+        Groups of two or more part indices, each ascending, ordered by their first member.
+    """
+    shapes = [_centred_samples(surface, config.cluster_samples, seed) for surface in surfaces]
+    prints = np.array([_fingerprint(points) for points in shapes])
+    areas = np.array([surface.part.area for surface in surfaces])
+    sizes = np.array([np.linalg.norm(points, axis=1).max() for points in shapes])
+    alike = _alike(prints, areas, sizes, config.cluster_tolerance)
+    rows, columns = [], []
+    for a, b in zip(*np.nonzero(np.triu(alike, k=1)), strict=True):
+        limit = config.cluster_tolerance * 2 * max(sizes[a], sizes[b])
+        if aligned_chamfer(shapes[a], shapes[b]) <= limit:
+            rows.append(int(a))
+            columns.append(int(b))
+    n = len(surfaces)
+    _, labels = connected_components(coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n)), directed=False)
+    groups = [tuple(np.flatnonzero(labels == label).tolist()) for label in range(labels.max() + 1)]
+    return tuple(sorted(group for group in groups if len(group) > 1))
+
+
+def aligned_chamfer(first: FloatArray, second: FloatArray) -> float:
+    """Mean nearest-neighbour distance [m] of two centred clouds after the best alignment of principal axes.
+
+    Axes are tried with all signs and, since equal spreads leave their order open, all orders, so mirrored twins
+    match. Clouds of shape (n, 3); the better of the symmetric averages is returned.
+    """
+    axes_a, axes_b = _principal_axes(first), _principal_axes(second)
+    tree = cKDTree(first @ axes_a)
+    in_axes = second @ axes_b
+    best = np.inf
+    for order in ((0, 1, 2), (1, 0, 2), (0, 2, 1), (2, 1, 0), (1, 2, 0), (2, 0, 1)):
+        for signs in product((1.0, -1.0), repeat=3):
+            moved = in_axes[:, order] * signs
+            best = min(best, float(tree.query(moved)[0].mean()))
+    return best
+
+
+def _centred_samples(surface: PartSurface, count: int, seed: int) -> FloatArray:
+    points = surface.sample(count, seed=seed).points
+    return points - surface.part.centroid if len(points) else np.zeros((1, 3))
+
+
+def _fingerprint(points: FloatArray) -> FloatArray:
+    """Quantiles of the distance from the centroid and the principal spreads [m], shape (12,)."""
+    radii = np.quantile(np.linalg.norm(points, axis=1), _PROFILE_QUANTILES)
+    spreads = np.sqrt(np.maximum(np.linalg.eigvalsh(points.T @ points / len(points)), 0))
+    return np.concatenate([radii, spreads])
+
+
+def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: float) -> FloatArray:
+    """Matrix of pairs that may be congruent."""
+    scale = np.maximum(sizes[:, None], sizes[None])
+    difference = np.abs(prints[:, None] - prints[None]).max(axis=2)
+    area_ratio = np.minimum(areas[:, None], areas[None]) / np.maximum(np.maximum(areas[:, None], areas[None]), 1e-300)
+    close = difference <= 2.5 * tolerance * scale
+    return close & (area_ratio > 1 - 4 * tolerance)
+
+
+def _principal_axes(points: FloatArray) -> FloatArray:
+    return np.linalg.eigh(points.T @ points)[1]

@@ -1,0 +1,308 @@
+"""What the evidence needs to know of one part's surface: smooth normals, sharp edges and a collision tree.
+
+A faceted cylinder has wrong normals everywhere but on the middle line of each facet. `PartSurface` therefore
+interpolates corner normals over faces that meet at a small dihedral angle, which are radial to within the
+tessellation's own asymmetry; a 3 deg tolerance then works from 16 segments up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import fcl
+import igl
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from kinematify.assembly.part import read_only
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray, IntArray, Part
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Samples:
+    """Points on a surface with smooth normals."""
+
+    points: FloatArray
+    """World frame [m], shape (n, 3)."""
+    normals: FloatArray
+    """Unit, interpolated over smooth edges, shape (n, 3)."""
+    areas: FloatArray
+    """Surface area that each sample stands for [m^2], shape (n,)."""
+
+    def subset(self, index: NDArray[Any]) -> Samples:
+        """Keep the samples that a boolean mask or an index array selects."""
+        return Samples(points=self.points[index], normals=self.normals[index], areas=self.areas[index])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FeaturePieces:
+    """Straight pieces of sharp and boundary edges."""
+
+    middles: FloatArray
+    """Middle of each piece, world frame [m], shape (E, 3)."""
+    tangents: FloatArray
+    """Unit direction, shape (E, 3)."""
+    lengths: FloatArray
+    """[m], shape (E,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FeatureCircles:
+    """Circles through three vertices along chains of feature edges."""
+
+    axes: FloatArray
+    """Unit normal of the circle's plane, shape (C, 3)."""
+    centres: FloatArray
+    """World frame [m], shape (C, 3)."""
+    on_circle: FloatArray
+    """Middle one of the three vertices, world frame [m], shape (C, 3)."""
+    lengths: FloatArray
+    """Length of the chain between the outer vertices [m], shape (C,)."""
+
+
+class PartSurface:
+    """Derived geometry of one part, each piece computed once when first asked for."""
+
+    def __init__(self, part: Part, *, crease_angle: float) -> None:
+        """Keep the part.
+
+        Args:
+            part: The mesh.
+            crease_angle: Faces that meet at a larger dihedral angle form a sharp edge [rad].
+        """
+        self.part = part
+        self.crease_angle = crease_angle
+
+    @cached_property
+    def welded(self) -> tuple[FloatArray, IntArray]:
+        """Vertices merged by position and the faces over them that are not degenerate."""
+        scale = max(self.part.diagonal, 1e-12) * 1e-6
+        keys = np.round(self.part.vertices / scale).astype(np.int64)
+        _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        faces = inverse.reshape(-1)[self.part.faces]
+        distinct = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])
+        return self.part.vertices[first], faces[distinct]
+
+    @cached_property
+    def face_normals(self) -> tuple[FloatArray, FloatArray]:
+        """Unit normals (F, 3) and areas (F,) of the welded faces; zero-area faces have a zero normal."""
+        vertices, faces = self.welded
+        a, b, c = (vertices[faces[:, k]] for k in range(3))
+        cross = np.cross(b - a, c - a)
+        length = np.linalg.norm(cross, axis=1)
+        return cross / np.maximum(length, 1e-300)[:, None], 0.5 * length
+
+    @cached_property
+    def _edge_table(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Sorted vertex pairs of unique edges, and for each face side its edge and its face."""
+        _, faces = self.welded
+        sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        edges, inverse = np.unique(sides, axis=0, return_inverse=True)
+        return edges, inverse.reshape(-1), np.repeat(np.arange(len(faces)), 3)
+
+    @cached_property
+    def smooth_pairs(self) -> tuple[IntArray, FloatArray]:
+        """Pairs of faces that share an edge (P, 3: face, face, edge) and the cosine between their normals (P,)."""
+        edges, edge_of_side, face_of_side = self._edge_table
+        order = np.argsort(edge_of_side, kind="stable")
+        sorted_edges = edge_of_side[order]
+        counts = np.bincount(edge_of_side, minlength=len(edges))
+        starts = np.flatnonzero(np.r_[True, sorted_edges[1:] != sorted_edges[:-1]])
+        manifold = counts[sorted_edges[starts]] == 2
+        first = order[starts[manifold]]
+        second = order[starts[manifold] + 1]
+        pairs = np.stack([face_of_side[first], face_of_side[second], edge_of_side[first]], axis=1)
+        normals, _ = self.face_normals
+        cosines = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]])
+        return pairs, cosines
+
+    @cached_property
+    def feature_edges(self) -> IntArray:
+        """Vertex pairs of sharp and boundary edges of the welded mesh, shape (E, 2)."""
+        edges, edge_of_side, _ = self._edge_table
+        counts = np.bincount(edge_of_side, minlength=len(edges))
+        pairs, cosines = self.smooth_pairs
+        sharp = pairs[np.abs(cosines) < np.cos(self.crease_angle), 2]
+        return edges[np.union1d(sharp, np.flatnonzero(counts == 1))]
+
+    @cached_property
+    def feature_pieces(self) -> FeaturePieces:
+        """Sharp and boundary edges as midpoints with directions."""
+        vertices, _ = self.welded
+        ends = vertices[self.feature_edges]
+        along = ends[:, 1] - ends[:, 0]
+        lengths = np.linalg.norm(along, axis=1)
+        tangents = along / np.maximum(lengths, 1e-300)[:, None]
+        return FeaturePieces(middles=ends.mean(axis=1), tangents=tangents, lengths=lengths)
+
+    @cached_property
+    def feature_circles(self) -> FeatureCircles:
+        """Circles through vertices 1, 2, 4 and 8 steps apart along chains of feature edges."""
+        vertices, _ = self.welded
+        found = [_circles_through(vertices, *triple) for triple in _chain_triples(self.feature_edges)]
+        axes, centres, middles, lengths = (np.concatenate(column) for column in zip(*found, strict=True))
+        return FeatureCircles(axes=axes, centres=centres, on_circle=middles, lengths=lengths)
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Exact unsigned distance from `points` (n, 3) to the surface [m], shape (n,)."""
+        squared, _, _ = igl.point_mesh_squared_distance(np.ascontiguousarray(points), *self.distance_mesh)
+        return np.sqrt(squared)
+
+    @cached_property
+    def corner_normals(self) -> FloatArray:
+        """Unit normal at each corner of each welded face, shape (F, 3, 3), angle-weighted over its smooth fan."""
+        vertices, faces = self.welded
+        normals, _ = self.face_normals
+        fan = self._corner_fans()
+        weights = _corner_angles(vertices, faces).reshape(-1)
+        sums = np.zeros((fan.max() + 1, 3))
+        np.add.at(sums, fan, weights[:, None] * np.repeat(normals, 3, axis=0))
+        smooth = sums[fan]
+        length = np.linalg.norm(smooth, axis=1)
+        good = length > 1e-9
+        smooth = np.where(good[:, None], smooth / np.maximum(length, 1e-300)[:, None], np.repeat(normals, 3, axis=0))
+        return smooth.reshape(-1, 3, 3)
+
+    def _corner_fans(self) -> IntArray:
+        """Label every face corner by the fan of faces around its vertex that are joined by smooth edges."""
+        _, faces = self.welded
+        edges, _, _ = self._edge_table
+        pairs, cosines = self.smooth_pairs
+        smooth = pairs[cosines > np.cos(self.crease_angle)]
+        left, right = [], []
+        for end in range(2):
+            vertex = edges[smooth[:, 2], end]
+            for side, out in ((0, left), (1, right)):
+                face = smooth[:, side]
+                out.append(face * 3 + np.argmax(faces[face] == vertex[:, None], axis=1))
+        n = faces.size
+        if not left:
+            return np.arange(n)
+        i, j = np.concatenate(left), np.concatenate(right)
+        _, labels = connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(n, n)), directed=False)
+        return labels.astype(np.int64)
+
+    def sample(self, count: int, *, faces: IntArray | None = None, seed: int = 0) -> Samples:
+        """Sample the surface evenly by area: systematic along the cumulative area, random inside a face.
+
+        Args:
+            count: Number of samples.
+            faces: Indices of welded faces to sample; all by default.
+            seed: Seed of the position inside a face.
+
+        Returns:
+            Samples with interpolated normals; empty where there is no area.
+        """
+        _, areas = self.face_normals
+        chosen = np.arange(len(areas)) if faces is None else faces
+        cumulative = np.cumsum(areas[chosen])
+        if len(chosen) == 0 or cumulative[-1] <= 0:
+            return Samples(points=np.empty((0, 3)), normals=np.empty((0, 3)), areas=np.empty(0))
+        rng = np.random.default_rng(seed)
+        ticks = (np.arange(count) + rng.random()) / count * cumulative[-1]
+        picked = chosen[np.minimum(np.searchsorted(cumulative, ticks), len(chosen) - 1)]
+        barycentric = _random_barycentric(rng, count)
+        vertices, tri = self.welded
+        points = np.einsum("nk,nkd->nd", barycentric, vertices[tri[picked]])
+        normals = np.einsum("nk,nkd->nd", barycentric, self.corner_normals[picked])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
+        return Samples(points=points, normals=normals, areas=np.full(count, cumulative[-1] / count))
+
+    def faces_near(self, bounds: FloatArray, margin: float) -> IntArray:
+        """Welded faces whose box meets `bounds` (2, 3) grown by `margin` [m]."""
+        lower, upper = self._face_boxes
+        hit = np.all((lower <= bounds[1] + margin) & (upper >= bounds[0] - margin), axis=1)
+        return np.flatnonzero(hit)
+
+    @cached_property
+    def _face_boxes(self) -> tuple[FloatArray, FloatArray]:
+        vertices, faces = self.welded
+        corners = vertices[faces]
+        return corners.min(1), corners.max(1)
+
+    @cached_property
+    def collision_object(self) -> fcl.CollisionObject:
+        """FCL tree of the triangles, in the world frame."""
+        vertices, faces = self.welded
+        model = fcl.BVHModel()
+        model.beginModel(len(vertices), len(faces))
+        model.addSubModel(vertices, faces)
+        model.endModel()
+        return fcl.CollisionObject(model, fcl.Transform())
+
+    @cached_property
+    def distance_mesh(self) -> tuple[FloatArray, IntArray]:
+        """Welded mesh as igl wants it: float64 and int64, contiguous."""
+        vertices, faces = self.welded
+        return read_only(vertices, np.float64), read_only(faces, np.int64)
+
+
+def _corner_angles(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Interior angle at each corner [rad], shape (F, 3)."""
+    corners = vertices[faces]
+    angles = np.empty((len(faces), 3))
+    for k in range(3):
+        left = corners[:, (k + 1) % 3] - corners[:, k]
+        right = corners[:, (k + 2) % 3] - corners[:, k]
+        cross = np.linalg.norm(np.cross(left, right), axis=1)
+        angles[:, k] = np.arctan2(cross, np.einsum("ij,ij->i", left, right))
+    return angles
+
+
+def _random_barycentric(rng: np.random.Generator, count: int) -> FloatArray:
+    u, v = rng.random(count), rng.random(count)
+    root = np.sqrt(u)
+    return np.stack([1 - root, root * (1 - v), root * v], axis=1)
+
+
+def _chain_triples(edges: IntArray) -> list[tuple[IntArray, IntArray, IntArray]]:
+    """Vertex triples (first, middle, last) k = 1, 2, 4, 8 steps apart along chains of feature edges.
+
+    `follow` maps each directed edge to the next one along its chain; composing it with itself doubles the step, so
+    nothing is walked. Chains end at vertices that have other than two feature edges.
+    """
+    n = len(edges)
+    directed = np.concatenate([edges, edges[:, ::-1]])
+    starts, ends = directed[:, 0], directed[:, 1]
+    twin = np.concatenate([np.arange(n) + n, np.arange(n)])
+    size = int(edges.max(initial=-1)) + 1
+    degree = np.bincount(starts, minlength=size)
+    # Where a vertex has two outgoing edges, their sum less the way back is the way on.
+    outgoing = np.bincount(starts, np.arange(2 * n), minlength=size).astype(np.int64)
+    follow = np.append(np.where(degree[ends] == 2, outgoing[ends] - twin, 2 * n), 2 * n)
+    near, jump = np.arange(2 * n), follow
+    triples = []
+    for _ in range(4):
+        far = jump[near]
+        good = far < 2 * n
+        first, middle, last = starts[good], ends[near[good]], ends[far[good]]
+        once = first < last
+        triples.append((first[once], middle[once], last[once]))
+        near, jump = np.where(good, far, 2 * n), jump[jump]
+    return triples
+
+
+def _circles_through(
+    vertices: FloatArray, first: IntArray, middle: IntArray, last: IntArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Circumscribed circles: axes, centres, middle points and chord lengths; nearly straight triples are dropped."""
+    a, b, c = vertices[first], vertices[middle], vertices[last]
+    left, right = a - b, c - b
+    cross = np.cross(left, right)
+    area = np.linalg.norm(cross, axis=1)
+    lengths = np.linalg.norm(left, axis=1) + np.linalg.norm(right, axis=1)
+    bent = area > 0.01 * (0.25 * lengths**2)  # below, the chain turns by less than about 0.6 deg
+    left, right, cross, area, b = left[bent], right[bent], cross[bent], area[bent], b[bent]
+    squared_left = np.einsum("ij,ij->i", left, left)[:, None]
+    squared_right = np.einsum("ij,ij->i", right, right)[:, None]
+    to_centre = np.cross(squared_left * right - squared_right * left, cross) / (2 * area**2)[:, None]
+    return cross / area[:, None], b + to_centre, b, lengths[bent]
