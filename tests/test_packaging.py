@@ -82,7 +82,8 @@ def test_editable_install_is_complete_and_sees_new_files(tree: Path, tmp_path: P
     python = empty_environment(tmp_path / "env")
     call(
         sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", "--no-build-isolation",
-        "--config-settings", "editable_mode=compat", "--editable", tree, cwd=tmp_path, path=sysconfig.get_path("purelib"),
+        "--config-settings", "editable_mode=compat", "--editable", tree, cwd=tmp_path,
+        path=sysconfig.get_path("purelib"),
     )  # fmt: skip
     assert_complete(python, tmp_path)
     (tree / "validation" / "added_later.py").write_text("VALUE = 7\n")

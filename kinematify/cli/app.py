@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NoReturn
 
 import click
+from click.exceptions import NoSuchCommand
 
 from kinematify import __version__
 from kinematify.errors import KinematifyError
@@ -93,6 +94,15 @@ class _LazyGroup(click.Group):
         if _TRACEBACK not in command.params:
             command.params.append(_TRACEBACK)
         return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command, or say which one may have been meant; click looks among the loaded ones only."""
+        try:
+            return super().resolve_command(ctx, args)
+        except NoSuchCommand as error:
+            raise NoSuchCommand(error.command_name, possibilities=COMMANDS, ctx=ctx) from None
 
 
 def _ask_for_traceback(ctx: click.Context, _parameter: click.Parameter, value: bool) -> None:

@@ -15,6 +15,7 @@ import click
 
 from kinematify import __version__
 from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
 from kinematify.cli.table import format_table
 
 if TYPE_CHECKING:
@@ -80,17 +81,16 @@ class Finding:
         return f"{sys.executable} -m pip install {force}'{self.package}{self.wanted}'"
 
 
-@click.command("doctor", short_help="Versions, engines, what is missing and how to install it.")
+@click.command(
+    "doctor",
+    short_help="Versions, engines, what is missing and how to install it.",
+    epilog=examples("kinematify doctor", "kinematify doctor --json - | python -m json.tool"),
+)
 @json_option
 def command(json_to: str | None) -> int:
     """Check every package that Kinematify needs, by importing each in a process of its own.
 
     Ends with 0 if all that is required works, else with 3. Packages of extras may be missing.
-
-    \b
-    Examples:
-      kinematify doctor
-      kinematify doctor --json - | python -m json.tool
     """
     findings = examine_packages()
     failed = [finding for finding in findings if finding.state != "ok" and not finding.optional]
