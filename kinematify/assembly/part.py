@@ -101,11 +101,14 @@ class Assembly:
     """Degenerate input, by name and reason; nothing disappears silently."""
     original_names: Mapping[str, str] = field(default_factory=dict)
     """Part name -> name in the input."""
+    original_parts: Mapping[str, Part] = field(default_factory=dict)
+    """Part name -> mesh as given, for the parts that were simplified for inference; output uses these."""
     warnings: tuple[str, ...] = ()
     """What the user should know about the input, one sentence each."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "original_names", MappingProxyType(dict(self.original_names)))
+        object.__setattr__(self, "original_parts", MappingProxyType(dict(self.original_parts)))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ class Inertial:
     tensor: FloatArray
     """Inertia about the centre of mass, axes of the link frame [kg m^2], shape (3, 3). Read-only."""
     source: str
-    """``volume`` for a closed mesh, ``hull`` for the convex hull of an open one."""
+    """``volume`` for a closed mesh, ``hull`` for the convex hull of an open or flat one."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "center_of_mass", read_only(self.center_of_mass, np.float64))
@@ -39,15 +39,24 @@ class Link:
 
     name: str
     part: Part
-    """The mesh in world coordinates of the input configuration."""
+    """The mesh that was inferred from, in world coordinates of the input configuration."""
     T_world_link: FloatArray
     """Link frame at zero configuration, shape (4, 4). Read-only."""
     inertial: Inertial
     fixed_visuals: tuple[Part, ...] = ()
     """Set-aside meshes that ride on this link, world coordinates."""
+    original: Part | None = None
+    """The mesh as it was given, where `part` is a simplified one; world coordinates."""
+    collision_parts: tuple[Part, ...] = ()
+    """Meshes that stand in for the part in collisions, world coordinates; empty: the part itself."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "T_world_link", read_only(self.T_world_link, np.float64))
+
+    @property
+    def visual(self) -> Part:
+        """The mesh that files and pictures show, world coordinates."""
+        return self.original or self.part
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -1,0 +1,141 @@
+"""From a tree with joints to a kinematic model: frames, names, limits, mass properties."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.part import Part
+from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.joints.candidate import JointType
+from kinematify.model.inertia import inertial_of
+from kinematify.model.kinematic_model import Joint, KinematicModel, Link
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.config import ModelConfig
+    from kinematify.joints.candidate import JointEstimate
+    from kinematify.topology.tree import KinematicTree
+
+
+def build_model(
+    assembly: Assembly,
+    tree: KinematicTree,
+    joints: Sequence[JointEstimate],
+    *,
+    name: str,
+    config: ModelConfig,
+) -> KinematicModel:
+    """Put links and joints together (paper III-A, the articulated model ``M``).
+
+    The root link's frame is the world frame of the input; every other link frame has world orientation and its origin
+    at the pivot of its joint, so that zero configuration reproduces the input. Set-aside parts ride on the link that
+    is named as their nearest.
+
+    Args:
+        assembly: The parts.
+        tree: Directed spanning tree over them.
+        joints: One estimate for every tree edge, in any order.
+        name: Name of the model, cut where engines would crash on its length.
+        config: Densities, efforts, velocities and bounds.
+
+    Raises:
+        ValueError: The estimates are not those of the tree's edges.
+    """
+    by_edge = {(joint.parent, joint.child): joint for joint in joints}
+    if len(by_edge) != len(joints) or set(by_edge) != set(tree.edges()):
+        raise ValueError("A model needs one joint estimate for every tree edge and no other.")
+    origins = np.zeros((len(assembly.parts), 3))
+    for joint in joints:
+        origins[joint.child] = joint.pivot
+    thickness = max(config.min_thickness * assembly.diagonal, config.min_thickness_m)
+    links = tuple(
+        _link(assembly, index, origin, thickness=thickness, config=config) for index, origin in enumerate(origins)
+    )
+    joint_names = _joint_names([assembly.names[child] for _, child in tree.edges()], taken=set(assembly.names))
+    return KinematicModel(
+        name=name[: config.max_name_length],
+        links=links,
+        joints=tuple(
+            _joint(by_edge[edge], links, joint_name, assembly.diagonal, config)
+            for edge, joint_name in zip(tree.edges(), joint_names, strict=True)
+        ),
+    )
+
+
+def _link(assembly: Assembly, index: int, origin: FloatArray, *, thickness: float, config: ModelConfig) -> Link:
+    part = assembly.parts[index]
+    original = assembly.original_parts.get(part.name)
+    T_world_link = np.eye(4)
+    T_world_link[:3, 3] = origin
+    return Link(
+        name=part.name,
+        part=part,
+        T_world_link=T_world_link,
+        inertial=inertial_of(original or part, origin, thickness=thickness, config=config),
+        fixed_visuals=tuple(item.part for item in assembly.set_aside if item.nearest == part.name),
+        original=original,
+        collision_parts=_collision_parts(original or part, thickness),
+    )
+
+
+def _collision_parts(part: Part, thickness: float) -> tuple[Part, ...]:
+    """A thin solid for a flat part, which no engine can collide; nothing for all others."""
+    used = part.vertices[np.unique(part.faces)]
+    thick = thickened(used, thickness)
+    if len(thick) == len(used):
+        return ()
+    vertices, faces = convex_hull(thick)
+    return (Part(name=f"{part.name}_collision", vertices=vertices, faces=faces),)
+
+
+def _joint_names(children: Sequence[str], taken: set[str]) -> list[str]:
+    """``<child>_joint`` for every child, numbered where a link or another joint has that name."""
+    names = []
+    for child in children:
+        name, number = f"{child}_joint", 1
+        while name in taken:
+            number += 1
+            name = f"{child}_joint_{number}"
+        taken.add(name)
+        names.append(name)
+    return names
+
+
+def _joint(
+    estimate: JointEstimate, links: Sequence[Link], name: str, diagonal: float, config: ModelConfig
+) -> Joint:
+    parent, child = links[estimate.parent], links[estimate.child]
+    T_parent_child = np.eye(4)
+    T_parent_child[:3, 3] = child.T_world_link[:3, 3] - parent.T_world_link[:3, 3]
+    kind, lower, upper = _limits(estimate, diagonal, config)
+    return Joint(
+        name=name,
+        kind=kind,
+        parent=parent.name,
+        child=child.name,
+        T_parent_child=T_parent_child,
+        axis=estimate.axis,
+        lower=lower,
+        upper=upper,
+        effort=config.turn_effort if kind.turns else config.slide_effort,
+        velocity=config.turn_velocity if kind.turns else config.slide_velocity,
+    )
+
+
+def _limits(estimate: JointEstimate, diagonal: float, config: ModelConfig) -> tuple[JointType, float, float]:
+    """Type and limits that every engine takes: none for continuous, finite and apart for revolute and prismatic."""
+    kind, lower, upper = estimate.kind, estimate.lower, estimate.upper
+    if kind is JointType.FIXED:
+        return kind, 0.0, 0.0
+    if kind is JointType.CONTINUOUS or (kind is JointType.REVOLUTE and math.isinf(upper - lower)):
+        return JointType.CONTINUOUS, -math.inf, math.inf
+    unit = diagonal if kind is JointType.PRISMATIC else 1.0
+    if kind is JointType.PRISMATIC:
+        lower, upper = max(lower, -config.max_travel * unit), min(upper, config.max_travel * unit)
+    # MuJoCo ignores limits that are equal, which would turn a stuck joint into one without limits.
+    return kind, lower, max(upper, lower + config.min_travel * unit)

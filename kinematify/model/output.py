@@ -1,0 +1,101 @@
+"""A model folder appears whole or not at all: it is written aside and renamed."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shutil
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinematify.errors import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+MODEL_FILE = "model.urdf"
+RECORD_FILE = "inference.json"
+
+
+def write_model_folder(out: Path, write: Callable[[Path], None], *, overwrite: bool) -> None:
+    """Let `write` fill a hidden folder beside `out`, then give it the name `out`.
+
+    On any failure, an interrupt included, the hidden folder and parent folders made here are removed and a folder that
+    was at `out` before is still there.
+
+    Args:
+        out: The folder to make; missing parents are made too.
+        write: Writes the files into the folder that it is given.
+        overwrite: Replace `out` if it is an empty folder or a model folder; nothing else is ever replaced.
+
+    Raises:
+        OutputError: `out` exists and must not be replaced, or cannot be written.
+    """
+    check_output(out, overwrite=overwrite)
+    target = out.resolve()
+    missing = [folder for folder in target.parents if not folder.exists()]
+    staging = target.parent / f".{target.name}.{secrets.token_hex(4)}"
+    try:
+        staging.mkdir(parents=True)
+        write(staging)
+        _rename(staging, target)
+    except BaseException as error:
+        shutil.rmtree(staging, ignore_errors=True)
+        for folder in missing:
+            with suppress(OSError):
+                folder.rmdir()
+        if isinstance(error, OSError):
+            raise OutputError(
+                f"The output folder {out} cannot be written ({error.strerror or error}). "
+                "Give another place with -o, or mend its permissions or free disk space."
+            ) from error
+        raise
+
+
+def check_output(out: Path, *, overwrite: bool) -> None:
+    """Refuse an output place that must not be written, so that a long run need not end in vain.
+
+    Args:
+        out: The folder that is going to be made.
+        overwrite: Whether an empty folder or a model folder may be replaced.
+
+    Raises:
+        OutputError: `out` exists and must not be replaced, or its parent cannot be written.
+    """
+    if os.path.lexists(out):
+        _check_replaceable(out, overwrite)
+    parent = next(folder for folder in out.resolve().parents if folder.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
+        raise OutputError(
+            f"The output folder {out} cannot be made because {parent} is not a folder that you may write. "
+            "Give another place with -o, or mend its permissions."
+        )
+
+
+def _check_replaceable(out: Path, overwrite: bool) -> None:
+    if not overwrite:
+        raise OutputError(f"The output folder {out} exists already. Give another one with -o, or --force to replace it.")
+    if not out.is_dir():
+        raise OutputError(f"The output {out} exists and is not a folder, so --force leaves it. Give another one with -o.")
+    ours = (out / MODEL_FILE).is_file() and (out / RECORD_FILE).is_file()
+    if not ours and any(out.iterdir()):
+        raise OutputError(
+            f"The output folder {out} holds files but no {MODEL_FILE} with {RECORD_FILE}, so it is not a model folder "
+            "and --force leaves it as it is. Give another one with -o, or remove it yourself."
+        )
+
+
+def _rename(staging: Path, target: Path) -> None:
+    """Move the finished folder into place; what stood there is put aside first and comes back if that fails."""
+    if not target.exists():
+        staging.rename(target)
+        return
+    aside = staging.with_name(f"{staging.name}.old")
+    target.rename(aside)
+    try:
+        staging.rename(target)
+    except BaseException:
+        aside.rename(target)
+        raise
+    shutil.rmtree(aside, ignore_errors=True)

@@ -1,0 +1,45 @@
+"""One colour per link, the same in the URDF and in pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.model.kinematic_model import KinematicModel
+
+_GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))  # never repeats, and neighbours in order lie far apart
+_FIRST_HUE = 0.75  # [rad] a warm orange
+_LIGHTNESS = np.array([0.72, 0.64, 0.80])  # cycled, so that similar hues still differ
+_CHROMA = 0.125  # inside sRGB for all hues at these lightnesses but for a little clipping
+_ROOT = (0.83, 0.008, 1.2)  # a light warm grey: what stands still stays in the background
+
+# OKLab to linear sRGB (Ottosson, "A perceptual color space for image processing", 2020).
+_OKLAB_TO_LMS = np.array([[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728],
+                          [1, -0.0894841775, -1.2914855480]])  # fmt: skip
+_LMS_TO_RGB = np.array([[4.0767416621, -3.3077115913, 0.2309699292], [-1.2684380046, 2.6097574011, -0.3413193965],
+                        [-0.0041960863, -0.7034186147, 1.7076147010]])  # fmt: skip
+
+
+def link_colors(model: KinematicModel) -> dict[str, FloatArray]:
+    """Colour of every link: grey for the root, distinct hues of like strength for all others.
+
+    Returns:
+        Link name -> sRGB in [0, 1], shape (3,).
+    """
+    colors = {model.root: _oklch(*_ROOT)}
+    moving = [link.name for link in model.links if link.name != model.root]
+    for index, name in enumerate(moving):
+        hue = _FIRST_HUE + index * _GOLDEN_ANGLE
+        colors[name] = _oklch(float(_LIGHTNESS[index % len(_LIGHTNESS)]), _CHROMA, hue)
+    return colors
+
+
+def _oklch(lightness: float, chroma: float, hue: float) -> FloatArray:
+    """OKLCh (hue in rad) to sRGB in [0, 1], shape (3,)."""
+    lab = np.array([lightness, chroma * np.cos(hue), chroma * np.sin(hue)])
+    linear = np.clip(_LMS_TO_RGB @ (_OKLAB_TO_LMS @ lab) ** 3, 0.0, 1.0)
+    srgb: FloatArray = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return srgb
