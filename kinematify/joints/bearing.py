@@ -116,6 +116,9 @@ def fit_edge(
     lines: list[BearingLine] = []
     if len(axes):
         lines = _rank(side_a, side_b, axes, points, centroid, diagonal, config)
+    if not lines or lines[0].score < config.turned_score:
+        turned = _turned_lines(surfaces, edge, centroid, config, rng)
+        lines = sorted([*lines, *turned], key=lambda line: -line.score)
     return EdgeBearing(a=edge.a, b=edge.b, centroid=read_only(centroid, np.float64), lines=tuple(lines))
 
 
@@ -137,6 +140,69 @@ def _centroid(*sides: _Side) -> FloatArray:
     if weights.sum() <= 0:
         return points.mean(axis=0) if len(points) else np.zeros(3)
     return np.average(points, axis=0, weights=weights)
+
+
+# ---- one-sided evidence --------------------------------------------------------------------------------------------
+
+
+def _turned_lines(
+    surfaces: Sequence[PartSurface],
+    edge: ContactEdge,
+    centroid: FloatArray,
+    config: BearingConfig,
+    rng: np.random.Generator,
+) -> list[BearingLine]:
+    """Axes of wheels and discs: a part that is round as a whole turns about its own axis.
+
+    The other part often models no bearing at all (a wheel in its well). Long round parts are left out: a rod hinged
+    at its end is round about the wrong line.
+    """
+    lines = []
+    for own, other in ((edge.a, edge.b), (edge.b, edge.a)):
+        side = _whole_side(surfaces[own], config.turned_samples)
+        axes, points = _normal_pair_lines(side, config.turned_samples, rng)
+        if len(axes) == 0:
+            continue
+        best = int(np.argmax(_surface_support(side, axes, points, config)))
+        axis, point = _refine(side, side, axes[best], points[best], config)
+        support = float(_surface_support(side, axis[None], point[None], config)[0])
+        arm = side.points - point
+        height = float(np.ptp(arm @ axis))
+        width = 2 * float(np.linalg.norm(np.cross(arm, axis), axis=1).max())
+        if support < config.turned_support or height > config.turned_length * width:
+            continue
+        shares = (support, 0.0) if own < other else (0.0, support)
+        pivot = point + axis * float((centroid - point) @ axis)
+        score = config.turned_score * support
+        lines.append(
+            BearingLine(
+                axis=axis,
+                pivot=pivot,
+                score=score,
+                surface_a=shares[0],
+                surface_b=shares[1],
+                circles_a=0.0,
+                circles_b=0.0,
+            )
+        )
+    return lines
+
+
+def _whole_side(surface: PartSurface, count: int) -> _Side:
+    samples = surface.sample(count)
+    nothing, none = np.empty((0, 3)), np.empty(0)
+    return _Side(
+        points=samples.points,
+        normals=samples.normals,
+        weights=samples.areas,
+        middles=nothing,
+        tangents=nothing,
+        lengths=none,
+        edge_weights=none,
+        circle_axes=nothing,
+        circle_centres=nothing,
+        circle_weights=none,
+    )
 
 
 # ---- evidence of one side ------------------------------------------------------------------------------------------
