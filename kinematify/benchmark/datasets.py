@@ -1,0 +1,198 @@
+"""Objects with ground truth, and the conditions under which each is shown to the method."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections import Counter
+from dataclasses import dataclass, replace
+from functools import cached_property
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import Any, Literal
+
+from kinematify.errors import EnvironmentFault, InputError
+
+BENCH_VARIABLE = "KINEMATIFY_BENCH"
+PIP_DATA = "pip"
+"""The word that stands for robots of the PyPI package example-robot-data."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Condition:
+    """How an object is posed before its kinematics are erased."""
+
+    name: str
+    pose: Literal["rest", "random"]
+    seed: int
+    """Draws the random configuration, and the order and names of the parts."""
+    yaw_deg: float
+    """Turn about the vertical axis [deg]."""
+
+
+CONDITIONS = (
+    Condition(name="rest", pose="rest", seed=0, yaw_deg=0.0),
+    Condition(name="random-0", pose="random", seed=0, yaw_deg=0.0),
+    Condition(name="random-1", pose="random", seed=1, yaw_deg=0.0),
+    Condition(name="random-2", pose="random", seed=2, yaw_deg=0.0),
+    Condition(name="yaw37", pose="rest", seed=0, yaw_deg=37.0),
+)
+"""The conditions of the protocol."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BenchObject:
+    """A robot description with ground truth."""
+
+    name: str
+    urdf: Path
+    kind: str
+    """``robot``, ``everyday`` or ``other``."""
+    category: str
+    gripper_joints: tuple[str, ...] = ()
+    """Fingers that the paper's count of degrees of freedom leaves out."""
+    package_dirs: tuple[Path, ...] = ()
+    """Folders in which ``package://`` names are looked up."""
+
+    @cached_property
+    def content_hash(self) -> str:
+        """Hash of the URDF and of names and sizes of all files beside it and below: the same wherever it lies."""
+        digest = hashlib.sha256(self.urdf.read_bytes())
+        for path in self._files:
+            digest.update(f"{path.relative_to(self.urdf.parent).as_posix()}:{path.stat().st_size}".encode())
+        return digest.hexdigest()
+
+    @cached_property
+    def mesh_bytes(self) -> int:
+        """Size of all files beside the URDF and below [bytes]; a guess at how long the object takes."""
+        return sum(path.stat().st_size for path in self._files)
+
+    @cached_property
+    def _files(self) -> list[Path]:
+        return [path for path in sorted(self.urdf.parent.rglob("*")) if path.is_file()]
+
+
+def find_objects(data: str | Path | None = None) -> tuple[BenchObject, ...]:
+    """Return the objects of a data set, by name.
+
+    Args:
+        data: A folder searched for URDF files at any depth, one URDF file, ``pip`` for robots of the PyPI package
+            example-robot-data, or None for the benchmark folder (`bench_folder`).
+
+    Raises:
+        InputError: The path does not exist or holds no URDF.
+        EnvironmentFault: The package example-robot-data is not installed.
+    """
+    if data is None:
+        return _objects_below(bench_folder())
+    if str(data) == PIP_DATA:
+        return _pip_objects()
+    path = Path(data)
+    if path.is_file():
+        return (_object_of(path),)
+    if path.is_dir():
+        return _objects_below(path)
+    raise InputError(
+        f"There is no benchmark data at {path}. Give a folder with URDF files, one URDF file, or the word `{PIP_DATA}`."
+    )
+
+
+def bench_folder() -> Path:
+    """Return the folder of benchmark models: the environment variable KINEMATIFY_BENCH, else ../shared/bench.
+
+    Raises:
+        InputError: Neither exists.
+    """
+    named = os.environ.get(BENCH_VARIABLE)
+    checkout = Path(__file__).resolve().parents[2]
+    folder = Path(named) if named else checkout.parent / "shared" / "bench"
+    if folder.is_dir():
+        return folder
+    raise InputError(
+        f"There is no benchmark folder at {folder}. Give a folder of URDF files, set {BENCH_VARIABLE} to one, or use "
+        f"the word `{PIP_DATA}` for the robots of a PyPI package."
+    )
+
+
+def _objects_below(folder: Path) -> tuple[BenchObject, ...]:
+    files = [path for path in sorted(folder.rglob("*.urdf")) if _is_main_description(path)]
+    if not files:
+        raise InputError(
+            f"The folder {folder} holds no URDF file at any depth. Give a folder with `model.urdf` folders or `*.urdf` "
+            "files."
+        )
+    objects = [_object_of(path) for path in files]
+    clashes = {name for name, count in Counter(item.name for item in objects).items() if count > 1}
+    return tuple(
+        replace(item, name=item.urdf.relative_to(folder).with_suffix("").as_posix()) if item.name in clashes else item
+        for item in objects
+    )
+
+
+def _is_main_description(path: Path) -> bool:
+    """In a model folder only `model.urdf` counts; other files there are variants of it."""
+    return path.name == "model.urdf" or not path.with_name("model.urdf").is_file()
+
+
+def _object_of(urdf: Path) -> BenchObject:
+    facts = _source_facts(urdf.parent / "source.json")
+    return BenchObject(
+        name=urdf.resolve().parent.name if urdf.name == "model.urdf" else urdf.stem,
+        urdf=urdf,
+        kind=str(facts.get("kind", "other")),
+        category=str(facts.get("category", "other")),
+        gripper_joints=tuple(facts.get("gripper_joints") or ()),
+    )
+
+
+def _source_facts(path: Path) -> dict[str, Any]:
+    try:
+        facts = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError) as error:
+        raise InputError(f"The description of the object, {path}, cannot be read as JSON: {error}.") from error
+    return facts if isinstance(facts, dict) else {}
+
+
+_PIP_ROBOTS = (
+    ("panda", "arm", "panda_description/urdf/panda.urdf", ("panda_finger_joint1", "panda_finger_joint2")),
+    ("go2", "quadruped", "go2_description/urdf/go2.urdf", ()),
+    ("allegro", "hand", "allegro_hand_description/urdf/allegro_right_hand.urdf", ()),
+    ("ur10", "arm", "ur_description/urdf/ur10_robot.urdf", ()),
+)
+"""Name, category, place in the package, gripper joints. UR10 is not the paper's UR10e and has no row there."""
+
+
+def _pip_objects() -> tuple[BenchObject, ...]:
+    share = _example_robot_data()
+    return tuple(
+        BenchObject(
+            name=name,
+            urdf=share / "example-robot-data" / "robots" / place,
+            kind="robot",
+            category=category,
+            gripper_joints=gripper,
+            package_dirs=(share,),
+        )
+        for name, category, place, gripper in _PIP_ROBOTS
+    )
+
+
+def _example_robot_data() -> Path:
+    """Folder that holds the installed `example-robot-data` ROS package; the wheel has no module that names it."""
+    try:
+        package = distribution("example-robot-data")
+    except PackageNotFoundError as error:
+        raise EnvironmentFault(
+            "The robots of `--data pip` come with the PyPI package example-robot-data, which is not installed. "
+            "Run `pip install kinematify[bench]`."
+        ) from error
+    share = Path(str(package.locate_file("cmeel.prefix/share")))
+    if (share / "example-robot-data" / "robots").is_dir():
+        return share
+    raise EnvironmentFault(
+        f"The installed example-robot-data {package.version} keeps no robots in {share}. Run "
+        "`pip install --force-reinstall kinematify[bench]`."
+    )

@@ -1,0 +1,193 @@
+"""Tree edit distances against brute force, and the laws of a distance."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kinematify.benchmark.tree_metrics import (
+    constrained_edit_distance,
+    parent_errors,
+    root_of,
+    tree_edit_distance,
+    without_nodes,
+)
+
+
+def all_trees(n: int) -> list[dict[int, int]]:
+    """Every rooted labelled tree over 0..n-1."""
+    trees = []
+    for root in range(n):
+        others = [node for node in range(n) if node != root]
+        for choice in product(range(n), repeat=n - 1):
+            tree = {root: -1, **dict(zip(others, choice, strict=True))}
+            if all(reaches_root(tree, node) for node in tree):
+                trees.append(tree)
+    return trees
+
+
+def reaches_root(tree: dict[int, int], node: int) -> bool:
+    for _ in range(len(tree)):
+        if node < 0:
+            return True
+        node = tree[node]
+    return node < 0
+
+
+def ancestors(tree: dict[int, int], node: int) -> set[int]:
+    found = set()
+    while tree[node] >= 0:
+        node = tree[node]
+        found.add(node)
+    return found
+
+
+def brute_force(first: dict[int, int], second: dict[int, int], *, labelled: bool) -> int:
+    """Cheapest of all legal edit mappings, tried one by one."""
+    above_1 = {node: ancestors(first, node) for node in first}
+    above_2 = {node: ancestors(second, node) for node in second}
+
+    def legal(pairs: list[tuple[int, int]], a: int, b: int) -> bool:
+        return all(
+            b != d and (a in above_1[c]) == (b in above_2[d]) and (c in above_1[a]) == (d in above_2[b])
+            for c, d in pairs
+        )
+
+    def cheapest(nodes: list[int], pairs: list[tuple[int, int]], relabelled: int) -> int:
+        if not nodes:
+            return len(first) + len(second) - 2 * len(pairs) + relabelled
+        a, *rest = nodes
+        costs = [cheapest(rest, pairs, relabelled)]
+        for b in second:
+            if legal(pairs, a, b):
+                costs.append(cheapest(rest, [*pairs, (a, b)], relabelled + (labelled and a != b)))
+        return min(costs)
+
+    return cheapest(list(first), [], 0)
+
+
+def one_per_shape(n: int) -> list[dict[int, int]]:
+    shapes: list[dict[int, int]] = []
+    for tree in all_trees(n):
+        if all(tree_edit_distance(tree, other, labelled=False).value for other in shapes):
+            shapes.append(tree)
+    return shapes
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
+@pytest.mark.parametrize("labelled", [True, False])
+def test_distance_is_that_of_brute_force_on_all_small_trees(n: int, labelled: bool) -> None:
+    for first in one_per_shape(n):
+        for second in all_trees(n):
+            distance = tree_edit_distance(first, second, labelled=labelled)
+            assert distance.exact
+            assert distance.value == brute_force(first, second, labelled=labelled), (first, second)
+
+
+@pytest.mark.parametrize("part", range(3))
+def test_distance_is_that_of_brute_force_on_trees_of_five(part: int) -> None:
+    """One tree of each of the nine shapes against every labelled tree: all pairs up to a renaming of both."""
+    shapes = one_per_shape(5)
+    assert len(shapes) == 9
+    for first in shapes[part::3]:
+        for second in all_trees(5):
+            distance = tree_edit_distance(first, second)
+            assert distance.exact
+            assert distance.value == brute_force(first, second, labelled=True), (first, second)
+
+
+def test_distance_between_trees_of_different_size() -> None:
+    for first in one_per_shape(4):
+        for second in all_trees(3):
+            for labelled in (True, False):
+                expected = brute_force(first, second, labelled=labelled)
+                assert tree_edit_distance(first, second, labelled=labelled).value == expected, (first, second)
+
+
+def test_there_are_as_many_rooted_trees_as_cayley_says() -> None:
+    assert [len(all_trees(n)) for n in (1, 2, 3, 4, 5)] == [1, 2, 9, 64, 625]
+
+
+def test_one_wrong_parent_costs_a_deletion_and_an_insertion() -> None:
+    truth = {0: -1, 1: 0, 2: 1, 3: 2}
+    predicted = {0: -1, 1: 0, 2: 1, 3: 1}
+    assert tree_edit_distance(truth, predicted).value == 2
+    assert parent_errors(truth, predicted) == 1
+
+
+def test_reversed_chain_has_the_shape_but_not_the_order() -> None:
+    truth = {0: -1, 1: 0, 2: 1, 3: 2}
+    backwards = {3: -1, 2: 3, 1: 2, 0: 1}
+    assert tree_edit_distance(truth, backwards, labelled=False).value == 0
+    assert tree_edit_distance(truth, backwards).value == 4
+    assert root_of(truth) == 0
+    assert root_of(backwards) == 3
+
+
+def test_skipped_parent_is_cheaper_than_the_constrained_distance_says() -> None:
+    truth = {0: -1, 1: 0, 2: 0, 3: 0, 4: 0}
+    grouped = {0: -1, 1: 4, 2: 4, 3: 0, 4: 0}
+    assert constrained_edit_distance(truth, grouped) == 4
+    assert tree_edit_distance(truth, grouped).value == 2
+
+
+def test_empty_prediction_costs_every_node() -> None:
+    truth = {0: -1, 1: 0, 2: 1}
+    assert tree_edit_distance(truth, {}).value == 3
+    assert tree_edit_distance({}, {}).value == 0
+    assert parent_errors(truth, {}) == 3
+    assert root_of({}) is None
+
+
+def test_deleted_nodes_hand_their_children_up() -> None:
+    tree = {0: -1, 1: 0, 2: 1, 3: 1}
+    assert without_nodes(tree, [1]) == {0: -1, 2: 0, 3: 0}
+    assert without_nodes(tree, [0, 1]) == {2: -1, 3: 2}
+    assert without_nodes(tree, [0, 1, 2, 3]) == {}
+
+
+def test_large_trees_keep_a_bound_and_say_so() -> None:
+    n = 120
+    truth = {node: node - 1 for node in range(n)}
+    star = {0: -1, **dict.fromkeys(range(1, n), 0)}
+    distance = tree_edit_distance(truth, star)
+    assert not distance.exact
+    assert distance.value >= n - 2
+
+
+@st.composite
+def trees(draw: st.DrawFn, n: int) -> dict[int, int]:
+    order = draw(st.permutations(range(n)))
+    tree = {order[0]: -1}
+    for place in range(1, n):
+        tree[order[place]] = order[draw(st.integers(0, place - 1))]
+    return tree
+
+
+@settings(deadline=None, max_examples=60)
+@given(data=st.data(), n=st.integers(2, 9), labelled=st.booleans())
+def test_renaming_parts_in_both_trees_changes_nothing(data: st.DataObject, n: int, labelled: bool) -> None:
+    first, second = data.draw(trees(n)), data.draw(trees(n))
+    names = data.draw(st.permutations(range(n)))
+    renamed = [
+        {names[node]: names[parent] if parent >= 0 else -1 for node, parent in tree.items()} for tree in (first, second)
+    ]
+    assert tree_edit_distance(*renamed, labelled=labelled).value == (
+        tree_edit_distance(first, second, labelled=labelled).value
+    )
+    assert parent_errors(*renamed) == parent_errors(first, second)
+
+
+@settings(deadline=None, max_examples=60)
+@given(data=st.data(), n=st.integers(2, 9))
+def test_distance_is_symmetric_and_below_its_bounds(data: st.DataObject, n: int) -> None:
+    first, second = data.draw(trees(n)), data.draw(trees(n))
+    distance = tree_edit_distance(first, second)
+    assert distance.value == tree_edit_distance(second, first).value
+    assert distance.value <= constrained_edit_distance(first, second)
+    assert distance.value <= 2 * parent_errors(first, second) * n
+    assert (distance.value == 0) == (first == second)
+    assert tree_edit_distance(first, second, labelled=False).value <= distance.value
