@@ -79,7 +79,8 @@ def test_line_distance_is_continuous_at_parallel_axes(
     slides=st.tuples(coordinates, coordinates),
 )
 def test_line_and_angle_ignore_flips_and_pivots_along_the_axis(
-    *true_axis: NDArray[np.float64],
+    *,
+    true_axis: NDArray[np.float64],
     axis: NDArray[np.float64],
     true_pivot: NDArray[np.float64],
     pivot: NDArray[np.float64],
