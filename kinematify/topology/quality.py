@@ -1,0 +1,91 @@
+"""Weight of a contact edge: how well its best joint explains it, with a soft penalty between congruent parts.
+
+The paper forbids edges inside a cluster, which cuts true ones (neighbouring links of an arm are congruent). Here such
+an edge is only weakened, and only as far as it has a rival: it keeps its quality where nothing else connects the two
+parts, or where it is decisively better than what it would replace.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.config import TopologyConfig
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.topology.evidence import EdgeEvidence, Pair
+
+
+def effective_quality(
+    graph: ContactGraph, evidence: Mapping[Pair, EdgeEvidence], config: TopologyConfig
+) -> dict[Pair, float]:
+    """Weight of every contact edge in [0, 1].
+
+    Args:
+        graph: Contacts and clusters.
+        evidence: Best joint of each edge; an edge without evidence has quality 0.
+        config: `proximity_weight` of the tie-break, `cluster_penalty` and `decisive_ratio` of the soft penalty.
+    """
+    quality = {pair: _quality_with_tie_break(graph, evidence, pair, config.proximity_weight) for pair in graph.by_pair}
+    label = graph.cluster_of
+    inside = [(a, b) for a, b in quality if label[a] >= 0 and label[a] == label[b]]
+    weakened = {**quality, **{pair: quality[pair] * config.cluster_penalty for pair in inside}}
+    result = dict(weakened)
+    for pair in inside:
+        rival = bottleneck({other: value for other, value in weakened.items() if other != pair}, graph.n_parts, pair)
+        if quality[pair] > config.decisive_ratio * rival:
+            result[pair] = quality[pair]
+    return result
+
+
+def bottleneck(weights: Mapping[Pair, float], n: int, ends: Pair) -> float:
+    """Weakest edge of the strongest path between two parts; 0 where there is no path."""
+    path = tree_path(maximum_spanning_edges(weights, n), n, ends)
+    return min((weights[step] for step in path), default=0.0)
+
+
+def maximum_spanning_edges(weights: Mapping[Pair, float], n: int) -> tuple[Pair, ...]:
+    """Exact maximum spanning forest, edges in ascending order."""
+    if not weights:
+        return ()
+    rows, columns = np.array(list(weights)).T
+    costs = 2.0 - np.array(list(weights.values()))  # positive: scipy reads a stored 0 as no edge
+    forest = minimum_spanning_tree(csr_matrix((costs, (rows, columns)), shape=(n, n))).tocoo()
+    return tuple(sorted((int(min(a, b)), int(max(a, b))) for a, b in zip(forest.row, forest.col, strict=True)))
+
+
+def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
+    """Edges of a forest on the way between two parts, empty where they are not connected."""
+    previous = parents_from(edges, n, ends[0])
+    steps = []
+    node = ends[1]
+    while previous[node] >= 0:
+        parent = previous[node]
+        steps.append((min(node, parent), max(node, parent)))
+        node = parent
+    return tuple(steps) if node == ends[0] else ()
+
+
+def parents_from(edges: Sequence[Pair], n: int, root: int) -> list[int]:
+    """Orient a forest away from `root`: parent of every part, -1 for the root and for what it does not reach."""
+    if not edges:
+        return [-1] * n
+    rows, columns = np.array(edges).T
+    matrix = csr_matrix((np.ones(len(edges)), (rows, columns)), shape=(n, n))
+    _, previous = breadth_first_order(matrix, root, directed=False)
+    return [max(int(item), -1) for item in previous]
+
+
+def _quality_with_tie_break(
+    graph: ContactGraph, evidence: Mapping[Pair, EdgeEvidence], pair: Pair, proximity_weight: float
+) -> float:
+    """Joint quality, moved by at most `proximity_weight` so that proximity only breaks ties."""
+    edge = graph.by_pair[pair]
+    strength = 0.0 if edge.bridge else edge.strength
+    quality = evidence[pair].quality if pair in evidence else 0.0
+    return (1 - proximity_weight) * quality + proximity_weight * strength

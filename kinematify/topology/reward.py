@@ -1,0 +1,237 @@
+"""How good a rooted spanning tree is: the five terms of the paper (III-C, Reward) and our variants of them.
+
+The paper's terms stand first, each as written; the variants that `default.yaml` uses follow, each in [0, 1].
+`TreeReward` binds one set to an assembly and returns the weighted sum, normalised to [0, 1].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.topology.quality import effective_quality
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.config import TopologyConfig
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.topology.evidence import EdgeEvidence, Pair
+    from kinematify.topology.stats import PartStats
+
+_EPSILON = 1e-9
+"""The paper's ``epsilon``: keeps denominators positive."""
+_MAD_TO_SIGMA = 1.4826
+"""Median absolute deviation to standard deviation of a normal distribution."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TreeLayout:
+    """A rooted tree as arrays; node i has parent ``parents[i]``, the root has -1."""
+
+    parents: IntArray
+    """Shape (n,)."""
+    order: tuple[int, ...]
+    """Nodes in breadth-first order from the root."""
+    depth: IntArray
+    """Graph distance d(i) from the root, shape (n,)."""
+
+    @property
+    def children(self) -> IntArray:
+        """All nodes but the root, breadth first, shape (n - 1,)."""
+        return np.array(self.order[1:], dtype=np.int64)
+
+
+def layout_tree(parents: Sequence[int]) -> TreeLayout:
+    """Order a tree given by its parents; -1 marks the root."""
+    lists: list[list[int]] = [[] for _ in parents]
+    order: list[int] = []
+    for node, parent in enumerate(parents):
+        (lists[parent] if parent >= 0 else order).append(node)
+    depth = np.zeros(len(parents), dtype=np.int64)
+    for node in order:
+        depth[lists[node]] = depth[node] + 1
+        order.extend(lists[node])
+    return TreeLayout(parents=np.asarray(parents, dtype=np.int64), order=tuple(order), depth=depth)
+
+
+def structure(tree: TreeLayout, preferred_degree: int) -> float:
+    """``R_struct = 1 / (mean d^2 + mean (deg+ - k)^2)``; at most 1 for a whole number k and two or more parts."""
+    out_degree = np.bincount(tree.parents[tree.children], minlength=len(tree.parents))
+    return float(1 / (np.mean(tree.depth**2) + np.mean((out_degree - preferred_degree) ** 2)))
+
+
+def static_support(tree: TreeLayout, centroids: FloatArray, volumes: FloatArray, scale: float) -> float:
+    """``R_static = 1 / (1 + tau / sigma_tau)`` with ``tau = sum_i |(c_sub(i) - c_i) x M(i) g z-|`` over i != b.
+
+    Density and gravity scale tau and sigma_tau alike and are left out.
+
+    Args:
+        tree: The tree.
+        centroids: ``c_i`` [m], shape (n, 3).
+        volumes: ``v_i`` [m^3], shape (n,).
+        scale: ``sigma_tau`` of `torque_scale` [m^4].
+    """
+    mass = volumes.copy()
+    moment = volumes[:, None] * centroids
+    for node in reversed(tree.order[1:]):
+        parent = tree.parents[node]
+        mass[parent] += mass[node]
+        moment[parent] += moment[node]
+    arm = moment - mass[:, None] * centroids
+    torque = np.hypot(arm[:, 0], arm[:, 1])
+    return float(1 / (1 + torque[tree.children].sum() / scale))
+
+
+def torque_scale(centroids: FloatArray, volumes: FloatArray) -> float:
+    """Robust normaliser ``sigma_tau`` [m^4] of an assembly, the same for all its trees.
+
+    The paper names only "MAD scale". Here: 1.4826 x n x the median absolute deviation of the torque of each part
+    about the common centre of mass, with a floor because few or equal parts have a deviation of zero.
+    """
+    centre = np.average(centroids, axis=0, weights=volumes)
+    arms = np.hypot(*(centroids - centre)[:, :2].T) * volumes
+    deviation = np.median(np.abs(arms - np.median(arms)))
+    floor = 0.01 * volumes.sum() * max(float(np.ptp(centroids, axis=0).max()), _EPSILON)
+    return float(max(_MAD_TO_SIGMA * deviation * len(volumes), floor))
+
+
+def mean_over_edges(tree: TreeLayout, weights: FloatArray) -> float:
+    """``R_contact = 1/|E| sum s(u, v)``: mean edge weight, `weights` of shape (n, n) in [0, 1]."""
+    return float(weights[tree.parents[tree.children], tree.children].mean())
+
+
+def symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]]) -> float:
+    """``R_sym = mean_k S_k``, ``S_k = 1 / (1 + Var d) + [1 - (|P_k| - 1) / (|C_k| - 1 + eps)]``, in [0, 2].
+
+    0 where there is no cluster, a constant of the assembly.
+    """
+    scores = []
+    for cluster in clusters:
+        parents = {int(tree.parents[part]) for part in cluster} - {-1}
+        shared = 1 - (len(parents) - 1) / (len(cluster) - 1 + _EPSILON)
+        scores.append(_equal_depth(tree, cluster) + shared)
+    return float(np.mean(scores)) if scores else 0.0
+
+
+def hierarchy(tree: TreeLayout, volumes: FloatArray) -> float:
+    """``R_hier = 1 / (1 + sum max(0, v_v / (v_u + eps) - 1))`` over edges u -> v."""
+    ratio = volumes[tree.children] / (volumes[tree.parents[tree.children]] + _EPSILON * volumes.max())
+    return float(1 / (1 + np.maximum(ratio - 1, 0).sum()))
+
+
+def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], cluster_of: Sequence[int]) -> float:
+    """Our R_sym in [0, 1]: equal depths, and parents that are one part or one cluster, each part used equally often.
+
+    The paper asks for one shared parent, which is false for knees: each hangs on its own thigh, and the thighs
+    correspond. Without clusters the term is neutral (1).
+    """
+    scores = []
+    for cluster in clusters:
+        kinds = _parent_kinds([int(tree.parents[part]) for part in cluster], cluster_of)
+        excess = min(kinds - 1, len(cluster) - 1)
+        scores.append(0.5 * _equal_depth(tree, cluster) + 0.5 * (1 - excess / (len(cluster) - 1)))
+    return float(np.mean(scores)) if scores else 1.0
+
+
+def log_hierarchy(tree: TreeLayout, hulls: FloatArray) -> float:
+    """Our R_hier in (0, 1]: ``1 / (1 + mean max(0, log h_v / h_u))`` with hull volumes.
+
+    The paper's sum over edges lets one large torso on a small pelvis outweigh all else.
+    """
+    logs = np.log(hulls)
+    growth = logs[tree.children] - logs[tree.parents[tree.children]]
+    return float(1 / (1 + np.maximum(growth, 0).mean()))
+
+
+class TreeReward:
+    """The reward of one assembly: weighted sum of the terms, normalised to [0, 1]."""
+
+    def __init__(
+        self,
+        graph: ContactGraph,
+        stats: Sequence[PartStats],
+        evidence: Mapping[Pair, EdgeEvidence],
+        config: TopologyConfig,
+    ) -> None:
+        """Measure what all trees share.
+
+        Args:
+            graph: Contacts and clusters.
+            stats: Size and place of every part.
+            evidence: Best joint of each contact edge; not used by the paper's reward.
+            config: `reward` chooses the terms, `weights` their weights.
+        """
+        self.graph = graph
+        self.config = config
+        self.centroids = np.array([item.centroid for item in stats])
+        self.volumes = np.array([item.volume for item in stats])
+        self.hulls = np.array([item.hull_volume for item in stats])
+        self.scale = torque_scale(self.centroids, self.volumes)
+        corners = np.array([item.bounds for item in stats])
+        self.diagonal = float(np.linalg.norm(corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)))
+        self.is_paper = config.reward == "paper"
+        self.quality = contact_strength(graph) if self.is_paper else effective_quality(graph, evidence, config)
+        self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
+        for (a, b), value in self.quality.items():
+            self.edge_weights[a, b] = self.edge_weights[b, a] = value
+
+    def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
+        """Value of every term in [0, 1]; the paper's R_sym is halved here and its weight doubled in `total`.
+
+        Args:
+            parents: Parent of every part, -1 for the root.
+            base_score: Score of the root under the base rule, in [0, 1].
+        """
+        tree = layout_tree(parents)
+        clusters = self.graph.clusters
+        if self.is_paper:
+            sym = 0.5 * symmetry(tree, clusters)
+            hier = hierarchy(tree, self.volumes)
+        else:
+            sym = corresponding_symmetry(tree, clusters, self.graph.cluster_of)
+            hier = log_hierarchy(tree, self.hulls)
+        return {
+            "struct": structure(tree, self.config.preferred_degree),
+            "static": static_support(tree, self.centroids, self.volumes, self.scale),
+            "contact": mean_over_edges(tree, self.edge_weights),
+            "sym": sym,
+            "hier": hier,
+            "base": base_score,
+        }
+
+    def total(self, terms: Mapping[str, float]) -> float:
+        """Weighted mean of the terms, in [0, 1]."""
+        weights = self.config.weights.model_dump()
+        if self.is_paper:
+            weights["sym"] *= 2
+        return float(sum(weights[name] * value for name, value in terms.items()) / sum(weights.values()))
+
+    def gain(self, parent: int, child: int) -> float:
+        """Immediate score of an action: the paper's contact strength, or the growth of our reward (times n)."""
+        value = float(self.edge_weights[parent, child])
+        if self.is_paper:
+            return value
+        growth = max(float(np.log(self.hulls[child] / self.hulls[parent])), 0.0)
+        return self.config.weights.contact * value - self.config.weights.hier * growth
+
+
+def contact_strength(graph: ContactGraph) -> dict[Pair, float]:
+    """The paper's edge weight ``s(u, v)``; parts that a virtual edge joins do not touch and have none."""
+    return {pair: 0.0 if edge.bridge else edge.strength for pair, edge in graph.by_pair.items()}
+
+
+def _equal_depth(tree: TreeLayout, cluster: Sequence[int]) -> float:
+    """``1 / (1 + Var(d(i): i in C_k))``."""
+    return float(1 / (1 + np.var(tree.depth[list(cluster)])))
+
+
+def _parent_kinds(parents: Sequence[int], cluster_of: Sequence[int]) -> int:
+    """Number of different clusters or lone parts among the parents, one more where twins carry unequal numbers."""
+    present = [parent for parent in parents if parent >= 0]
+    kinds = {(cluster_of[parent], -1) if cluster_of[parent] >= 0 else (-1, parent) for parent in present}
+    counts = {present.count(parent) for parent in present}
+    return max(len(kinds) + (len(counts) > 1), 1)

@@ -1,0 +1,104 @@
+"""What the topology stage needs to know of each part: where it is, how large it is, what it can stand on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from kinematify.assembly.part import read_only
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import Assembly, FloatArray, Part
+
+_VOLUME_FLOOR = 1e-12
+"""Smallest volume of a part in units of its cubed diagonal; keeps ratios of flat parts finite."""
+_LEVEL = float(np.cos(np.radians(3.0)))
+"""A hull facet is level when its normal is within 3 degrees of the vertical."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PartStats:
+    """Size and support of one part, world frame, z up (paper III-A: ``c_i``, ``v_i``, ``e_i``)."""
+
+    centroid: FloatArray
+    """Surface centroid ``c_i`` [m], shape (3,). Read-only."""
+    volume: float
+    """Robust volume ``v_i`` [m^3], positive: enclosed volume of a closed mesh, else volume of the convex hull."""
+    hull_volume: float
+    """Volume of the convex hull [m^3], positive; comparable between closed and open meshes."""
+    bounds: FloatArray
+    """Axis-aligned bounds [m], shape (2, 3). Read-only."""
+    flat_bottom: float
+    """Share of the part's footprint that stands flat on a level floor, in [0, 1]."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centroid", read_only(self.centroid, np.float64))
+        object.__setattr__(self, "bounds", read_only(self.bounds, np.float64))
+
+    @property
+    def height(self) -> float:
+        """Vertical extent [m]."""
+        return float(self.bounds[1, 2] - self.bounds[0, 2])
+
+    @property
+    def diagonal(self) -> float:
+        """Length of the bounding box diagonal [m]."""
+        return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+
+    @property
+    def bottom(self) -> float:
+        """Lowest point [m]."""
+        return float(self.bounds[0, 2])
+
+
+def assembly_stats(assembly: Assembly) -> tuple[PartStats, ...]:
+    """Measure every part of an assembly, in order."""
+    return tuple(part_stats(part) for part in assembly.parts)
+
+
+def part_stats(part: Part) -> PartStats:
+    """Measure one part; flat and open meshes get a small positive volume."""
+    floor = _VOLUME_FLOOR * max(part.diagonal, 1e-9) ** 3
+    hull_volume, flat_bottom = _hull_measures(part.vertices[np.unique(part.faces)])
+    hull_volume = max(hull_volume, floor)
+    enclosed = abs(_signed_volume(part)) if _is_closed(part) else hull_volume
+    return PartStats(
+        centroid=part.centroid,
+        volume=max(enclosed, floor),
+        hull_volume=hull_volume,
+        bounds=part.bounds,
+        flat_bottom=flat_bottom,
+    )
+
+
+def _hull_measures(points: FloatArray) -> tuple[float, float]:
+    """Hull volume [m^3] and share of the footprint that is a level bottom; (0, 0) for a flat part."""
+    try:
+        hull = ConvexHull(points)
+    except QhullError:
+        return 0.0, 0.0
+    corners = points[hull.simplices]
+    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    up = hull.equations[:, 2]
+    footprint = 0.5 * float((areas * np.abs(up)).sum())
+    level = float(areas[up < -_LEVEL].sum())
+    return float(hull.volume), min(level / footprint, 1.0) if footprint > 0 else 0.0
+
+
+def _is_closed(part: Part) -> bool:
+    """Whether every edge, by position, is walked once in each direction (meshes often repeat vertices)."""
+    merged = np.unique(part.vertices, axis=0, return_inverse=True)[1].reshape(-1)[part.faces]
+    merged = merged[(merged != np.roll(merged, 1, axis=1)).all(axis=1)]
+    edges = np.concatenate([merged[:, [0, 1]], merged[:, [1, 2]], merged[:, [2, 0]]])
+    codes = edges[:, 0] * (len(part.vertices) + 1) + edges[:, 1]
+    back = edges[:, 1] * (len(part.vertices) + 1) + edges[:, 0]
+    return len(codes) > 0 and bool(np.array_equal(np.sort(codes), np.sort(back)))
+
+
+def _signed_volume(part: Part) -> float:
+    """Volume by the divergence theorem [m^3]; the sign follows the winding."""
+    a, b, c = (part.vertices[part.faces[:, k]] - part.centroid for k in range(3))
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)

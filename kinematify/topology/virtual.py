@@ -1,0 +1,44 @@
+"""Virtual edges: how parts that no contact reaches join a tree (paper III-C, base selection)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.topology.evidence import Pair
+
+
+def virtual_costs(centroids: FloatArray, *, limit: float = np.inf, forbidden: Iterable[Pair] = ()) -> FloatArray:
+    """Cost of a virtual edge between every two parts [m], shape (n, n): the distance of their centroids.
+
+    Pairs beyond `limit` (``d_max``) cost more than any nearer one, and forbidden pairs (inside a cluster) more than
+    all others, so that they are taken last: a tree that leaves a part out would be of no use.
+    """
+    costs: FloatArray = np.linalg.norm(centroids[:, None] - centroids[None], axis=2)
+    span = float(costs.max()) + 1.0
+    costs = np.where(costs > limit, costs + span, costs)
+    for a, b in forbidden:
+        costs[a, b] += 4 * span
+        costs[b, a] += 4 * span
+    return costs
+
+
+def nearest_pair(costs: FloatArray, reached: ArrayLike) -> tuple[int, int]:
+    """Cheapest pair (reached part, other part).
+
+    Args:
+        costs: Cost of every pair, shape (n, n).
+        reached: Which parts are in the tree, shape (n,); at least one is and one is not.
+    """
+    mask = np.asarray(reached, dtype=bool)
+    inside, outside = np.flatnonzero(mask), np.flatnonzero(~mask)
+    choices = costs[np.ix_(inside, outside)]
+    row, column = np.unravel_index(int(choices.argmin()), choices.shape)
+    return int(inside[row]), int(outside[column])
