@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -199,6 +199,308 @@ class PreviewConfig(StageConfig):
     """Joints named below the picture; the rest is counted."""
 
 
+class FramesConfig(StageConfig):
+    """Box frames of parts."""
+
+    volume_slack: float
+    """A preferred frame may hold a box larger than the smallest by this fraction."""
+    handle_share: float
+    """Share of the area facing the thin direction that may lie outside the slab on either side."""
+    handle_gap: float
+    """An end is cut off if it reaches beyond the slab by more than this fraction of the slab's thickness."""
+
+
+class SweepConfig(StageConfig):
+    """Virtual motion test."""
+
+    points: int
+    """Points that stand for the moving part."""
+    shrink: float
+    """Fraction by which they are drawn towards the part's centre."""
+    hinge_zone: float
+    """Points closer to the axis than this fraction of the part's reach are exempt."""
+    grace: float
+    """Motion at the start that is not tested, fraction of the assembly's diagonal."""
+    step_deg: float
+    """Length of the straight pieces of a turn [deg]."""
+    share: float
+    """A motion is blocked once more than this share of the points has hit something."""
+
+
+class GateConfig(StageConfig):
+    """When a bearing line is taken as it is; `product`, or both of the others."""
+
+    product: float
+    """Surface score times circle score."""
+    surface: float
+    """Surface score."""
+    circles: float
+    """Circle score."""
+
+
+class PanelsConfig(StageConfig):
+    """Candidate lines and cues of turning joints."""
+
+    sweep_deg: float
+    """Turn that is tested either way [deg]."""
+    full_turn_deg: float
+    """Free turn beyond which more is no better [deg]."""
+    part_deg: float
+    """Turn after which the part must still be near its parent [deg]."""
+    separation_points: int
+    """Points that measure the gap after the turn."""
+    bearings: int
+    """Bearing lines among the candidates."""
+    least_contact: int
+    """Contact samples needed to propose lines from the contact."""
+    cluster_gap: float
+    """Gap between two contact zones, fraction of the part's longest side."""
+    hinge_band: float
+    """Contact within this fraction of the part's reach counts as being at the line."""
+    ajar_share: float
+    """A panel with more of its contact at one edge stands open."""
+    tall: float
+    """Height over width above which an upright panel is tall."""
+    tall_handle: float
+    """What remains of the direction of a handle on a tall panel."""
+    margin_cap: float
+    """Largest effect of the difference of margins."""
+    cap: float
+    """Largest influence of a single cue, in units of the score."""
+    bearing_bonus: float
+    """What a bearing that passes the gate adds to its line."""
+    weights: dict[str, float]
+    """Weight of each cue of `joints/panels.py`; lengths in diagonals."""
+
+
+class SlidesConfig(StageConfig):
+    """Candidate directions and cues of sliding joints."""
+
+    sweep: float
+    """Travel that is tested either way, fraction of the diagonal."""
+    useful_travel: float
+    """Free travel beyond which more is no better, fraction of the diagonal."""
+    distinct_deg: float
+    """Directions closer than this are one [deg]."""
+    cap: float
+    """Largest influence of a single cue, in units of the score."""
+    weights: dict[str, float]
+    """Weight of each cue of `joints/slides.py`; lengths in diagonals."""
+
+
+class KindConfig(StageConfig):
+    """Log odds of sliding against turning."""
+
+    bias: float
+    """Log odds of sliding before any evidence."""
+    cap: float
+    """Largest influence of a single cue."""
+    weights: dict[str, float]
+    """Weight of each cue of `joints/kind.py`."""
+
+
+class LimitsConfig(StageConfig):
+    """Limits from sweeps: an upper bound of the designed range."""
+
+    panel_deg: float
+    """Largest opening of a panel [deg]."""
+    drawer: float
+    """Travel of a drawer as a fraction of its own length."""
+    button: float
+    """Travel of a button as a fraction of its own thickness."""
+    step_deg: float
+    """Resolution of the sweep [deg]."""
+    least_deg: float
+    """A turning joint keeps at least this range [deg]."""
+    least_slide: float
+    """A sliding joint keeps at least this travel, fraction of the diagonal."""
+
+
+class JointsConfig(StageConfig):
+    """Choice of each joint's type, axis, direction and limits."""
+
+    samples: int
+    """Surface samples per part."""
+    contact_band: float
+    """Contact samples within this distance beyond the gap count as touching, fraction of the diagonal."""
+    small_full: float
+    """A part below this fraction of its parent's diagonal is small."""
+    small_none: float
+    """A part above this fraction of its parent's diagonal is not small."""
+    panel_thinness: float
+    """A panel is thinner than this fraction of its second side."""
+    upright_cosine: float
+    """A panel whose thin direction is less vertical than this is upright."""
+    flat_cosine: float
+    """A panel whose thin direction is more vertical than this is flat."""
+    frames: FramesConfig
+    sweep: SweepConfig
+    gate: GateConfig
+    panels: PanelsConfig
+    slides: SlidesConfig
+    kind: KindConfig
+    limits: LimitsConfig
+
+
+class BaseConfig(StageConfig):
+    """Weights of the cues for the base link; each cue is in [0, 1], each weight the score it can reach."""
+
+    bulk_decades: float
+    """A part this many powers of ten smaller than the largest has no bulk left."""
+    vertical: float
+    """Axes with a larger vertical component stand upright [cosine]."""
+    body_share: float
+    """Share of all other parts that the largest part must carry directly to be the body of an object."""
+    body_weight: float
+    """Score of the body of an object."""
+    twin_discount: float
+    """Factor on a body that has a congruent twin."""
+    pedestal_rise: float
+    """Height above the lowest point at which the end of a chain is no pedestal any more, in diagonals."""
+    pedestal_bulk: float
+    """Share of size in the score of a pedestal."""
+    pedestal_low: float
+    """Share of lowness in the score of a pedestal."""
+    pedestal_flat: float
+    """Share of a level bottom in the score of a pedestal."""
+    pedestal_upright: float
+    """Share of a vertical first axis in the score of a pedestal."""
+    junction_weight: float
+    """Score of the part where the lowest congruent limbs meet, whatever its size."""
+    junction_bulk: float
+    """What its size can add."""
+    ground_band: float
+    """Parts that begin this far above the lowest point reach the ground, in diagonals."""
+    heavy_weight: float
+    """Score of the largest part where it reaches the ground."""
+    hub_weight: float
+    """Score of the part in which most long chains meet."""
+
+
+class RewardWeights(StageConfig):
+    """Weights of the terms of a tree's reward; only their ratios count."""
+
+    struct: float
+    """R_struct: shallow trees of the preferred out-degree."""
+    static: float
+    """R_static: little gravitational torque."""
+    contact: float
+    """R_contact: mean weight of the edges."""
+    sym: float
+    """R_sym: congruent parts at equal depth on corresponding parents."""
+    hier: float
+    """R_hier: children no larger than parents."""
+    base: float
+    """Score of the root under the base rule."""
+
+
+class TopologyConfig(StageConfig):
+    """How a contact graph becomes a ranked list of kinematic trees."""
+
+    mode: Literal["mcts", "mst", "bfs"]
+    """Search, maximum spanning trees alone, or breadth-first orientation alone."""
+    reward: Literal["default", "paper"]
+    """Our terms with joint quality, or the five terms of the paper with contact strength."""
+    base_rule: Literal["scored", "degree"]
+    """Our scored rule, or the paper's highest degree."""
+    cluster_edges: Literal["penalise", "forbid"]
+    """What happens to edges inside a cluster of congruent parts."""
+    weights: RewardWeights
+    base: BaseConfig
+    preferred_degree: int
+    """``k`` of R_struct."""
+    max_bases: int
+    """Base links that are tried at most."""
+    base_margin: float
+    """A base link is tried when its score is at most this far below the best."""
+    iterations: int
+    """Simulations of the tree search, shared by all base links."""
+    exploration: float
+    """``C`` of UCT."""
+    normalise_returns: bool
+    """Stretch returns to [0, 1] between the worst and best seen, so that ``C`` has a meaning."""
+    competitive_ratio: float
+    """An edge is searched when its weight is at least this share of the weakest edge it could replace."""
+    max_open_edges: int
+    """Edges outside the spanning tree that are searched at most."""
+    keep: int
+    """Distinct trees that are kept."""
+    virtual_distance: float
+    """``d_max``: centroids farther apart are joined only when nothing nearer is left, in diagonals."""
+    proximity_weight: float
+    """Share of contact strength in an edge's weight; breaks ties between equal joints."""
+    cluster_penalty: float
+    """Factor on the quality of an edge inside a cluster that has a rival."""
+    decisive_ratio: float
+    """An edge inside a cluster that is this many times better than its rival is not weakened."""
+
+
+class SdfConfig(StageConfig):
+    """Grids of signed distances (III-B)."""
+
+    resolution: int
+    """Cells along the longest side of a part's grid."""
+    margin: float
+    """Room around the part, fraction of the part's own diagonal."""
+    band_cells: float
+    """Distances are exact within this many cells of the surface, at least 2; beyond, to half a cell."""
+    cache_bytes: int
+    """Grids kept in memory [bytes]."""
+
+
+class CavlConfig(StageConfig):
+    """DW-CAVL: contact-aware virtual motions that rank joint candidates (III-D)."""
+
+    volume_margin: float
+    """m_vol: distances below it count as touching."""
+    sharpness: float
+    """Logistic sharpness k, in units of 1 / m_vol."""
+    contact_width: float
+    """sigma_c: samples within this distance of the other part anchor it."""
+    epsilon: float
+    """epsilon_small: total weight below which a term fades out; all samples together weigh 1."""
+    consistency_weight: float
+    """lambda_c: price of separation near the contact."""
+    collision_weight: float
+    """lambda_coll: price of penetration."""
+    pivot_weight: float
+    """lambda_p: price of a pivot away from the contact centroid."""
+    length_unit: float
+    """Length that counts as 1 in J; a smaller one spreads the scores 1 / (1 + J)."""
+    angles_deg: list[float]
+    """Theta of revolute candidates [deg]."""
+    travels: list[float]
+    """Theta of prismatic candidates; unused with `match_motion`."""
+    match_motion: bool
+    """Slide by what the contact moves on average when it turns, instead of by `travels`."""
+    least_lever: float
+    """Smallest lever arm of a contact in that comparison."""
+    symmetric: bool
+    """Average J over both parts' fields; false: the parent's field alone, as in the paper."""
+    type_ratio: float
+    """zeta: revolute if s_rev > zeta s_pri."""
+    random_axes: int
+    """Random directions in the paper's candidate pool."""
+    pivot_offsets: list[float]
+    """Shifts of the pivot along every candidate axis."""
+    rank_points: int
+    """Samples per part when the pool is ranked."""
+    refine_points: int
+    """Samples per part when the best are refined and scored."""
+    top: int
+    """Candidates of each type that are refined."""
+    refine_steps: int
+    """Gradient steps; 0 leaves the candidates where they are."""
+    learning_rate: float
+    """Step of the gradient descent [rad, and fraction of the diagonal]."""
+    batch_queries: int
+    """Distance queries at a time; bounds the memory at about 200 bytes each."""
+
+    def without_anchor(self) -> CavlConfig:
+        """Collision avoidance alone: the paper's ablation "w/o DW-CAVL"."""
+        return self.model_copy(update={"consistency_weight": 0.0, "pivot_weight": 0.0})
+
+
 class Config(StageConfig):
     """All stages."""
 
@@ -210,6 +512,10 @@ class Config(StageConfig):
     bearing: BearingConfig
     model: ModelConfig
     preview: PreviewConfig
+    joints: JointsConfig
+    topology: TopologyConfig
+    sdf: SdfConfig
+    cavl: CavlConfig
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:
