@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import StrEnum
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import read_only
 
 if TYPE_CHECKING:
@@ -16,19 +16,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
 
-
-class JointType(StrEnum):
-    """Joint types of URDF that Kinematify infers."""
-
-    FIXED = "fixed"
-    REVOLUTE = "revolute"
-    CONTINUOUS = "continuous"
-    PRISMATIC = "prismatic"
-
-    @property
-    def turns(self) -> bool:
-        """True for revolute and continuous joints, whose axis has a position."""
-        return self in (JointType.REVOLUTE, JointType.CONTINUOUS)
+__all__ = ["JointCandidate", "JointEstimate", "JointType"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
