@@ -1,0 +1,85 @@
+"""Pairs of solids that let one part turn on another: pin hinges, forks and flanged stubs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tests.known import bore, box, cylinder, hull, union
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from kinematify.assembly.part import FloatArray
+    from tests.known import Point
+
+Rectangle = tuple[float, float, float, float]
+"""Lower x, upper x, lower y, upper y in a cross-section."""
+
+ALONG_X = np.array([[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]])
+"""Turns what is built along z so that it runs along x: local x becomes y and local y becomes z."""
+
+
+def at(position: Point, turn: FloatArray | None = None) -> FloatArray:
+    """Return the transform, shape (3, 4), that turns by `turn`, shape (3, 3), and then moves to `position`."""
+    return np.column_stack([np.eye(3) if turn is None else turn, np.asarray(position, dtype=np.float64)])
+
+
+def barrel(
+    length: float, radius: float, clearance: float, anchors: tuple[Rectangle, Rectangle], *, knuckles: int = 3
+) -> tuple[Manifold, Manifold]:
+    """Return the two sides of a barrel hinge about the z axis, centred at the origin.
+
+    Knuckles alternate between the sides; the first side, which has the outer ones, owns the pin. Each knuckle
+    reaches out to the rectangle of its side, which must overlap the body that it carries.
+    """
+    pitch = length / knuckles
+    sides: list[list[Manifold]] = [[], []]
+    for k in range(knuckles):
+        lower = -0.5 * length + k * pitch + 0.5 * clearance
+        upper = lower + pitch - clearance
+        x0, x1, y0, y1 = anchors[k % 2]
+        round_part = cylinder(radius, (0, 0, lower), (0, 0, upper))
+        sides[k % 2].append(hull(round_part, box((x0, y0, lower), (x1, y1, upper))))
+    ends = (0, 0, -0.5 * length), (0, 0, 0.5 * length - clearance)
+    pinned = union(*sides[0], cylinder(0.5 * radius, *ends))
+    return pinned, union(*sides[1]) - bore(0.5 * radius, clearance, *ends)
+
+
+def fork(width: float, radius: float, clearance: float, reach: float) -> tuple[Manifold, Manifold]:
+    """Return a fork that reaches down and a tongue that reaches up, hinged about the x axis at the origin.
+
+    The tongue owns the pin. A body on the fork must stay below ``-room(radius, clearance)`` and one on the
+    tongue above it; both may be as wide as `width` and ``2 * radius`` thick. The hinge then turns by 90 degrees
+    both ways.
+    """
+    inner, outer, clear = 0.25 * width, 0.5 * width, room(radius, clearance)
+    whole = cylinder(radius, (-outer, 0, 0), (outer, 0, 0)) + box((-outer, -radius, -reach), (outer, radius, 0))
+    slot = box((-inner, -2 * radius, -clear), (inner, 2 * radius, 2 * radius))
+    forked = whole - slot - bore(0.5 * radius, clearance, (-width, 0, 0), (width, 0, 0))
+    half = inner - clearance
+    tongue = cylinder(radius, (-half, 0, 0), (half, 0, 0)) + box((-half, -radius, 0), (half, radius, reach))
+    return forked, tongue + cylinder(0.5 * radius, (-outer, 0, 0), (outer, 0, 0))
+
+
+def room(radius: float, clearance: float) -> float:
+    """Return the distance from the axis of a fork at which bodies may begin [m]."""
+    return 1.05 * radius + clearance
+
+
+def stub(
+    pivot: Point, direction: Point, radius: float, clearance: float, *, length: float | None = None
+) -> tuple[Manifold, Manifold, Manifold]:
+    """Return a boss, the hole to drill into it and the rotor with its flange and shaft.
+
+    Boss and rotor are equal cylinders that meet at `pivot`; `direction` points from the boss to the rotor. The
+    hole is to be taken away when the boss has become one with its body.
+    """
+    length = length or radius
+    start, along = np.asarray(pivot, dtype=np.float64), np.asarray(direction, dtype=np.float64)
+    boss = cylinder(radius, start - length * along, start)
+    hole = bore(0.55 * radius, clearance, start - (0.7 * length + clearance) * along, start + clearance * along)
+    flange = cylinder(radius, start + clearance * along, start + (length + clearance) * along)
+    shaft = cylinder(0.55 * radius, start - 0.7 * length * along, start + 0.5 * length * along)
+    return boss, hole, flange + shaft

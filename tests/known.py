@@ -1,0 +1,241 @@
+"""Objects whose joints are known, and the solids that they are built from.
+
+Lengths are metres, angles radians, coordinates the world frame with z up; every joint stands at zero in the
+configuration that the parts are given in. Cylinders are polygons, so a bore is widened until even its flats
+keep the stated clearance: a shaft turns in it without touching at any angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from manifold3d import Manifold, OpType
+
+from kinematify.assembly.part import Assembly, Part, read_only
+from kinematify.joints.candidate import JointType
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from kinematify.assembly.part import FloatArray
+
+SEGMENTS = 48
+"""Sides of the polygon that stands for a circle."""
+
+Point = Sequence[float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KnownJoint:
+    """The truth about one joint, in world coordinates."""
+
+    parent: str
+    child: str
+    kind: JointType
+    axis: FloatArray
+    """Unit direction, shape (3,); positive motion follows the right hand rule or goes along it."""
+    pivot: FloatArray
+    """A point on the axis [m], shape (3,)."""
+    lower: float
+    """[rad] or [m]; 0 for fixed, -inf for continuous."""
+    upper: float
+    stops: tuple[bool, bool] = (False, False)
+    """Whether the geometry itself blocks motion a little below `lower` and a little above `upper`."""
+    freedom: int = 1
+    """1, or 3 for a ball joint: every axis through `pivot` is then right and `axis` is one of them."""
+
+    def __post_init__(self) -> None:
+        axis = np.asarray(self.axis, dtype=np.float64)
+        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
+        object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
+
+    def motion(self, value: float) -> FloatArray:
+        """Return the world transform, shape (4, 4), of the child's subtree when the joint moves by `value`."""
+        transform = np.eye(4)
+        if self.kind is JointType.PRISMATIC:
+            transform[:3, 3] = value * self.axis
+        elif self.kind.turns:
+            transform[:3, :3] = rotation(self.axis, value)
+            transform[:3, 3] = self.pivot - transform[:3, :3] @ self.pivot
+        return transform
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KnownObject:
+    """Closed part meshes in one configuration and the tree of joints that connects them."""
+
+    name: str
+    parts: tuple[Part, ...]
+    joints: tuple[KnownJoint, ...]
+    root: str
+
+    @property
+    def assembly(self) -> Assembly:
+        """What the inference is given: the parts alone."""
+        return Assembly(parts=self.parts, source=self.name)
+
+    @property
+    def index(self) -> dict[str, int]:
+        """Part name -> position in `parts`."""
+        return {part.name: k for k, part in enumerate(self.parts)}
+
+    def subtree(self, name: str) -> frozenset[str]:
+        """Names of the part `name` and of all that it carries."""
+        children = [joint.child for joint in self.joints if joint.parent == name]
+        return frozenset({name}).union(*(self.subtree(child) for child in children))
+
+
+def transformed(part: Part, transform: FloatArray) -> Part:
+    """Return the part moved by `transform`, shape (4, 4)."""
+    return Part(name=part.name, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3], faces=part.faces)
+
+
+def posed(known: KnownObject, transform: FloatArray) -> KnownObject:
+    """Return the object, truth included, moved rigidly by `transform`, shape (4, 4)."""
+    turn, shift = np.asarray(transform)[:3, :3], np.asarray(transform)[:3, 3]
+    joints = tuple(replace(joint, axis=turn @ joint.axis, pivot=turn @ joint.pivot + shift) for joint in known.joints)
+    return replace(known, parts=tuple(transformed(part, transform) for part in known.parts), joints=joints)
+
+
+def with_yaw(known: KnownObject, angle: float) -> KnownObject:
+    """Return the object turned about the world's up axis by `angle` [rad]."""
+    transform = np.eye(4)
+    transform[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), angle)
+    return posed(known, transform)
+
+
+def moved(known: KnownObject, values: Mapping[str, float]) -> KnownObject:
+    """Return the object with its joints moved; the new configuration is the new zero of every joint.
+
+    Args:
+        known: the object.
+        values: child part name -> joint value [rad or m].
+    """
+    poses = {known.root: np.eye(4)}
+    waiting = list(known.joints)
+    while waiting:
+        joint = waiting.pop(0)
+        if joint.parent in poses:
+            poses[joint.child] = poses[joint.parent] @ joint.motion(values.get(joint.child, 0.0))
+        else:
+            waiting.append(joint)
+    joints = tuple(
+        replace(
+            joint,
+            axis=poses[joint.parent][:3, :3] @ joint.axis,
+            pivot=poses[joint.parent][:3, :3] @ joint.pivot + poses[joint.parent][:3, 3],
+            lower=joint.lower - values.get(joint.child, 0.0),
+            upper=joint.upper - values.get(joint.child, 0.0),
+        )
+        for joint in known.joints
+    )
+    return replace(known, parts=tuple(transformed(part, poses[part.name]) for part in known.parts), joints=joints)
+
+
+def shuffled(known: KnownObject, seed: int) -> KnownObject:
+    """Return the object with its parts listed in a random order."""
+    order = np.random.default_rng(seed).permutation(len(known.parts))
+    return replace(known, parts=tuple(known.parts[k] for k in order))
+
+
+def rotation(axis: FloatArray, angle: float) -> FloatArray:
+    """Return the rotation matrix, shape (3, 3), by `angle` [rad] about a unit `axis` (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+
+
+def known_object(name: str, solids: Mapping[str, Manifold], *joints: KnownJoint) -> KnownObject:
+    """Return the object whose first solid is the root."""
+    parts = []
+    for part_name, solid in solids.items():
+        mesh = solid.to_mesh64()
+        parts.append(Part(name=part_name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts))
+    return KnownObject(name=name, parts=tuple(parts), joints=joints, root=parts[0].name)
+
+
+def turning(
+    parent: str, child: str, axis: Point, pivot: Point, limits: tuple[float, float] | None = None, **more: object
+) -> KnownJoint:
+    """Return a revolute joint, or a continuous one where there are no limits."""
+    kind = JointType.CONTINUOUS if limits is None else JointType.REVOLUTE
+    lower, upper = limits or (-np.inf, np.inf)
+    return KnownJoint(parent=parent, child=child, kind=kind, axis=axis, pivot=pivot, lower=lower, upper=upper, **more)
+
+
+def sliding(
+    parent: str, child: str, axis: Point, pivot: Point, limits: tuple[float, float], **more: object
+) -> KnownJoint:
+    """Return a prismatic joint; `pivot` is any point of the child."""
+    return KnownJoint(
+        parent=parent, child=child, kind=JointType.PRISMATIC, axis=axis, pivot=pivot,
+        lower=limits[0], upper=limits[1], **more,
+    )  # fmt: skip
+
+
+def fixed(parent: str, child: str) -> KnownJoint:
+    """Return a joint that does not move."""
+    return KnownJoint(
+        parent=parent, child=child, kind=JointType.FIXED, axis=(0, 0, 1), pivot=(0, 0, 0), lower=0.0, upper=0.0
+    )
+
+
+def varied(seed: int | None, spread: float = 0.12) -> Callable[[float], float]:
+    """Return a function that scales a size at random by up to `spread`; without a seed sizes stay as they are."""
+    rng = np.random.default_rng(seed)
+    return lambda size: size if seed is None else size * rng.uniform(1.0 - spread, 1.0 + spread)
+
+
+def off(point: Point, x: float, y: float, z: float) -> FloatArray:
+    """Return the point moved by (x, y, z)."""
+    return np.add(point, (x, y, z))
+
+
+def box(lower: Point, upper: Point) -> Manifold:
+    """Return the box between two corners."""
+    return Manifold.cube(np.subtract(upper, lower)).translate(lower)
+
+
+def cylinder(radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+    """Return the cylinder whose circular faces are centred at `start` and `end`."""
+    direction = np.subtract(end, start, dtype=np.float64)
+    length = float(np.linalg.norm(direction))
+    direction /= length
+    side = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+    side /= np.linalg.norm(side)
+    frame = np.column_stack([side, np.cross(direction, side), direction, np.asarray(start, dtype=np.float64)])
+    return Manifold.cylinder(length, radius, radius, segments).transform(frame)
+
+
+def bore(radius: float, clearance: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
+    """Return what to take away so that a shaft of `radius` turns freely with `clearance` at the tightest place."""
+    return cylinder((radius + clearance) / np.cos(np.pi / segments), start, end, segments=segments)
+
+
+def rod(radius: float, start: Point, end: Point) -> Manifold:
+    """Return a cylinder with round ends."""
+    return cylinder(radius, start, end, segments=32) + ball(radius, start) + ball(radius, end)
+
+
+def ball(radius: float, centre: Point, *, segments: int = 32) -> Manifold:
+    """Return a sphere."""
+    return Manifold.sphere(radius, segments).translate(centre)
+
+
+def union(*solids: Manifold) -> Manifold:
+    """Return the union of all solids."""
+    return Manifold.batch_boolean(list(solids), OpType.Add)
+
+
+def hull(*solids: Manifold) -> Manifold:
+    """Return the convex hull of all solids."""
+    return Manifold.batch_hull(list(solids))
+
+
+def tray(lower: Point, upper: Point, wall: float) -> Manifold:
+    """Return a box that is open at the top."""
+    inner_upper = (upper[0] - wall, upper[1] - wall, upper[2] + wall)
+    return box(lower, upper) - box(np.add(lower, wall), inner_upper)

@@ -1,0 +1,55 @@
+"""Every object with known joints, by name: ``BUILDERS["drawer"](seed=3)`` gives a `KnownObject`.
+
+A builder takes keyword arguments only: its sizes [m], `clearance` [m] where parts face each other, and `seed`,
+which varies the sizes at random. The sweeps of ``test_objects.py`` hold for every one of them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tests import household, robots
+from tests.known import KnownJoint, KnownObject, moved, posed, rotation, shuffled, with_yaw
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+__all__ = ["BUILDERS", "KnownJoint", "KnownObject", "build_all", "moved", "posed", "rotation", "shuffled", "with_yaw"]
+
+BUILDERS: Mapping[str, Callable[..., KnownObject]] = {
+    builder.__name__: builder
+    for builder in (
+        household.hinge_pin,
+        household.barrel_hinge_door,
+        household.edge_door,
+        household.drawer,
+        household.nested_drawer,
+        household.knob,
+        household.sliding_lid,
+        household.scissors,
+        household.laptop,
+        household.piano_box,
+        household.toilet,
+        household.button,
+        household.lever,
+        household.over_segmented,
+        household.gapped_pair,
+        household.ball_in_socket,
+        robots.wheel,
+        robots.square_lift,
+        robots.round_lift,
+        robots.universal_joint,
+        robots.gimbal,
+        robots.parallel_gripper,
+        robots.finger_hand,
+        robots.four_legged,
+        robots.serial_arm,
+        robots.aligned_arm,
+        robots.torso,
+    )
+}
+
+
+def build_all(seed: int | None = None) -> tuple[KnownObject, ...]:
+    """Return one object of every kind."""
+    return tuple(builder(seed=seed) for builder in BUILDERS.values())

@@ -1,0 +1,355 @@
+"""Mechanisms and robots with known joints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tests.bearings import at, fork, room, stub
+from tests.known import (
+    KnownJoint,
+    KnownObject,
+    bore,
+    box,
+    cylinder,
+    known_object,
+    moved,
+    off,
+    rod,
+    rotation,
+    sliding,
+    turning,
+    union,
+    varied,
+)
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from kinematify.assembly.part import FloatArray
+
+UP = np.array([0.0, 0.0, 1.0])
+QUARTER = rotation(UP, 0.5 * np.pi)
+"""Turns a fork about x into a fork about y."""
+
+
+def wheel(*, radius: float = 0.1, clearance: float = 3e-4, seed: int | None = None) -> KnownObject:
+    """A wheel with five holes on the axle of a block; a cap keeps it there."""
+    vary = varied(seed)
+    size, wide, pin = vary(radius), vary(0.04), vary(0.012)
+    start, end = clearance, clearance + wide
+    block = box((-1.2 * size, -0.12, -0.05), (1.5 * size, 0, 0.05))
+    axle = cylinder(pin, (0, -0.02, 0), (0, end + 2 * clearance, 0))
+    cap = cylinder(1.6 * pin, (0, end + clearance, 0), (0, end + clearance + 0.005, 0))
+    disc = cylinder(size, (0, start, 0), (0, end, 0)) - bore(pin, clearance, (0, -wide, 0), (0, 2 * wide, 0))
+    for k in range(5):
+        x, z = 0.6 * size * np.cos(0.4 * np.pi * k), 0.6 * size * np.sin(0.4 * np.pi * k)
+        disc -= cylinder(0.15 * size, (x, -wide, z), (x, 2 * wide, z), segments=24)
+    return known_object(
+        "wheel", {"block": union(block, axle, cap), "wheel": disc}, turning("block", "wheel", (0, 1, 0), (0, 0, 0))
+    )
+
+
+def square_lift(*, height: float = 0.6, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
+    """A carriage on a square column, between its foot and its cap."""
+    vary = varied(seed)
+    half = vary(0.03)
+    column = box((-half, -half, -0.02), (half, half, vary(height)))
+    inner = half + clearance
+    hole = box((-inner, -inner, -1), (inner, inner, 2))
+    return lift("square_lift", column, hole, half, clearance)
+
+
+def round_lift(*, height: float = 0.6, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
+    """A carriage on a round column whose key keeps it from turning."""
+    vary = varied(seed)
+    half = vary(0.03)
+    key, top = 0.2 * half, vary(height)
+    column = cylinder(half, (0, 0, -0.02), (0, 0, top)) + box((0, -key, -0.02), (1.25 * half, key, top))
+    wide = key + clearance
+    slot = box((0, -wide, -1), (1.25 * half + clearance, wide, 2))
+    return lift("round_lift", column, bore(half, clearance, (0, 0, -1), (0, 0, 2)) + slot, half, clearance)
+
+
+def lift(name: str, column: Manifold, hole: Manifold, half: float, clearance: float) -> KnownObject:
+    """Return foot, column and cap with a carriage that has the given hole."""
+    top, tall = column.bounding_box()[5], 4 * half
+    foot = box((-4 * half, -4 * half, -0.03), (4 * half, 4 * half, 0))
+    cap = box((-1.6 * half, -1.6 * half, top - 0.001), (1.6 * half, 1.6 * half, top + 0.01))
+    start = clearance
+    body = box((-2 * half, -2 * half, start), (2 * half, 2 * half, start + tall))
+    shelf = box((1.9 * half, -1.5 * half, start + 0.8 * tall), (7 * half, 1.5 * half, start + tall))
+    carriage = body + shelf - hole
+    travel = top - 0.001 - tall - 2 * clearance
+    joint = sliding("column", "carriage", (0, 0, 1), (0, 0, start), (0.0, travel), stops=(True, True))
+    return known_object(name, {"column": union(column, foot, cap), "carriage": carriage}, joint)
+
+
+def universal_joint(*, radius: float = 0.012, clearance: float = 3e-4, seed: int | None = None) -> KnownObject:
+    """Two yokes and the small cross between them, which they hide."""
+    vary = varied(seed)
+    size, long = vary(radius), vary(0.12)
+    arm, pin, wall = 2.4 * size, 0.5 * size, 0.8 * size
+    outer, high = arm + 0.5 * wall, 3.2 * size
+    lugs = [cylinder(size, (s * (arm - 0.5 * wall), 0, 0), (s * outer, 0, 0)) for s in (-1, 1)]
+    sides = [
+        box((min(s * (arm - 0.5 * wall), s * outer), -size, -high), (max(s * (arm - 0.5 * wall), s * outer), size, 0))
+        for s in (-1, 1)
+    ]
+    bridge = box((-outer, -size, -high - size), (outer, size, -high + 0.1 * size))
+    shaft = cylinder(size, (0, 0, -high - long), (0, 0, -high))
+    hole = bore(pin, clearance, (-2 * outer, 0, 0), (2 * outer, 0, 0))
+    lower = union(*lugs, *sides, bridge, shaft) - hole
+    upper = lower.rotate((180, 0, 90))
+    cross = cylinder(pin, (-outer, 0, 0), (outer, 0, 0)) + cylinder(pin, (0, -outer, 0), (0, outer, 0))
+    cross += box((-size, -size, -size), (size, size, size))
+    flange = box((-2 * size, -2 * size, -high - long - 0.01), (3 * size, 2 * size, -high - long + 0.001))
+    return known_object(
+        "universal_joint",
+        {"lower_yoke": lower + flange, "cross": cross, "upper_yoke": upper},
+        turning("lower_yoke", "cross", (1, 0, 0), (0, 0, 0), (-0.6, 0.6)),
+        turning("cross", "upper_yoke", (0, 1, 0), (0, 0, 0), (-0.6, 0.6)),
+    )
+
+
+def gimbal(*, radius: float = 0.05, clearance: float = 3e-4, seed: int | None = None) -> KnownObject:
+    """Three revolute joints that meet in one point: a ball-like joint with its rings to be seen."""
+    vary = varied(seed)
+    size, pin, wall = vary(radius), vary(0.004), vary(0.008)
+    thick = 1.5 * pin
+
+    def ring(inner: float) -> Manifold:
+        solid = cylinder(inner + wall, (0, 0, -thick), (0, 0, thick))
+        return solid - cylinder(inner, (0, 0, -1), (0, 0, 1))
+
+    space = 0.006
+    outer_inner = size + wall + space
+    post = outer_inner + wall + space
+    base = box((-post - wall, -0.5 * size, -1.6 * size - wall), (post + wall, 0.7 * size, -1.6 * size))
+    for sign in (-1, 1):
+        x0, x1 = sorted((sign * post, sign * (post + wall)))
+        base += box((x0, -thick, -1.6 * size - 0.001), (x1, thick, 0)) + cylinder(thick, (x0, 0, 0), (x1, 0, 0))
+    base -= bore(pin, clearance, (-2 * post, 0, 0), (2 * post, 0, 0))
+    outer, inner = ring(outer_inner), ring(size)
+    for sign in (-1, 1):
+        outer += cylinder(pin, (sign * (outer_inner + 0.5 * wall), 0, 0), (sign * (post + wall), 0, 0))
+        inner += cylinder(pin, (0, sign * (size + 0.5 * wall), 0), (0, sign * (outer_inner + wall), 0))
+    outer -= bore(pin, clearance, (0, -post, 0), (0, post, 0))
+    spin = cylinder(size - clearance, (0, 0, -thick), (0, 0, thick), segments=64)
+    rims = [
+        cylinder(size + 0.4 * wall, (0, 0, min(z, z + s * 0.002)), (0, 0, max(z, z + s * 0.002)))
+        for s in (-1, 1)
+        for z in (s * (thick + clearance),)
+    ]
+    spin = spin.scale((np.cos(np.pi / 48), np.cos(np.pi / 48), 1.0))
+    neck = cylinder(0.8 * size, (0, 0, -thick - clearance), (0, 0, thick + clearance))
+    platform = union(spin, neck, *rims, rod(0.2 * size, (0.3 * size, 0, 0), (0.3 * size, 0, 0.7 * size)))
+    return known_object(
+        "gimbal",
+        {"base": base, "outer_ring": outer, "inner_ring": inner, "platform": platform},
+        turning("base", "outer_ring", (1, 0, 0), (0, 0, 0), (-0.7, 0.7)),
+        turning("outer_ring", "inner_ring", (0, 1, 0), (0, 0, 0), (-0.6, 0.6)),
+        turning("inner_ring", "platform", (0, 0, 1), (0, 0, 0)),
+    )
+
+
+def parallel_gripper(
+    *, width: float = 0.12, opening: float = 0.02, clearance: float = 3e-4, seed: int | None = None
+) -> KnownObject:
+    """Two mirrored fingers on one rail, each open by `opening` [m]."""
+    vary = varied(seed)
+    half, bar, thick = 0.5 * vary(width), vary(0.006), vary(0.016)
+    level = 0.025
+    inner = bar + clearance
+    palm = box((-half - 0.012, -0.03, -0.03), (half + 0.012, 0.03, 0))
+    palm += cylinder(0.025, (0, 0, -0.07), (0, 0, -0.03))
+    for sign in (-1, 1):
+        x0, x1 = sorted((sign * half, sign * (half + 0.012)))
+        palm += box((x0, -0.03, -0.001), (x1, 0.03, level + 2 * bar))
+    palm += box((-half - 0.001, -bar, level - bar), (half + 0.001, bar, level + bar))
+    slide = box((clearance, -0.02, clearance), (thick, 0.02, level + 3 * bar))
+    slide -= box((-1, -inner, level - inner), (1, inner, level + inner))
+    right = union(slide, box((clearance, -0.008, level + 2.9 * bar), (0.008, 0.008, level + 0.07)))
+    travel = half - thick - clearance
+    joints = [
+        sliding("palm", name, (sign, 0, 0), (0, 0, level), (0.0, travel), stops=(False, True))
+        for name, sign in (("right_finger", 1), ("left_finger", -1))
+    ]
+    solids = {"palm": palm, "right_finger": right, "left_finger": right.mirror((1, 0, 0))}
+    shut = known_object("parallel_gripper", solids, *joints)
+    return moved(shut, {"right_finger": opening, "left_finger": opening})
+
+
+def finger_hand(
+    *, fingers: int = 3, phalanges: int = 3, curl: float = 0.25, clearance: float = 2e-4, seed: int | None = None
+) -> KnownObject:
+    """A palm and fingers of phalanges on pins, every joint bent by `curl` [rad]."""
+    vary = varied(seed)
+    wide, radius = 0.018, 0.007
+    pitch, start = 1.4 * wide, room(radius, clearance)
+    high = vary(0.08)
+    palm = [box((-0.5 * pitch * fingers, -radius, -high), (0.5 * pitch * fingers, radius, -2 * radius))]
+    solids, joints = {}, []
+    for finger in range(fingers):
+        x, z, parent = (finger - 0.5 * (fingers - 1)) * pitch, 0.0, "palm"
+        for k in range(phalanges):
+            name, long = f"finger{finger}_{k}", vary((0.045, 0.032, 0.028)[min(k, 2)])
+            forked, tongue = (solid.translate((x, 0, z)) for solid in fork(wide, radius, clearance, 2.2 * radius))
+            pieces = palm if parent == "palm" else solids[parent]
+            pieces.append(forked)
+            top = z + long - (2 * radius if k + 1 < phalanges else radius)
+            body = box((x - 0.5 * wide, -radius, z + start), (x + 0.5 * wide, radius, top))
+            solids[name] = [tongue, body]
+            if k + 1 == phalanges:
+                solids[name].append(cylinder(radius, (x - 0.5 * wide, 0, top), (x + 0.5 * wide, 0, top)))
+            joints.append(turning(parent, name, (1, 0, 0), (x, 0, z), (-0.2, 1.5)))
+            parent, z = name, z + long
+    merged = {"palm": union(*palm)} | {name: union(*pieces) for name, pieces in solids.items()}
+    straight = known_object("finger_hand", merged, *joints)
+    return moved(straight, {joint.child: curl for joint in joints})
+
+
+def four_legged(*, length: float = 0.4, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
+    """A trunk and four legs of three links on flanged stubs: hip roll, hip pitch, knee."""
+    vary = varied(seed)
+    hx, hy, radius = 0.5 * vary(length), vary(0.09), vary(0.03)
+    thigh, shank = vary(0.2), vary(0.2)
+    trunk = [box((-hx, -hy, -0.04), (hx, hy, 0.05)), box((hx - 0.05, -0.03, 0.04), (hx + 0.03, 0.03, 0.08))]
+    holes, solids, joints = [], {}, []
+    for leg, (sx, sy) in {"fl": (1, 1), "fr": (1, -1), "rl": (-1, 1), "rr": (-1, -1)}.items():
+        hip = np.array([sx * (hx + 0.02), sy * (hy - radius), 0.0])
+        boss, hole, links, pivots = leg_solids(hip, (sx, sy), radius, (thigh, shank), clearance)
+        trunk.append(boss)
+        holes.append(hole)
+        solids |= {f"{leg}_{kind}": solid for kind, solid in links.items()}
+        joints += [
+            turning("trunk", f"{leg}_hip", (1, 0, 0), pivots[0], (-0.2, 0.5) if sy > 0 else (-0.5, 0.2)),
+            turning(f"{leg}_hip", f"{leg}_thigh", (0, 1, 0), pivots[1], (-0.8, 1.0)),
+            turning(f"{leg}_thigh", f"{leg}_shank", (0, 1, 0), pivots[2], (-1.2, 1.2)),
+        ]
+    straight = known_object("four_legged", {"trunk": union(*trunk) - union(*holes)} | solids, *joints)
+    bends = {"thigh": 0.5, "shank": -0.9}
+    return moved(straight, {joint.child: bends.get(joint.child[3:], 0.0) for joint in joints})
+
+
+def leg_solids(
+    hip: FloatArray, side: tuple[int, int], radius: float, lengths: tuple[float, float], clearance: float
+) -> tuple[Manifold, Manifold, dict[str, Manifold], tuple[FloatArray, FloatArray, FloatArray]]:
+    """Return boss and hole for the trunk, the three links of a straight leg and its three pivots."""
+    sx, sy = side
+    boss, hole, rotor = stub(hip, (sx, 0, 0), radius, clearance)
+    flange, end = sx * (radius + clearance), sx * (2 * radius + clearance)
+    pitch_at = off(hip, end, sy * 2.2 * radius, 0)
+    pitch_boss, pitch_hole, pitch_rotor = stub(pitch_at, (0, sy, 0), radius, clearance, length=2 * radius)
+    bridge = pitch_boss + rod(0.8 * radius, off(hip, flange, 0, 0), off(hip, end, 0, 0))
+    links = {"hip": union(rotor, beyond(bridge, off(hip, sx * clearance, 0, 0), (sx, 0, 0))) - pitch_hole}
+
+    top = off(pitch_at, 0, sy * (radius + clearance), 0)
+    knee_at = off(top, 0, -sy * radius, -lengths[0])
+    knee_boss, knee_hole, knee_rotor = stub(knee_at, (0, -sy, 0), 0.8 * radius, clearance, length=1.6 * radius)
+    upper = knee_boss + rod(0.7 * radius, top, off(top, 0, 0, -lengths[0]))
+    links["thigh"] = union(pitch_rotor, beyond(upper, knee_at, (0, sy, 0))) - knee_hole
+
+    ankle = off(knee_at, 0, -sy * (0.8 * radius + clearance), 0)
+    lower = rod(0.5 * radius, ankle, off(ankle, 0, 0, -lengths[1]))
+    links["shank"] = union(knee_rotor, beyond(lower, off(knee_at, 0, -sy * clearance, 0), (0, -sy, 0)))
+    return boss, hole, links, (hip, pitch_at, knee_at)
+
+
+def beyond(solid: Manifold, point: FloatArray, direction: tuple[int, int, int]) -> Manifold:
+    """Return what lies on the far side of the plane through `point` across `direction`."""
+    return solid.trim_by_plane(direction, float(np.dot(direction, point)))
+
+
+def serial_arm(
+    *, joints: int = 6, radius: float = 0.04, clearance: float = 5e-4, seed: int | None = None
+) -> KnownObject:
+    """An arm on a foot whose joints turn about z and y in turn; pitch joints step aside and back."""
+    vary = varied(seed)
+    size = vary(radius)
+    pieces = [box((-3 * size, -2 * size, -0.02), (2 * size, 2 * size, 0)), cylinder(size, (0, 0, -0.01), (0, 0, size))]
+    tip, side, parent = np.array([0.0, 0.0, size]), 1.0, "foot"
+    solids, truth = {}, []
+    for k in range(joints):
+        name = f"link{k + 1}"
+        if k % 2 == 0:
+            pivot, axis = off(tip, 0, 0, size), np.array([0.0, 0.0, 1.0])
+            boss, hole, rotor = stub(pivot, axis, size, clearance)
+            tip, limits = off(pivot, 0, 0, size + clearance), (-2.8, 2.8)
+        else:
+            pivot, axis = off(tip, 0, side * size, 0.5 * size), np.array([0.0, side, 0.0])
+            boss, hole, rotor = stub(pivot, axis, size, clearance, length=2 * size)
+            tip, limits, side = off(pivot, 0, axis[1] * (size + clearance), 0), (-1.7, 1.7), -side
+            rotor += cylinder(size, tip, off(tip, 0, axis[1] * size, 0))
+        solids[parent] = union(*pieces, boss) - hole
+        end = off(tip, 0, 0, vary(3.0 * size))
+        pieces = [rotor, cylinder(0.75 * size, tip, end)]
+        truth.append(turning(parent, name, (0, 0, 1) if k % 2 == 0 else (0, 1, 0), pivot, limits))
+        tip, parent = end, name
+    solids[parent] = union(*pieces, box(tip - 0.8 * size, off(tip, 1.2 * size, 0.8 * size, 0.2 * size)))
+    return known_object(f"serial_arm_{joints}", solids, *truth)
+
+
+def aligned_arm(
+    *, pairs: int = 3, radius: float = 0.04, clearance: float = 5e-4, seed: int | None = None
+) -> KnownObject:
+    """An upright arm of roll and pitch joints in turn; at zero all roll axes are one line."""
+    vary = varied(seed)
+    size = vary(radius)
+    high = size
+    pieces = [box((-3 * size, -2 * size, -0.02), (2 * size, 2 * size, 0)), cylinder(size, (0, 0, -0.01), (0, 0, size))]
+    solids, truth, parent = {}, [], "foot"
+    for pair in range(pairs):
+        roll, pitch = f"roll{pair}", f"pitch{pair}"
+        boss, hole, rotor = stub((0, 0, high + size), (0, 0, 1), size, clearance)
+        solids[parent] = union(*pieces, boss) - hole
+        truth.append(turning(parent, roll, (0, 0, 1), (0, 0, high + size), (-2.9, 2.9)))
+        hinge = high + 2 * size + clearance + vary(2.5 * size)
+        shoulder = cylinder(size, (0, 0, high + 1.5 * size), (0, 0, hinge - 1.2 * size))
+        forked, tongue = (
+            solid.transform(at((0, 0, hinge), QUARTER)) for solid in fork(1.6 * size, 0.7 * size, clearance, 1.6 * size)
+        )
+        shoulder ^= box((-9, -9, high + size + clearance), (9, 9, 9))
+        solids[roll] = union(rotor, shoulder, forked)
+        truth.append(turning(roll, pitch, (0, 1, 0), (0, 0, hinge), (-1.4, 1.4)))
+        start, high = hinge + room(0.7 * size, clearance), hinge + vary(3.0 * size)
+        pieces = [tongue, cylinder(0.65 * size, (0, 0, start), (0, 0, high + 0.5 * size))]
+        parent = pitch
+    solids[parent] = union(*pieces, box((-0.5 * size, -size, high), (size, size, high + size)))
+    return known_object("aligned_arm", solids, *truth)
+
+
+def torso(*, height: float = 0.4, clearance: float = 5e-4, seed: int | None = None) -> KnownObject:
+    """A torso with two congruent arms: the right one is the left one turned by half a turn."""
+    vary = varied(seed)
+    high, radius, long = vary(height), vary(0.03), vary(0.2)
+    wide = vary(0.12)
+    level = high - 1.5 * radius
+    shoulder = np.array([0.0, wide + radius, level])
+    boss, hole, rotor = stub(shoulder, (0, 1, 0), radius, clearance, length=2 * radius)
+    elbow = off(shoulder, 0, radius + clearance, -long)
+    width, thin = 1.6 * radius, 0.6 * radius
+    forked, tongue = (solid.rotate((180, 0, 90)).translate(elbow) for solid in fork(width, thin, clearance, 2.2 * thin))
+    upper_body = cylinder(0.7 * radius, off(elbow, 0, 0, long), off(elbow, 0, 0, 1.8 * thin))
+    start = room(thin, clearance)
+    lower_body = cylinder(thin, off(elbow, 0, 0, -start), off(elbow, 0, 0, -long))
+    hand = box(off(elbow, -0.5 * thin, -1.5 * thin, -1.3 * long), off(elbow, 0.8 * thin, 1.5 * thin, -0.95 * long))
+    arm = {"upper_arm": union(rotor, upper_body, forked), "forearm": union(tongue, lower_body, hand)}
+    trunk = union(
+        box((-0.08, -wide, 0), (0.07, wide, high)),
+        box((0.06, -0.5 * wide, 0.6 * high), (0.09, 0.5 * wide, 0.9 * high)),
+        boss,
+        boss.rotate((0, 0, 180)),
+    )
+    solids = {"torso": trunk - hole - hole.rotate((0, 0, 180))}
+    joints: list[KnownJoint] = []
+    for side, angle, sign in (("left", 0, 1.0), ("right", 180, -1.0)):
+        flip = np.array([sign, sign, 1.0])
+        upper, lower = f"{side}_upper_arm", f"{side}_forearm"
+        solids[upper], solids[lower] = (arm[kind].rotate((0, 0, angle)) for kind in ("upper_arm", "forearm"))
+        joints += [
+            turning("torso", upper, (0, sign, 0), flip * shoulder, (-2.0, 2.0)),
+            turning(upper, lower, (0, sign, 0), flip * elbow, (-1.4, 1.4)),
+        ]
+    return known_object("torso", solids, *joints)
