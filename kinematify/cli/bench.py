@@ -1,0 +1,197 @@
+"""`kinematify bench`: accuracy on models whose joints are known, beside the paper's."""
+
+from __future__ import annotations
+
+import os
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.progress import progress_reporter
+from kinematify.cli.table import format_table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.benchmark.job import JobResult
+    from kinematify.benchmark.regression import Regression
+    from kinematify.benchmark.run import BenchmarkReport, Variant
+
+_FOUND_FAILURES = 1
+_ABLATIONS = {"paper without MCTS": {"topology.mode": "bfs"}}
+"""Name of a row of the paper's ablation -> what differs from `paper.yaml`."""
+
+
+@click.command(
+    "bench",
+    short_help="Accuracy on models with known joints, beside the paper's.",
+    epilog=examples(
+        "kinematify bench --data pip",
+        "kinematify bench models/ -o results --name robots",
+        "kinematify bench models/ --conditions rest --objects panda --objects cabinet_*",
+        "kinematify bench models/ --config default --config paper",
+        "kinematify bench models/ --baseline results/robots.json",
+    ),
+)
+@click.argument("folder", metavar="[DATA]", required=False, type=click.Path(path_type=Path))
+@click.option("--data", metavar="pip|PATH", help="Same as DATA; pip: robots of the package example-robot-data.")
+@click.option(
+    "--config",
+    "configs",
+    multiple=True,
+    default=("default",),
+    show_default=True,
+    metavar="NAME|FILE",
+    help="May be given more than once; paper brings its two ablations with it.",
+)
+@click.option(
+    "--conditions",
+    metavar="LIST",
+    default="rest,random-0,random-1,random-2,yaw37",
+    show_default=True,
+    help="Poses in which each object is shown, separated by commas.",
+)
+@click.option(
+    "--objects",
+    "patterns",
+    multiple=True,
+    metavar="GLOB",
+    help="Only objects of such a name, category or kind; may be given more than once.",
+)
+@click.option(
+    "-o", "--out", type=click.Path(path_type=Path), default=Path("results"), show_default=True, help="Report folder."
+)
+@click.option("--name", default="bench", show_default=True, help="File name of the report, without suffix.")
+@click.option(
+    "--baseline", type=click.Path(path_type=Path), help="Earlier report (JSON); exit status 1 if one is worse."
+)
+@click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
+@click.option("--fresh", is_flag=True, help="Run all again instead of taking up what an earlier run has finished.")
+@json_option
+def command(
+    *,
+    folder: Path | None,
+    data: str | None,
+    configs: tuple[str, ...],
+    conditions: str,
+    patterns: tuple[str, ...],
+    out: Path,
+    name: str,
+    baseline: Path | None,
+    jobs: int | None,
+    fresh: bool,
+    json_to: str | None,
+) -> int:
+    """Erase the joints of every URDF below DATA, infer them again and measure how far off they are.
+
+    DATA is a folder with URDF files at any depth, one URDF file, or the word pip. Without it the folder that the
+    variable KINEMATIFY_BENCH names is used, else ../shared/bench beside the repository.
+
+    The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
+    code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
+    --baseline do.
+    """
+    from kinematify.benchmark.regression import find_regressions
+    from kinematify.benchmark.report import as_json, load_report, write_report
+    from kinematify.benchmark.run import BenchmarkRequest, run_benchmark
+
+    if folder is not None and data is not None:
+        raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
+    chosen = data if data is not None else folder
+    earlier = load_report(baseline) if baseline is not None else None
+    request = BenchmarkRequest(
+        data=chosen,
+        variants=_variants(configs),
+        conditions=tuple(word.strip() for word in conditions.split(",")),
+        only=_matching_objects(chosen, patterns),
+        fresh=fresh,
+        workers=jobs or os.cpu_count() or 1,
+    )
+    with progress_reporter() as progress:
+        report = run_benchmark(request, progress)
+    written = write_report(report, out, name=name, baseline=earlier)
+    regressions = find_regressions(report, earlier) if earlier is not None else ()
+    if json_to:
+        write_answer(as_json(report), json_to)
+    if json_to != "-":
+        click.echo(f"{_describe(report)}\n\nReport: {written[0]} and {written[1]}")
+    for regression in regressions:
+        click.echo(_describe_regression(regression), err=True)
+    return _FOUND_FAILURES if regressions else 0
+
+
+def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple[str, ...]:
+    from kinematify.benchmark.datasets import find_objects
+    from kinematify.errors import InputError
+
+    if not patterns:
+        return ()
+    objects = find_objects(data)
+    words = sorted({word for item in objects for word in (item.name, item.category, item.kind)})
+    chosen = tuple(word for word in words if any(fnmatchcase(word, pattern) for pattern in patterns))
+    if not chosen:
+        raise InputError(
+            f"No object, category or kind matches --objects {' '.join(patterns)}. There are {', '.join(words)}."
+        )
+    return chosen
+
+
+def _variants(configs: Sequence[str]) -> tuple[Variant, ...]:
+    from kinematify.benchmark.run import Variant
+
+    variants = []
+    for config in configs:
+        label = Path(config).stem
+        variants.append(Variant(label=label, config=config))
+        if label == "paper":
+            variants += [Variant(label=name, config=config, changes=changes) for name, changes in _ABLATIONS.items()]
+    return tuple(variants)
+
+
+def _describe(report: BenchmarkReport) -> str:
+    """Return the means per configuration and kind of object, the paper's below them."""
+    from kinematify.benchmark.paper import TABLE_I, mean_over_robots
+
+    rows = [
+        _summary_row(variant, kind, [run for run in report.results if (run.variant, run.kind) == (variant, kind)])
+        for variant, kind in dict.fromkeys((run.variant, run.kind) for run in report.results)
+    ]
+    for paper in (mean_over_robots(), TABLE_I["everyday"]):
+        rows.append(("(the paper)", paper.label, "", f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}", "", "", "", ""))
+    headings = (
+        "config",
+        "objects",
+        "number",
+        "angle [deg]",
+        "line [mm]",
+        "TED",
+        "root",
+        "types [%]",
+        "time [s]",
+        "failed",
+    )
+    return format_table(headings, rows)
+
+
+def _summary_row(variant: str, kind: str, runs: Sequence[JobResult]) -> tuple[str, ...]:
+    from kinematify.benchmark.summary import summarise
+
+    summary = summarise(runs)
+    columns = (("angle_deg", 1.0, 2), ("line_m", 1e3, 2), ("ted", 1.0, 2), ("root", 1.0, 2), ("types", 100.0, 1))
+    cells = [
+        _number(summary.values.get(metric), scale, digits) for metric, scale, digits in (*columns, ("seconds", 1.0, 1))
+    ]
+    return (variant, kind, str(summary.objects), *cells, str(summary.failed_runs + summary.unscored_runs))
+
+
+def _number(value: float | None, scale: float, digits: int) -> str:
+    return "-" if value is None else f"{value * scale:.{digits}f}"
+
+
+def _describe_regression(regression: Regression) -> str:
+    change = f"{regression.metric} went from {regression.before:.4g} to {regression.now:.4g} {regression.unit}".rstrip()
+    return f"Worse than the baseline: {change} ({regression.kind} objects, configuration {regression.variant})."
