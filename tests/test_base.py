@@ -1,0 +1,208 @@
+"""The base rule on skeletons of boxes: arms, legs, hands, wheels, furniture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.assembly.part import Part
+from kinematify.config import load_config
+from kinematify.topology.base import base_by_degree, rank_bases
+from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.stats import part_stats
+from tests.topology_objects import Machine, X, Y, Z, graph_of
+
+CONFIG = load_config().topology.base
+
+
+def arm(machine: Machine, start: int, foot: np.ndarray, side: np.ndarray, length: int = 5) -> int:
+    """A chain of links that rises, then reaches to one side; returns the last link."""
+    last, place = start, foot
+    for k in range(length):
+        step = Z if k < 2 else side
+        size = 0.08 + 0.22 * np.abs(step) - 0.01 * k
+        machine.add(place + 0.15 * step, size, last, axis=Z if k == 0 else np.cross(step, side + 0.1 * Z + 0.2 * X))
+        last, place = len(machine.parts) - 1, place + 0.3 * step
+    return last
+
+
+def fingers(machine: Machine, palm: int, tip: np.ndarray) -> None:
+    for sign in (-1, 1):
+        machine.add(tip + sign * 0.03 * Y, (0.05, 0.01, 0.02), palm, Y)
+
+
+def serial_arm() -> Machine:
+    machine = Machine()
+    machine.add((0, 0, 0.1), (0.25, 0.25, 0.2))
+    fingers(machine, arm(machine, 0, 0.2 * Z, X), np.array([0.95, 0, 0.8]))
+    return machine
+
+
+def hanging_gripper_arm() -> Machine:
+    """An arm whose fingers reach below the foot of its base."""
+    machine = Machine()
+    machine.add((0, 0, 0.1), (0.25, 0.25, 0.2))
+    machine.add((0, 0, 0.35), (0.15, 0.15, 0.3), 0, Z)
+    machine.add((0.3, 0, 0.55), (0.6, 0.12, 0.1), 1, Y)
+    machine.add((0.6, 0, 0.3), (0.1, 0.1, 0.4), 2, Y)
+    machine.add((0.6, 0, 0.05), (0.09, 0.12, 0.1), 3, Z)
+    for sign in (-1, 1):
+        knuckle = machine.add((0.6, 0.04 * sign, -0.02), (0.02, 0.02, 0.06), 4, X)
+        machine.add((0.6, 0.05 * sign, -0.08), (0.03, 0.02, 0.08), knuckle, X)
+    return machine
+
+
+def legs(machine: Machine, trunk: int, corners: list[tuple[float, float]], top: float) -> None:
+    for x, y in corners:
+        hip = machine.add((x, y, top), (0.1, 0.08, 0.1), trunk, X)
+        thigh = machine.add((x, y, 0.75 * top), (0.08, 0.06, 0.45 * top), hip, Y)
+        machine.add((x, y, 0.27 * top), (0.05, 0.05, 0.52 * top), thigh, Y)
+
+
+def quadruped(with_arm: bool = False) -> Machine:
+    machine = Machine()
+    machine.add((0, 0, 0.4), (0.6, 0.25, 0.15))
+    legs(machine, 0, [(x, y) for x in (-0.25, 0.25) for y in (-0.2, 0.2)], 0.4)
+    if with_arm:
+        arm(machine, 0, np.array([0.2, 0, 0.48]), X)
+    return machine
+
+
+def biped() -> Machine:
+    machine = Machine()
+    machine.add((0, 0, 0.6), (0.2, 0.25, 0.2))
+    legs(machine, 0, [(0, -0.15), (0, 0.15)], 0.5)
+    return machine
+
+
+def humanoid() -> Machine:
+    """A small pelvis between two legs under a large torso with two arms and a head."""
+    machine = Machine()
+    machine.add((0, 0, 0.9), (0.15, 0.2, 0.12))
+    legs(machine, 0, [(0, -0.12), (0, 0.12)], 0.85)
+    torso = machine.add((0, 0, 1.25), (0.25, 0.35, 0.5), 0, Z)
+    machine.add((0, 0, 1.6), (0.15, 0.15, 0.2), torso, Z)
+    for sign in (-1, 1):
+        shoulder = machine.add((0, 0.25 * sign, 1.4), (0.11, 0.09, 0.13), torso, Y)
+        upper = machine.add((0, 0.3 * sign, 1.2), (0.07, 0.07, 0.3), shoulder, X)
+        machine.add((0, 0.3 * sign, 0.95), (0.06, 0.055, 0.25), upper, Y)
+    return machine
+
+
+def torso_on_a_column() -> Machine:
+    """Two arms that hang lower than the foot of their column, no legs."""
+    machine = Machine()
+    machine.add((0, 0, 0.2), (0.2, 0.2, 0.1))
+    spine = machine.add((0, 0, 0.35), (0.1, 0.1, 0.2), 0, Z)
+    torso = machine.add((0, 0, 0.75), (0.25, 0.4, 0.5), spine, Y)
+    machine.add((0, 0, 1.1), (0.15, 0.15, 0.2), torso, Z)
+    for sign in (-1, 1):
+        shoulder = machine.add((0, 0.28 * sign, 0.9), (0.11, 0.09, 0.13), torso, Y)
+        upper = machine.add((0, 0.3 * sign, 0.65), (0.07, 0.07, 0.4), shoulder, X)
+        machine.add((0, 0.3 * sign, 0.25), (0.06, 0.055, 0.4), upper, Y)
+    return machine
+
+
+def hand() -> Machine:
+    """Four fingers of three links on a palm, fingers up."""
+    machine = Machine()
+    machine.add((0, 0, 0.05), (0.03, 0.09, 0.1))
+    for y in (-0.04, 0.0, 0.04):
+        last = 0
+        for k in range(3):
+            last = machine.add((0, y, 0.115 + 0.035 * k), (0.018, 0.02, 0.034 - 0.002 * k), last, Z if k == 0 else Y)
+    last = 0
+    for k in range(3):
+        last = machine.add((0, 0.06 + 0.035 * k, 0.03), (0.02, 0.034, 0.022 - 0.001 * k), last, X)
+    return machine
+
+
+def mobile_manipulator() -> Machine:
+    machine = Machine()
+    machine.add((0, 0, 0.2), (0.5, 0.5, 0.3))
+    for sign in (-1, 1):
+        machine.add((0, 0.27 * sign, 0.06), (0.12, 0.03, 0.12), 0, Y)
+    lift = machine.add((-0.1, 0, 0.7), (0.2, 0.25, 0.7), 0, Z)
+    head = machine.add((-0.1, 0, 1.1), (0.1, 0.12, 0.1), lift, Z)
+    machine.add((-0.1, 0, 1.2), (0.1, 0.2, 0.1), head, Y)
+    fingers(machine, arm(machine, lift, np.array([0.05, 0, 0.6]), X), np.array([0.9, 0, 1.2]))
+    return machine
+
+
+def dual_arm_on_a_stand() -> Machine:
+    machine = Machine()
+    machine.add((0, 0, 0.5), (0.5, 0.5, 1.0))
+    machine.add((0.1, 0, 1.1), (0.2, 0.2, 0.15), 0, Z)
+    for sign in (-1, 1):
+        arm(machine, 0, np.array([0, 0.3 * sign, 0.8]), sign * Y)
+    return machine
+
+
+def car() -> Machine:
+    """Steered wheels in front, fixed ones behind."""
+    machine = Machine()
+    machine.add((0, 0, 0.3), (1.0, 0.4, 0.2))
+    for sign in (-1, 1):
+        machine.add((-0.35, 0.25 * sign, 0.12), (0.24, 0.08, 0.24), 0, Y)
+        hinge = machine.add((0.35, 0.2 * sign, 0.2), (0.06, 0.05, 0.06), 0, Z)
+        machine.add((0.35, 0.25 * sign, 0.12), (0.24, 0.08, 0.24), hinge, Y)
+    return machine
+
+
+def gripper() -> Machine:
+    machine = Machine()
+    machine.add((0, 0, 0.2), (0.1, 0.15, 0.12))
+    fingers(machine, 0, np.array([0, 0, 0.1]))
+    return machine
+
+
+def cabinet() -> Machine:
+    """Doors with handles, a drawer, a knob."""
+    machine = Machine()
+    machine.add((0, 0, 0.5), (0.5, 0.8, 1.0))
+    for sign in (-1, 1):
+        door = machine.add((0.26, 0.2 * sign, 0.3), (0.02, 0.38, 0.58), 0, Z)
+        machine.add((0.28, 0.05 * sign, 0.3), (0.02, 0.02, 0.1), door, Y)
+    machine.add((0.05, 0, 0.8), (0.45, 0.7, 0.25), 0, X)
+    return machine
+
+
+MACHINES = {
+    build.__name__: build
+    for build in (
+        serial_arm, hanging_gripper_arm, quadruped, biped, humanoid, torso_on_a_column, hand, mobile_manipulator,
+        dual_arm_on_a_stand, car, gripper, cabinet,
+    )
+}  # fmt: skip
+MACHINES["quadruped_with_arm"] = lambda: quadruped(with_arm=True)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_base_of_a_machine(name: str) -> None:
+    machine = MACHINES[name]()
+    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence, CONFIG)
+    assert ranked[0].part == 0, ranked[:3]
+    assert sorted(item.part for item in ranked) == list(range(len(machine.parts)))
+    assert all(0 <= item.score <= 1 for item in ranked)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_base_does_not_depend_on_yaw_scale_or_place(name: str) -> None:
+    machine = MACHINES[name]()
+    yaw = np.radians(37)
+    turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+    moved = [
+        part_stats(Part(name=part.name, vertices=3 * part.vertices @ turn.T + [5, -2, 40], faces=part.faces))
+        for part in machine.parts
+    ]
+    evidence = {
+        key: EdgeEvidence(quality=1.0, axis=None if item.axis is None else turn @ item.axis)
+        for key, item in machine.evidence.items()
+    }
+    ranked = rank_bases(machine.edges, moved, machine.clusters, evidence, CONFIG)
+    assert ranked[0].part == 0
+
+
+def test_degree_rule_takes_the_lowest_index_on_a_tie() -> None:
+    graph = graph_of(4, {(0, 1): 0.1, (1, 2): 0.1, (2, 3): 0.1})
+    assert [item.part for item in base_by_degree(graph)] == [1, 2, 0, 3]
