@@ -1,0 +1,137 @@
+"""Any mesh file becomes named triangle meshes in the file's world frame; every failure is one AssemblyError."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import trimesh
+from trimesh.scene import Scene
+
+from kinematify.assembly.obj_file import read_obj
+from kinematify.errors import AssemblyError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray, IntArray
+
+# Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
+# logging still hears it.
+logging.getLogger("trimesh").addHandler(logging.NullHandler())
+
+GLTF_SUFFIXES = (".glb", ".gltf")
+MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RawMesh:
+    """A triangle mesh as it stands in a file, not yet checked."""
+
+    name: str
+    """Name of the node, group or object; empty where the file names none."""
+    vertices: FloatArray
+    """File's world frame and unit, shape (V, 3); may hold anything, NaN included."""
+    faces: IntArray
+    """Shape (F, 3); every index is below V."""
+
+
+def read_meshes(path: Path) -> tuple[RawMesh, ...]:
+    """Read a mesh file: one mesh per node of a scene, group of an OBJ, or object of a 3MF, transforms applied.
+
+    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is ignored, as URDF
+    tools do (Assimp under RViz, Pinocchio and Gazebo). Unreferenced vertices may remain.
+
+    Args:
+        path: A file with one of `MESH_SUFFIXES`.
+
+    Raises:
+        AssemblyError: The file is missing, empty, truncated, of another format, or holds no triangle.
+    """
+    if path.suffix.lower() not in MESH_SUFFIXES:
+        raise AssemblyError(
+            f"The file {path} is not a mesh that can be read. Give one of {', '.join(MESH_SUFFIXES)}; convert other "
+            "formats, for example with Blender."
+        )
+    if not path.is_file():
+        raise AssemblyError(f"There is no mesh file {path}. Check the path.")
+    meshes = _guarded(path, _read_obj if path.suffix.lower() == ".obj" else _read_scene)
+    if not any(len(mesh.faces) for mesh in meshes):
+        raise AssemblyError(
+            f"The file {path} holds no triangle (it may be empty, a point cloud, or a drawing). Give a file with a "
+            "triangle mesh."
+        )
+    return meshes
+
+
+def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
+    """Return all `meshes` as one."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    return RawMesh(
+        name=name,
+        vertices=np.concatenate([mesh.vertices for mesh in meshes]),
+        faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
+    )
+
+
+def _guarded(path: Path, read: Callable[[Path], tuple[RawMesh, ...]]) -> tuple[RawMesh, ...]:
+    """Run a reader; loaders of third parties fail in as many ways as there are broken files."""
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            meshes = read(path)
+            for mesh in meshes:
+                if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
+                    raise ValueError("a face refers to a vertex that the file does not hold")
+    except MemoryError as error:
+        raise AssemblyError(f"The mesh file {path} does not fit into memory. Simplify it first.") from error
+    except Exception as error:
+        reason = f"{error}".strip().partition("\n")[0][:200] or type(error).__name__
+        raise AssemblyError(
+            f"The file {path} cannot be read as a {path.suffix.lower()} mesh ({reason}). It may be truncated or of "
+            "another format: export it again and check that it opens in a viewer."
+        ) from error
+    return meshes
+
+
+def _read_obj(path: Path) -> tuple[RawMesh, ...]:
+    vertices, groups = read_obj(path)
+    return tuple(RawMesh(name=group.name, vertices=vertices, faces=group.faces) for group in groups)
+
+
+def _read_scene(path: Path) -> tuple[RawMesh, ...]:
+    suffix = path.suffix.lower()
+    # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
+    options: dict[str, Any] = {"merge_primitives": True} if suffix in GLTF_SUFFIXES else {}
+    scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True, **options)
+    return tuple(_scene_meshes(scene, _collada_unit(path) if suffix == ".dae" else 1.0))
+
+
+def _scene_meshes(scene: Scene, unit: float) -> Iterator[RawMesh]:
+    for node in scene.graph.nodes_geometry:
+        transform, key = scene.graph[node]
+        geometry = scene.geometry[key]
+        if not isinstance(geometry, trimesh.Trimesh):
+            continue
+        vertices = np.asarray(geometry.vertices, dtype=np.float64)
+        # A mirrored instance turns its triangles inside out.
+        order = [0, 2, 1] if np.linalg.det(transform[:3, :3]) < 0 else [0, 1, 2]
+        yield RawMesh(
+            name=str(node),
+            vertices=unit * (vertices @ transform[:3, :3].T + transform[:3, 3]),
+            faces=np.asarray(geometry.faces, dtype=np.int64)[:, order],
+        )
+
+
+def _collada_unit(path: Path) -> float:
+    """Metres per unit as stated in the asset element; 1 where it is silent."""
+    from collada import Collada, DaeError  # noqa: PLC0415  # only COLLADA files need it
+
+    with path.open("rb") as file:
+        document = Collada(file, ignore=[DaeError])
+    unit = document.assetInfo.unitmeter
+    return 1.0 if unit is None else float(unit)

@@ -1,0 +1,148 @@
+"""The geometry elements of a URDF link as triangles in the link frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import unquote, urlparse
+
+import numpy as np
+import trimesh
+
+from kinematify.assembly.mesh_file import RawMesh, merged, read_meshes
+from kinematify.assembly.robot import LinkMesh
+from kinematify.assembly.urdf_numbers import number, origin_transform, vector
+from kinematify.errors import AssemblyError, DescriptionError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from lxml.etree import _Element
+
+_SECTIONS = 64
+"""Sides of a tessellated cylinder: its flats lie 0.12 % of the radius inside the circle."""
+_SUBDIVISIONS = 4
+"""Of an icosphere: 5,120 faces, 0.1 % of the radius inside the sphere."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GeometrySource:
+    """Where the geometry of one document is looked up; every mesh file is read once."""
+
+    folder: Path
+    """Folder of the document."""
+    package_dirs: tuple[Path, ...]
+    """Folders that are packages, or hold them."""
+    cache: dict[Path, RawMesh]
+
+    def meshes(self, link: _Element, tag: str) -> tuple[LinkMesh, ...]:
+        """Return the triangles of all ``visual`` or ``collision`` elements of a link.
+
+        Raises:
+            DescriptionError: An element has no geometry, an unknown one, bad numbers, or a mesh that is missing.
+        """
+        return tuple(self._mesh(element, f"link {link.get('name')}") for element in link.findall(tag))
+
+    def _mesh(self, element: _Element, where: str) -> LinkMesh:
+        geometry = element.find("geometry")
+        if geometry is None or len(geometry) != 1:
+            raise DescriptionError(
+                f"The {element.tag} of {where} has no geometry element with exactly one shape inside. Give it a mesh, "
+                "box, cylinder or sphere, or remove it."
+            )
+        shape = geometry[0]
+        mesh = self._mesh_file(shape, where) if shape.tag == "mesh" else _primitive(shape, where)
+        transform = origin_transform(element, where)
+        scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
+        vertices = (mesh.vertices * scale) @ transform[:3, :3].T + transform[:3, 3]
+        # A mirroring scale turns the triangles inside out.
+        order = [0, 2, 1] if np.prod(scale) < 0 else [0, 1, 2]
+        return LinkMesh(vertices=vertices, faces=mesh.faces[:, order])
+
+    def _mesh_file(self, shape: _Element, where: str) -> RawMesh:
+        path = self._resolved(shape.get("filename") or "", where)
+        if path not in self.cache:
+            try:
+                self.cache[path] = merged(read_meshes(path), path.stem)
+            except AssemblyError as error:
+                raise DescriptionError(f"The mesh of {where} cannot be used. {error}") from error
+        return self.cache[path]
+
+    def _resolved(self, filename: str, where: str) -> Path:
+        candidates = self._candidates(filename, where)
+        found = next((path for path in candidates if path.is_file()), None)
+        if found is None:
+            raise DescriptionError(
+                f"The mesh {filename!r} of {where} is not there: looked at {', '.join(map(str, candidates[:6]))}. "
+                "Put the file there, or name the folder that holds the package with --package-dir."
+            )
+        return found
+
+    def _candidates(self, filename: str, where: str) -> list[Path]:
+        """Places where a mesh may lie, the likeliest first."""
+        address = urlparse(filename)
+        if address.scheme in ("package", "model"):
+            return self._package_candidates(address.netloc, unquote(address.path).lstrip("/"))
+        if address.scheme == "file":
+            return [Path(unquote(address.path))]
+        if not filename or "://" in filename:
+            raise DescriptionError(
+                f"The mesh of {where} names the file {filename!r}. Give a path relative to the URDF, or "
+                "package://NAME/PATH."
+            )
+        # A path on the author's Windows machine still has its separators.
+        return [self.folder / filename.replace("\\", "/")]
+
+    def _package_candidates(self, package: str, inside: str) -> list[Path]:
+        """``--package-dir`` may be the package or its parent; without it, a folder above the URDF is the package."""
+        candidates = []
+        for folder in self.package_dirs:
+            candidates.append(folder / package / inside)
+            if folder.name == package:
+                candidates.append(folder / inside)
+        for folder in (self.folder, *self.folder.parents):
+            if folder.name == package:
+                candidates.append(folder / inside)
+            candidates.append(folder / package / inside)
+        # Single exported robots keep the package's tree but not its name.
+        candidates += [folder / inside for folder in (*self.package_dirs, self.folder)]
+        return candidates
+
+
+def geometry_source(document: Path, package_dirs: Sequence[Path]) -> GeometrySource:
+    """Return the source of geometry for the URDF at `document`."""
+    folders = tuple(Path(folder).resolve() for folder in package_dirs)
+    return GeometrySource(folder=document.resolve().parent, package_dirs=folders, cache={})
+
+
+def _primitive(shape: _Element, where: str) -> RawMesh:
+    if shape.tag == "box":
+        size = vector(shape, "size", None, where)
+        _positive(where, "box", *size)
+        mesh = trimesh.creation.box(extents=size)
+    elif shape.tag == "sphere":
+        radius = number(shape, "radius", None, where)
+        _positive(where, "sphere", radius)
+        mesh = trimesh.creation.icosphere(subdivisions=_SUBDIVISIONS, radius=radius)
+    elif shape.tag in ("cylinder", "capsule"):
+        radius, length = number(shape, "radius", None, where), number(shape, "length", None, where)
+        _positive(where, str(shape.tag), radius, length)
+        create = trimesh.creation.cylinder if shape.tag == "cylinder" else _capsule
+        mesh = create(radius=radius, height=length, sections=_SECTIONS)
+    else:
+        raise DescriptionError(
+            f"The geometry of {where} is a <{shape.tag}>, which URDF does not have. Use a mesh, box, cylinder or "
+            "sphere."
+        )
+    return RawMesh(name="", vertices=np.asarray(mesh.vertices), faces=np.asarray(mesh.faces, dtype=np.int64))
+
+
+def _capsule(radius: float, height: float, sections: int) -> trimesh.Trimesh:
+    return trimesh.creation.capsule(radius=radius, height=height, count=(sections // 2, sections))
+
+
+def _positive(where: str, shape: str, *sizes: float) -> None:
+    if not all(size > 0 and math.isfinite(size) for size in sizes):
+        raise DescriptionError(f"The {shape} of {where} has the size {sizes}. Every length must be above zero.")
