@@ -228,14 +228,12 @@ class SweepConfig(StageConfig):
 
 
 class GateConfig(StageConfig):
-    """When a bearing line is taken as it is; `product`, or both of the others."""
+    """When a bearing line is taken as it is: either is enough."""
 
     product: float
     """Surface score times circle score."""
-    surface: float
-    """Surface score."""
-    circles: float
-    """Circle score."""
+    located: float
+    """Round area on both parts that locates the line, without flat seats (geometric mean of the shares)."""
 
 
 class PanelsConfig(StageConfig):
@@ -265,6 +263,8 @@ class PanelsConfig(StageConfig):
     """What remains of the direction of a handle on a tall panel."""
     margin_cap: float
     """Largest effect of the difference of margins."""
+    weak_margin: float
+    """What remains of the difference of margins for lids, and where a handle is clearly off centre."""
     cap: float
     """Largest influence of a single cue, in units of the score."""
     bearing_bonus: float
@@ -295,8 +295,14 @@ class KindConfig(StageConfig):
     """Log odds of sliding before any evidence."""
     cap: float
     """Largest influence of a single cue."""
+    stuck_candidates: int
+    """Turning candidates that must all be blocked before a part counts as fixed."""
+    stuck_deg: float
+    """Turn below which a part counts as stuck [deg]."""
+    stuck_slide: float
+    """Travel below which a part counts as stuck, fraction of the diagonal."""
     weights: dict[str, float]
-    """Weight of each cue of `joints/kind.py`."""
+    """Weight of each cue of `joints/kind.py`; positive for sliding."""
 
 
 class LimitsConfig(StageConfig):
@@ -321,6 +327,8 @@ class JointsConfig(StageConfig):
 
     samples: int
     """Surface samples per part."""
+    alternatives: int
+    """Distinct candidates kept per type."""
     contact_band: float
     """Contact samples within this distance beyond the gap count as touching, fraction of the diagonal."""
     small_full: float
@@ -331,6 +339,12 @@ class JointsConfig(StageConfig):
     """A panel is thinner than this fraction of its second side."""
     upright_cosine: float
     """A panel whose thin direction is less vertical than this is upright."""
+    spread_full: float
+    """Contact spread below this fraction of the child's half diagonal is compact."""
+    spread_none: float
+    """Contact spread above this fraction of the child's half diagonal is not compact."""
+    serial_depth: int
+    """A tree with this many joints in series is a linkage."""
     flat_cosine: float
     """A panel whose thin direction is more vertical than this is flat."""
     frames: FramesConfig

@@ -1,0 +1,221 @@
+"""The public face of joint inference: type, axis, opening direction and limits of every edge of a tree."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.kind import Siblings, decide_kind
+from kinematify.joints.limits import find_range
+from kinematify.joints.panels import rank_turns
+from kinematify.joints.scene import joint_scene, part_frames
+from kinematify.joints.slides import rank_slides
+from kinematify.joints.workspace import PartCache
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.kind import KindDecision
+    from kinematify.joints.panels import RankedTurns
+    from kinematify.joints.scene import JointScene
+    from kinematify.joints.slides import RankedSlides
+    from kinematify.topology.tree import KinematicTree
+
+
+def estimate_joints(
+    assembly: Assembly,
+    graph: ContactGraph,
+    tree: KinematicTree,
+    bearings: Mapping[tuple[int, int], EdgeBearing],
+    *,
+    config: JointsConfig,
+    seed: int,
+) -> tuple[JointEstimate, ...]:
+    """Choose the joint of every tree edge (paper section III-D, with the geometry of everyday.md in place of a VLM).
+
+    Args:
+        assembly: The parts, world frame, z up.
+        graph: Contact graph with samples and clusters of congruent parts.
+        tree: Parent of every part.
+        bearings: Bearing lines of the contact edges, keyed (a, b) with a < b.
+        config: Weights and thresholds.
+        seed: Seed of the surface samples.
+
+    Returns:
+        One estimate per edge, in the order of `tree.edges()`.
+    """
+    cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
+    frames = part_frames(cache, tree, config)
+    return tuple(_estimate(cache, tree, frames, edge, bearings, config) for edge in tree.edges())
+
+
+def _estimate(
+    cache: PartCache,
+    tree: KinematicTree,
+    frames: Mapping[int, BoxFrame],
+    edge: tuple[int, int],
+    bearings: Mapping[tuple[int, int], EdgeBearing],
+    config: JointsConfig,
+) -> JointEstimate:
+    scene = joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config)
+    twins = leaf_twins(cache.graph, tree, edge)
+    siblings = describe_twins(scene, tree, frames, twins)
+    turns = rank_turns(scene, config)
+    slides = rank_slides(scene, _twin_directions(scene, frames, twins), config)
+    decision = decide_kind(scene, siblings, turns, slides, config)
+    axis, pivot = _chosen_line(scene, decision.kind, turns, slides)
+    found = find_range(scene, decision.kind, axis, pivot, config)
+    return JointEstimate(
+        parent=scene.parent,
+        child=scene.child,
+        kind=found.kind,
+        axis=found.sign * axis,
+        pivot=pivot,
+        lower=found.lower,
+        upper=found.upper,
+        confidence=_confidence(decision, turns, slides),
+        alternatives=_alternatives(scene, decision, turns, slides, config),
+        evidence={
+            **decision.cues,
+            "odds_prismatic": decision.odds,
+            "bearing_gate": float(scene.gated),
+            "smallness": scene.smallness,
+            "mechanism": scene.mechanism,
+            "free_forward": found.free_forward,
+            "free_backward": found.free_backward,
+        },
+    )
+
+
+# ---- twins ---------------------------------------------------------------------------------------------------------
+
+
+def leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
+    """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
+    parent, child = edge
+    label = graph.cluster_of[child]
+    if label < 0 or tree.children[child]:
+        return ()
+    return tuple(
+        part
+        for part in graph.clusters[label]
+        if part != child and tree.parents[part] == parent and not tree.children[part]
+    )
+
+
+def describe_twins(
+    scene: JointScene, tree: KinematicTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
+) -> Siblings:
+    """What the twins say about the type."""
+    return Siblings(
+        count=1 + len(twins),
+        gripping=len(twins) == 1 and _gripping(scene, tree, frames[twins[0]]),
+        overlapping=any(_overlapping(scene, frames[twin]) for twin in twins),
+    )
+
+
+def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
+    """Fingers: at the end of a chain, no bearing, standing out of the parent and apart from each other."""
+    chain_end = tree.depths[scene.child] >= 2
+    stands_out = scene.inside < 0.5
+    apart = float(np.linalg.norm(twin.centre - scene.centre)) < 2.0 * float(scene.parent_frame.extents.max())
+    return bool(chain_end and stands_out and apart and not scene.gated)
+
+
+def _overlapping(scene: JointScene, twin: BoxFrame) -> bool:
+    """Parallel thin panels next to each other whose planes differ by about their own thickness."""
+    if not (scene.panel and scene.upright):
+        return False
+    frame = scene.frame
+    shift = (twin.centre - scene.centre) @ frame.axes.T
+    thickness = float(frame.extents[frame.thin])
+    depth = abs(float(shift[frame.thin])) / max(thickness, 1e-12)
+    return bool(0.6 < depth < 4.0)
+
+
+def _twin_directions(scene: JointScene, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]) -> FloatArray:
+    offsets = [frames[twin].centre - scene.centre for twin in twins]
+    long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * scene.diagonal]
+    return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
+
+
+# ---- the result ----------------------------------------------------------------------------------------------------
+
+
+def _chosen_line(
+    scene: JointScene, kind: JointType, turns: RankedTurns, slides: RankedSlides
+) -> tuple[FloatArray, FloatArray]:
+    """Axis and a point on it: the foot of the contact centroid for turns, the centroid itself for slides."""
+    if kind is JointType.PRISMATIC:
+        anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
+        return slides.axes[0], anchor
+    return turns.lines.axes[0], turns.lines.pivots[0]
+
+
+def _confidence(decision: KindDecision, turns: RankedTurns, slides: RankedSlides) -> float:
+    """Probability-like margin over another type or another direction, whichever is closer."""
+    kind_margin = abs(decision.odds)
+    if decision.kind is JointType.PRISMATIC:
+        axes, scores = slides.axes, slides.scores
+    else:
+        axes, scores = turns.lines.axes, turns.scores
+    other = np.abs(axes @ axes[0]) < np.cos(np.radians(10.0))
+    margin = float(scores[0] - scores[other].max()) if other.any() else np.inf
+    same_direction = abs(float(turns.lines.axes[0] @ slides.axes[0])) > np.cos(np.radians(10.0))
+    direction = 1.0 / (1.0 + np.exp(-2.0 * margin - 0.5))
+    kind = 1.0 / (1.0 + np.exp(-kind_margin))
+    return float(direction * (1.0 if same_direction else kind))
+
+
+def _alternatives(
+    scene: JointScene, decision: KindDecision, turns: RankedTurns, slides: RankedSlides, config: JointsConfig
+) -> tuple[JointCandidate, ...]:
+    """Distinct candidates of both kinds on one scale: the score within the kind plus the odds of the kind."""
+    lean = 0.5 * decision.odds
+    anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
+    found = [
+        JointCandidate(
+            kind=JointType.REVOLUTE,
+            axis=turns.lines.axes[i],
+            pivot=turns.lines.pivots[i],
+            score=float(turns.scores[i] - turns.scores[0]) - lean,
+            source=turns.lines.sources[i],
+            evidence={name: float(value[i]) for name, value in turns.cues.items()},
+        )
+        for i in _distinct_lines(turns, 0.01 * scene.diagonal, config.alternatives)
+    ]
+    found += [
+        JointCandidate(
+            kind=JointType.PRISMATIC,
+            axis=slides.axes[i],
+            pivot=anchor,
+            score=float(slides.scores[i] - slides.scores[0]) + lean,
+            source=slides.sources[i],
+            evidence={name: float(value[i]) for name, value in slides.cues.items()},
+        )
+        for i in range(min(len(slides.axes), config.alternatives))
+    ]
+    return tuple(sorted(found, key=lambda candidate: -candidate.score))
+
+
+def _distinct_lines(turns: RankedTurns, distance: float, count: int) -> list[int]:
+    """Best lines that differ by 5 deg or by `distance` [m] at the contact."""
+    kept: list[int] = []
+    for i in range(len(turns.scores)):
+        axis, pivot = turns.lines.axes[i], turns.lines.pivots[i]
+        if all(
+            abs(float(axis @ turns.lines.axes[k])) < np.cos(np.radians(5.0))
+            or float(np.linalg.norm(pivot - turns.lines.pivots[k])) > distance
+            for k in kept
+        ):
+            kept.append(i)
+        if len(kept) == count:
+            break
+    return kept

@@ -1,0 +1,436 @@
+"""Turning joints: candidate lines and the cues that rank them (doors, lids, flaps, and bearings where modelled).
+
+A panel has no bearing in most meshes, so its hinge is found from what the object is for: the panel must be free to
+turn and stay with the body, people pull it by a handle far from the hinge, and it hangs or lies in the way gravity
+wants. No cue decides alone: each is bounded, and the sum is compared among lines of one part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.frames import UP
+from kinematify.joints.sweep import moving_points, sweep_turns
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.joints.scene import JointScene
+    from kinematify.joints.sweep import Sweep
+
+CORNER, HALF_WAY, CENTRE, OTHER = range(4)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Lines:
+    """Candidate axes of one joint."""
+
+    axes: FloatArray
+    """Unit directions in the world frame, shape (c, 3)."""
+    pivots: FloatArray
+    """Points on the lines, nearest to the contact centroid or the part's centre [m], shape (c, 3)."""
+    places: tuple[int, ...]
+    """CORNER, HALF_WAY or CENTRE of the box, OTHER for lines that a contact or bearing gave."""
+    sources: tuple[str, ...]
+    """Generator of each line."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RankedTurns:
+    """Candidate lines with their scores, best first."""
+
+    lines: Lines
+    scores: FloatArray
+    """Shape (c,), higher is better."""
+    cues: Mapping[str, FloatArray]
+    """Value of each cue before its weight, shape (c,) each."""
+    free: FloatArray
+    """Free turn towards + and - of the axis before the part hits anything [rad], shape (c, 2)."""
+    free_parent: FloatArray
+    """The same against the parent alone [rad], shape (c, 2)."""
+    outward: FloatArray
+    """+1 where turning about + moves the part out of the body, -1 where inwards, in between undecided, shape (c,)."""
+
+
+def rank_turns(scene: JointScene, config: JointsConfig) -> RankedTurns:
+    """Propose the lines about which the child may turn and rank them."""
+    lines = propose_lines(scene, config)
+    points = moving_points(scene.cache, scene.child, config.sweep)
+    limit = np.radians(config.panels.sweep_deg)
+    with_parent = sweep_turns(
+        scene.cache, points, lines.axes, lines.pivots, (scene.parent,), limit=limit, config=config.sweep
+    )
+    with_others = sweep_turns(
+        scene.cache, points, lines.axes, lines.pivots, scene.others, limit=limit, config=config.sweep
+    )
+    everything = with_parent.joined(with_others)
+    outward = _outwardness(scene, lines)
+    cues = {
+        **_motion_cues(scene, lines, with_parent, everything, outward, config),
+        **_contact_cues(scene, lines, config),
+        **_handle_cues(scene, lines, config),
+        **_margin_cues(scene, lines, config),
+        **_gravity_cues(scene, lines, with_parent, outward),
+        **_shape_cues(scene, lines, config),
+    }
+    weights = config.panels.weights
+    scores = sum(
+        (np.clip(weights[name] * value, -config.panels.cap, config.panels.cap) for name, value in cues.items()),
+        start=np.zeros(len(lines.axes)),
+    )
+    if scene.gated:
+        scores = scores + config.panels.bearing_bonus * np.array([source == "bearing" for source in lines.sources])
+    order = np.argsort(-scores, kind="stable")
+    return RankedTurns(
+        lines=_reorder(lines, order),
+        scores=scores[order],
+        cues={name: value[order] for name, value in cues.items()},
+        free=everything.free(config.sweep.share)[order],
+        free_parent=with_parent.free(config.sweep.share)[order],
+        outward=outward[order],
+    )
+
+
+def _reorder(lines: Lines, order: Sequence[int] | FloatArray) -> Lines:
+    return Lines(
+        axes=lines.axes[order],
+        pivots=lines.pivots[order],
+        places=tuple(lines.places[i] for i in order),
+        sources=tuple(lines.sources[i] for i in order),
+    )
+
+
+# ---- candidates ----------------------------------------------------------------------------------------------------
+
+
+def propose_lines(scene: JointScene, config: JointsConfig) -> Lines:
+    """Bearing lines, lines through the contact, and nine lines per direction of the slab's box."""
+    found: list[tuple[FloatArray, FloatArray, int, str]] = []
+    if scene.bearing is not None:
+        found += [(line.axis, line.pivot, OTHER, "bearing") for line in scene.bearing.lines[:1] if scene.gated]
+        found += [
+            (line.axis, line.pivot, OTHER, "weak_bearing")
+            for line in scene.bearing.lines[int(scene.gated) : config.panels.bearings]
+        ]
+    found += _contact_lines(scene, config)
+    found += _box_lines(scene)
+    anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
+    axes = np.array([axis for axis, _, _, _ in found])
+    pivots = np.array([pivot for _, pivot, _, _ in found])
+    pivots = pivots + np.einsum("cd,cd->c", anchor - pivots, axes)[:, None] * axes
+    return Lines(
+        axes=axes,
+        pivots=pivots,
+        places=tuple(place for _, _, place, _ in found),
+        sources=tuple(source for _, _, _, source in found),
+    )
+
+
+def _box_lines(scene: JointScene) -> list[tuple[FloatArray, FloatArray, int, str]]:
+    frame = scene.frame
+    levels = np.stack([frame.slab_lower, 0.5 * (frame.slab_lower + frame.slab_upper), frame.slab_upper])
+    found = []
+    for along in range(3):
+        first, second = (along + 1) % 3, (along + 2) % 3
+        for i in range(3):
+            for j in range(3):
+                corner = levels[1].copy()
+                corner[first], corner[second] = levels[i, first], levels[j, second]
+                place = (CORNER, HALF_WAY, CENTRE)[(i == 1) + (j == 1)]
+                found.append((frame.axes[along], corner @ frame.axes, place, "box_edge"))
+    return found
+
+
+def _contact_lines(scene: JointScene, config: JointsConfig) -> list[tuple[FloatArray, FloatArray, int, str]]:
+    """The long direction of the contact, and the line through two clusters of it (two pins, two hinges)."""
+    contact = scene.contact
+    if len(contact.points) < config.panels.least_contact:
+        return []
+    offset = contact.points - contact.centroid
+    covariance = (offset * contact.weights[:, None]).T @ offset
+    values, vectors = np.linalg.eigh(covariance)
+    found = []
+    normals = (contact.normals * contact.weights[:, None]).T @ contact.normals
+    if max(scene.smallness, scene.compact) > 0:
+        found.append((np.linalg.eigh(normals)[1][:, 2], contact.centroid, OTHER, "contact_axis"))
+    if values[1] < 0.1 * values[2]:
+        found.append((vectors[:, 2], contact.centroid, OTHER, "contact_line"))
+    clusters = contact_clusters(scene, config)
+    if clusters is not None:
+        direction = clusters[1] - clusters[0]
+        found.append((direction / np.linalg.norm(direction), clusters.mean(axis=0), OTHER, "contact_clusters"))
+    return found
+
+
+def contact_clusters(scene: JointScene, config: JointsConfig) -> FloatArray | None:
+    """Centres (2, 3) of two compact contact zones that lie far apart; None where the contact is not so."""
+    contact = scene.contact
+    offset = contact.points - contact.centroid
+    direction = np.linalg.eigh((offset * contact.weights[:, None]).T @ offset)[1][:, 2]
+    along = offset @ direction
+    order = np.argsort(along)
+    gaps = np.diff(along[order])
+    split = int(np.argmax(gaps))
+    size = float(np.max(scene.frame.extents))
+    if gaps[split] < config.panels.cluster_gap * size:
+        return None
+    sides = order[: split + 1], order[split + 1 :]
+    shares = [float(contact.weights[side].sum()) for side in sides]
+    if min(shares) < 0.15:
+        return None
+    centres = np.array([np.average(contact.points[s], axis=0, weights=contact.weights[s]) for s in sides])
+    spreads = [np.linalg.norm(contact.points[s] - c, axis=1).max() for s, c in zip(sides, centres, strict=True)]
+    return centres if max(spreads) < 0.5 * np.linalg.norm(centres[1] - centres[0]) else None
+
+
+# ---- cues ----------------------------------------------------------------------------------------------------------
+
+
+def _radii(points: FloatArray, lines: Lines) -> FloatArray:
+    """Distance of points (n, 3) from each line [m], shape (c, n)."""
+    offset = points[None] - lines.pivots[:, None]
+    along = np.einsum("cnk,ck->cn", offset, lines.axes)
+    return np.sqrt(np.maximum(np.einsum("cnk,cnk->cn", offset, offset) - along**2, 0.0))
+
+
+def _arms(point: FloatArray, lines: Lines) -> FloatArray:
+    """Vector from each line to a point, across the line [m], shape (c, 3)."""
+    offset = point - lines.pivots
+    return np.asarray(offset - np.einsum("ck,ck->c", offset, lines.axes)[:, None] * lines.axes)
+
+
+def _reach(scene: JointScene, lines: Lines) -> FloatArray:
+    """Largest distance of the child from each line [m], shape (c,)."""
+    points = scene.cache.samples(scene.child).points
+    return np.maximum(_radii(points, lines).max(axis=1), 1e-12)
+
+
+def _outwardness(scene: JointScene, lines: Lines) -> FloatArray:
+    """Cosine between the first motion of the centre (turning about +) and the way out of the body, shape (c,)."""
+    velocity = np.cross(lines.axes, _arms(scene.centre, lines))
+    speed = np.linalg.norm(velocity, axis=1)
+    away = scene.outward
+    if not away.any():
+        body = scene.body_box.mean(axis=0) @ scene.frame.axes
+        away = scene.centre - body
+        away = away / max(float(np.linalg.norm(away)), 1e-12)
+    return np.asarray(velocity @ away / np.maximum(speed, 1e-9 * scene.diagonal))
+
+
+def _motion_cues(
+    scene: JointScene,
+    lines: Lines,
+    with_parent: Sweep,
+    everything: Sweep,
+    outward: FloatArray,
+    config: JointsConfig,
+) -> dict[str, FloatArray]:
+    """Free turn, share that crosses, gap that opens behind the hinge, and whether the free way leads outwards."""
+    share = config.sweep.share
+    full = np.radians(config.panels.full_turn_deg)
+    mean_free = 0.5 * (np.minimum(with_parent.free(share), full) + np.minimum(everything.free(share), full)) / full
+    prefer = mean_free + 0.1 * np.stack([outward, -outward], axis=1)
+    best = np.argmax(prefer, axis=1)
+    rows = np.arange(len(best))
+    crossed = 0.5 * (with_parent.crossed(0.5 * full) + everything.crossed(0.5 * full))
+    sign = np.where(best == 0, 1.0, -1.0)
+    return {
+        "free": mean_free[rows, best],
+        "crossed": crossed[rows, best],
+        "outside": np.clip(sign * outward, 0.0, 1.0),
+        "separation": _separation(scene, lines, sign, config),
+    }
+
+
+def _separation(scene: JointScene, lines: Lines, sign: FloatArray, config: JointsConfig) -> FloatArray:
+    """Gap to the parent after a turn of `panels.part_deg` in the preferred direction, fraction of the diagonal."""
+    points = scene.cache.samples(scene.child).points
+    points = points[:: max(1, len(points) // config.panels.separation_points)]
+    before = float(scene.cache.distances(scene.parent, points).min())
+    angle = sign * np.radians(config.panels.part_deg)
+    offset = points[None] - lines.pivots[:, None]
+    along = np.einsum("cnk,ck->cn", offset, lines.axes)[..., None] * lines.axes[:, None]
+    radial = offset - along
+    moved = (
+        lines.pivots[:, None]
+        + along
+        + np.cos(angle)[:, None, None] * radial
+        + np.sin(angle)[:, None, None] * np.cross(lines.axes[:, None], radial)
+    )
+    distances = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
+    return np.asarray(np.maximum(distances.min(axis=1) - before, 0.0) / scene.diagonal)
+
+
+def _contact_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+    """How close to the line the parts touch, and how close the line runs to the parent."""
+    along = (scene.frame.local(scene.cache.samples(scene.child).points)).T
+    half = 0.5 * np.ptp(along, axis=1)
+    span = np.abs(lines.axes @ scene.frame.axes.T) @ half
+    foot = scene.centre - _arms(scene.centre, lines)
+    steps = np.linspace(-0.9, 0.9, 7)
+    probes = foot[:, None] + steps[None, :, None] * (span[:, None] * lines.axes)[:, None]
+    to_parent = scene.cache.distances(scene.parent, probes.reshape(-1, 3)).reshape(len(span), -1)
+    cues = {"axis_to_parent": np.sort(to_parent, axis=1)[:, :3].mean(axis=1) / scene.diagonal}
+    share, radius = np.zeros(len(span)), np.ones(len(span))
+    if len(scene.contact.points):
+        relative = _radii(scene.contact.points, lines) / _reach(scene, lines)[:, None]
+        share = (relative < config.panels.hinge_band) @ scene.contact.weights
+        radius = relative @ scene.contact.weights
+    ajar = float(is_ajar(scene, lines, share, config))
+    return {
+        **cues,
+        "contact_share": share,
+        "contact_radius": radius,
+        "compact_radius": scene.compact * radius,
+        "ajar_contact": ajar * share,
+    }
+
+
+def is_ajar(scene: JointScene, lines: Lines, share: FloatArray, config: JointsConfig) -> bool:
+    """A panel that touches its parent along one edge only stands open; then contact tells the hinge by itself."""
+    corners = np.array([place == CORNER for place in lines.places])
+    return bool(scene.panel and corners.any() and share[corners].max() > config.panels.ajar_share)
+
+
+def _handle_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+    """A handle is far from the hinge, and a long one runs along it."""
+    n = len(lines.axes)
+    if scene.handle is None:
+        return {"handle_distance": np.zeros(n), "handle_parallel": np.zeros(n)}
+    distance = np.linalg.norm(_arms(scene.handle.centre, lines), axis=1) / _reach(scene, lines)
+    parallel = np.abs(lines.axes @ scene.handle.direction)
+    tall = scene.upright and _tallness(scene) > config.panels.tall
+    return {
+        "handle_distance": np.minimum(distance, 1.0),
+        "handle_parallel": parallel * (config.panels.tall_handle if tall else 1.0),
+    }
+
+
+def _margin_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+    """The hinge is on the side where less of the body is left; controls and the next door are opposite."""
+    n = len(lines.axes)
+    here, opposite = np.zeros(n), np.zeros(n)
+    if scene.panel:
+        frame = scene.frame
+        arms = -_arms(scene.centre, lines) @ frame.axes.T
+        arms[:, frame.thin] = 0.0
+        side = np.argmax(np.abs(arms), axis=1)
+        low = frame.slab_lower - scene.body_box[0]
+        high = scene.body_box[1] - frame.slab_upper
+        towards_high = arms[np.arange(n), side] > 0
+        near = np.where(towards_high, high[side], low[side]) / scene.diagonal
+        far = np.where(towards_high, low[side], high[side]) / scene.diagonal
+        at_edge = np.abs(arms[np.arange(n), side]) > 0.3 * frame.extents[side]
+        here, opposite = np.where(at_edge, near, 0.0), np.where(at_edge, far, 0.0)
+    difference = np.clip(2.0 * (opposite - here), -config.panels.margin_cap, config.panels.margin_cap)
+    # A handle says directly where the free side is; then the margins are only a hint.
+    factor = config.panels.weak_margin if scene.flat or _handle_off_centre(scene) else 1.0
+    return {"margin_difference": factor * difference, "margin_here": np.maximum(here, 0.0)}
+
+
+def _handle_off_centre(scene: JointScene) -> bool:
+    """The handle is clearly nearer to one side of the panel than to the opposite one."""
+    if scene.handle is None:
+        return False
+    frame = scene.frame
+    shift = np.abs((scene.handle.centre - scene.centre) @ frame.axes.T) / np.maximum(frame.extents, 1e-12)
+    return bool(np.delete(shift, frame.thin).max() > 0.25)
+
+
+def _tallness(scene: JointScene) -> float:
+    """Height over width of an upright panel."""
+    frame = scene.frame
+    plane = [k for k in range(3) if k != frame.thin]
+    heights = [abs(float(frame.axes[k] @ UP)) for k in plane]
+    vertical, level = (plane[0], plane[1]) if heights[0] > heights[1] else (plane[1], plane[0])
+    return float(frame.extents[vertical] / max(frame.extents[level], 1e-12))
+
+
+def _gravity_cues(scene: JointScene, lines: Lines, with_parent: Sweep, outward: FloatArray) -> dict[str, FloatArray]:
+    """Doors turn about upright lines or drop down, lids rise, and a lid's hinge is where the body stands higher."""
+    vertical = np.abs(lines.axes @ UP)
+    arms = -_arms(scene.centre, lines)
+    length = np.linalg.norm(arms, axis=1)
+    height = arms[:, 2] / np.maximum(length, 1e-9 * scene.diagonal)
+    door = float(scene.panel and scene.upright)
+    tallness = np.clip(np.log2(_tallness(scene)), -1.0, 1.0) if door else 0.0
+    lid = float(scene.panel and scene.flat)
+    free = with_parent.free(0.03)
+    velocity = np.cross(lines.axes, arms * -1.0)[:, 2] / _reach(scene, lines)
+    rise = np.where(free[:, 0] >= free[:, 1], velocity, -velocity)
+    return {
+        "door_vertical": door * (vertical > 0.9),
+        "door_tall": door * tallness * (vertical > 0.9),
+        "hinge_above": door * np.maximum(height, 0.0),
+        "hinge_below": door * np.maximum(-height, 0.0),
+        "lid_rise": lid * rise,
+        "lid_backrest": lid * _body_behind(scene, arms),
+    }
+
+
+def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
+    """How much more of the body stands above the lid on the hinge's side than opposite, in [-1, 1]."""
+    samples = scene.cache.samples(scene.parent)
+    top = float(scene.cache.assembly.parts[scene.child].bounds[1, 2])
+    above = samples.points[:, 2] > top
+    if above.mean() < 0.02:
+        return np.zeros(len(arms))
+    level = arms.copy()
+    level[:, 2] = 0.0
+    level /= np.maximum(np.linalg.norm(level, axis=1), 1e-9 * scene.diagonal)[:, None]
+    side = np.sign((samples.points[above] - scene.centre) @ level.T)
+    return np.asarray(side.mean(axis=0))
+
+
+def _shape_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+    """Where on the box the line lies and how it runs; for small parts, the normal of the contact."""
+    frame = scene.frame
+    thin = np.abs(lines.axes @ frame.axes[frame.thin])
+    along = np.abs(lines.axes @ frame.axes.T) @ frame.extents / max(float(frame.extents.max()), 1e-12)
+    place = np.array(lines.places)
+    source = np.array(lines.sources)
+    clusters = (source == "contact_clusters") & (not (scene.panel and (scene.upright or scene.flat)))
+    normal = np.zeros(len(thin))
+    if len(scene.contact.points):
+        tensor = (scene.contact.normals * scene.contact.weights[:, None]).T @ scene.contact.normals
+        values, vectors = np.linalg.eigh(tensor)
+        normal = np.abs(lines.axes @ vectors[:, 2]) * float(values[2])
+    return {
+        "thin_along": thin,
+        "length_along": along,
+        "half_way": (place == HALF_WAY).astype(np.float64),
+        "centre_line": (place == CENTRE).astype(np.float64),
+        "contact_line": (source == "contact_line").astype(np.float64),
+        "clusters": clusters.astype(np.float64),
+        "weak_bearing": (1.0 - scene.mechanism) * (source == "weak_bearing"),
+        "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _first_bearing(lines),
+        "small_normal": max(scene.smallness, scene.compact) * normal * ((place == CENTRE) | (source == "contact_axis")),
+        "round": _roundness(scene, lines),
+    }
+
+
+def _first_bearing(lines: Lines) -> FloatArray:
+    """1 for the best bearing line, less for the next ones."""
+    rank = np.cumsum([source in ("bearing", "weak_bearing") for source in lines.sources])
+    return np.asarray(1.0 / np.maximum(rank, 1.0))
+
+
+def _roundness(scene: JointScene, lines: Lines) -> FloatArray:
+    """Share of the child's area across the line's direction that turns into itself about the line, from 0.5 to 1."""
+    samples = scene.cache.samples(scene.child)
+    result = np.zeros(len(lines.axes))
+    for c, (axis, pivot) in enumerate(zip(lines.axes, lines.pivots, strict=True)):
+        lateral = np.abs(samples.normals @ axis) < 0.9
+        if lateral.sum() < 30:
+            continue
+        offset = samples.points[lateral] - pivot
+        radial = offset - (offset @ axis)[:, None] * axis
+        radial /= np.maximum(np.linalg.norm(radial, axis=1), 1e-12)[:, None]
+        miss = np.abs(np.einsum("ij,ij->i", np.cross(axis, radial), samples.normals[lateral]))
+        result[c] = np.clip(2.0 * float((miss < np.sin(np.radians(12.0))).mean()) - 1.0, 0.0, 1.0)
+    return result

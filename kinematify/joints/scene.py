@@ -1,0 +1,239 @@
+"""All that is known of one parent-child pair before a joint is proposed: frames, shape, contact, handle, bearing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.frames import UP, body_axes, box_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.joints.bearing import BearingLine, EdgeBearing
+    from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.workspace import ContactView, PartCache
+    from kinematify.topology.tree import KinematicTree
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Handle:
+    """What a person would pull: a bump on the outer side of a panel, or small parts mounted on it."""
+
+    centre: FloatArray
+    """World frame [m], shape (3,)."""
+    direction: FloatArray
+    """Unit direction of a long handle, zero for a short one, shape (3,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointScene:
+    """One tree edge with everything that the cues look at; lengths in metres, world frame."""
+
+    cache: PartCache
+    parent: int
+    child: int
+    frame: BoxFrame
+    """Box frame of the child."""
+    parent_frame: BoxFrame
+    """Box frame of the parent, along its own axes."""
+    body_box: FloatArray
+    """Lower and upper corner of the parent along the child's axes [m], shape (2, 3)."""
+    contact: ContactView
+    others: tuple[int, ...]
+    """Obstacles besides the parent: every part outside the child's subtree."""
+    outward: FloatArray
+    """Unit normal of the panel away from the body along the child's thin direction, zero if undecided, shape (3,)."""
+    handle: Handle | None
+    smallness: float
+    """1 for a part that is small beside its parent, 0 for a large one."""
+    panel: bool
+    """The slab is thin, and the part is not small."""
+    upright: bool
+    """The thin direction lies flat, as in a closed door."""
+    flat: bool
+    """The thin direction points up, as in a closed lid."""
+    bearing: EdgeBearing | None
+    gated: bool
+    """The best line of the bearing passes the gate."""
+    compact: float
+    """1 where the contact is a small patch of the child, as in a machine's joint; 0 where it is spread out."""
+    mechanism: float
+    """1 in a linkage (compact contact, or a tree of several joints in series), 0 for furniture."""
+    parent_moves: bool
+    """The parent is itself moved by a joint."""
+    enclosed: float
+    """Share of the six directions from the child's centre in which the parent stands in the way."""
+    inside: float
+    """Share of the child's surface that lies inside the parent's box."""
+
+    @property
+    def diagonal(self) -> float:
+        """Diagonal of the assembly [m]."""
+        return self.cache.diagonal
+
+    @property
+    def centre(self) -> FloatArray:
+        """Centre of the child's slab, shape (3,)."""
+        return self.frame.centre
+
+
+def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
+    """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
+    body = body_axes(cache.samples(tree.root))
+    frames: dict[int, BoxFrame] = {}
+    for part, above in [(tree.root, -1), *((child, parent) for parent, child in tree.edges())]:
+        preferred = [body] if above < 0 else [frames[above].axes, body]
+        vertices = cache.assembly.parts[part].vertices[np.unique(cache.assembly.parts[part].faces)]
+        frames[part] = box_frame(vertices, cache.samples(part), preferred, config.frames)
+    return frames
+
+
+def joint_scene(
+    cache: PartCache,
+    tree: KinematicTree,
+    frames: Mapping[int, BoxFrame],
+    edge: tuple[int, int],
+    bearing: EdgeBearing | None,
+    config: JointsConfig,
+) -> JointScene:
+    """Gather what the cues need for the tree edge (parent, child)."""
+    parent, child = edge
+    frame = frames[child]
+    local = frame.local(cache.assembly.parts[parent].vertices[np.unique(cache.assembly.parts[parent].faces)])
+    body_box = np.stack([local.min(axis=0), local.max(axis=0)])
+    outward = _outward(frame, body_box)
+    smallness = _smallness(cache, parent, child, config)
+    contact = cache.contact(parent, child, config.contact_band * cache.diagonal)
+    compact = _compactness(cache, child, contact, config)
+    serial = max(tree.depths) >= config.serial_depth
+    sides = np.sort(frame.extents)
+    up = abs(float(frame.axes[frame.thin] @ UP))
+    moving = _subtree(tree, child)
+    return JointScene(
+        cache=cache,
+        parent=parent,
+        child=child,
+        frame=frame,
+        parent_frame=frames[parent],
+        body_box=body_box,
+        contact=contact,
+        others=tuple(i for i in range(len(tree.parents)) if i != parent and i not in moving),
+        outward=outward,
+        handle=_handle(cache, tree, child, frame, outward),
+        smallness=smallness,
+        panel=bool(sides[0] < config.panel_thinness * sides[1] and smallness < 1.0),
+        upright=up < config.upright_cosine,
+        flat=up > config.flat_cosine,
+        bearing=bearing,
+        gated=bearing is not None and passes_gate(bearing, contact, config),
+        compact=compact,
+        mechanism=1.0 if serial else compact,
+        parent_moves=parent != tree.root,
+        enclosed=_enclosure(cache, parent, frame),
+        inside=_inside(cache, child, frame, body_box),
+    )
+
+
+def passes_gate(bearing: EdgeBearing, contact: ContactView, config: JointsConfig) -> bool:
+    """True where the best line is a bearing beyond doubt.
+
+    Either round surface and circles on both parts, or so much round surface on both parts that it needs no circles.
+    """
+    if not bearing.lines:
+        return False
+    line = bearing.lines[0]
+    if line.surface * line.circles > config.gate.product:
+        return True
+    child = located_support(contact.points, contact.normals, contact.weights, line)
+    m = len(contact.parent_points)
+    parent = located_support(contact.parent_points, contact.parent_normals, np.full(m, 1.0 / max(m, 1)), line)
+    return bool(np.sqrt(max(child * parent, 0.0)) > config.gate.located)
+
+
+def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray, line: BearingLine) -> float:
+    """Share of an area that turns into itself about a line, counted by how well it locates the line, in [0, 1].
+
+    Unlike the surface score of a bearing, flat area across the axis counts nothing here.
+    """
+    if len(points) == 0:
+        return 0.0
+    offset = points - line.pivot
+    radial = offset - (offset @ line.axis)[:, None] * line.axis
+    radial /= np.maximum(np.linalg.norm(radial, axis=1), 1e-12)[:, None]
+    miss = np.einsum("ij,ij->i", np.cross(line.axis, radial), normals)
+    fit = weights * np.exp(-((miss / np.sin(np.radians(3.0))) ** 2))
+    across = normals - (normals @ line.axis)[:, None] * line.axis
+    return float(2.0 * np.linalg.eigvalsh((across * fit[:, None]).T @ across)[1] / max(float(weights.sum()), 1e-300))
+
+
+def _compactness(cache: PartCache, child: int, contact: ContactView, config: JointsConfig) -> float:
+    if len(contact.points) == 0:
+        return 0.0
+    spread = np.sqrt(contact.weights @ np.sum((contact.points - contact.centroid) ** 2, axis=1))
+    ratio = spread / (0.5 * cache.assembly.parts[child].diagonal)
+    return float(np.clip((config.spread_none - ratio) / (config.spread_none - config.spread_full), 0.0, 1.0))
+
+
+def _enclosure(cache: PartCache, parent: int, frame: BoxFrame) -> float:
+    steps = cache.diagonal * np.concatenate([frame.axes, -frame.axes])
+    hits = cache.first_hits(parent, np.tile(frame.centre, (6, 1)), steps)
+    return float(np.isfinite(hits).mean())
+
+
+def _inside(cache: PartCache, child: int, frame: BoxFrame, body_box: FloatArray) -> float:
+    local = frame.local(cache.samples(child).points)
+    margin = 0.01 * np.max(body_box[1] - body_box[0])
+    return float(np.all((local > body_box[0] + margin) & (local < body_box[1] - margin), axis=1).mean())
+
+
+def _subtree(tree: KinematicTree, part: int) -> set[int]:
+    found, queue = {part}, [part]
+    for node in queue:
+        found.update(tree.children[node])
+        queue.extend(tree.children[node])
+    return found
+
+
+def _smallness(cache: PartCache, parent: int, child: int, config: JointsConfig) -> float:
+    ratio = cache.assembly.parts[child].diagonal / max(cache.assembly.parts[parent].diagonal, 1e-12)
+    return float(np.clip((config.small_none - ratio) / (config.small_none - config.small_full), 0.0, 1.0))
+
+
+def _outward(frame: BoxFrame, body_box: FloatArray) -> FloatArray:
+    """The side of the panel that is nearer to the outside of the body."""
+    k = frame.thin
+    to_lower = 0.5 * (frame.slab_lower[k] + frame.slab_upper[k]) - body_box[0, k]
+    to_upper = body_box[1, k] - 0.5 * (frame.slab_lower[k] + frame.slab_upper[k])
+    if abs(to_lower - to_upper) < 0.1 * (body_box[1, k] - body_box[0, k]):
+        return np.zeros(3)
+    return np.asarray(frame.axes[k] * (1.0 if to_upper < to_lower else -1.0))
+
+
+def _handle(cache: PartCache, tree: KinematicTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
+    """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
+    points = cache.samples(child).points
+    local = frame.local(points)
+    k = frame.thin
+    margin = 0.02 * float(np.max(frame.extents))
+    above = local[:, k] > frame.slab_upper[k] + margin
+    below = local[:, k] < frame.slab_lower[k] - margin
+    side = float(outward @ frame.axes[k])
+    bump = above if side > 0 else below if side < 0 else above | below
+    if bump.sum() >= max(4, 0.001 * len(points)):
+        return _handle_of(points[bump], frame)
+    hanging = [cache.samples(part).points for part in tree.children[child]]
+    return _handle_of(np.concatenate(hanging), frame) if hanging else None
+
+
+def _handle_of(points: FloatArray, frame: BoxFrame) -> Handle:
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    spread = np.ptp(frame.local(points), axis=0)
+    longest = int(np.argmax(spread))
+    others = np.delete(spread, longest).max()
+    long_enough = spread[longest] > 2.0 * others
+    return Handle(centre=centre, direction=frame.axes[longest] if long_enough else np.zeros(3))

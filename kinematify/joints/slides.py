@@ -1,0 +1,136 @@
+"""Sliding joints: candidate directions and the cues that rank them (drawers, trays, buttons, sliders, lift-off lids)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.frames import UP
+from kinematify.joints.sweep import moving_points, sweep_slides
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.joints.scene import JointScene
+    from kinematify.joints.sweep import Sweep
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RankedSlides:
+    """Candidate directions with their scores, best first."""
+
+    axes: FloatArray
+    """Unit directions in the world frame, shape (c, 3)."""
+    sources: tuple[str, ...]
+    """Generator of each direction."""
+    scores: FloatArray
+    """Shape (c,), higher is better."""
+    cues: Mapping[str, FloatArray]
+    """Value of each cue before its weight, shape (c,) each."""
+    free: FloatArray
+    """Free travel towards + and - before the part hits anything, fraction of the diagonal, shape (c, 2)."""
+    free_parent: FloatArray
+    """The same against the parent alone, shape (c, 2)."""
+
+
+def rank_slides(scene: JointScene, twins: FloatArray, config: JointsConfig) -> RankedSlides:
+    """Propose the directions along which the child may slide and rank them.
+
+    Args:
+        scene: The pair.
+        twins: Unit directions towards congruent leaf siblings, shape (k, 3).
+        config: Weights and sweeps.
+    """
+    axes, sources = _directions(scene, twins, config)
+    points = moving_points(scene.cache, scene.child, config.sweep)
+    limit = config.slides.sweep * scene.diagonal
+    with_parent = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=limit, config=config.sweep)
+    everything = with_parent.joined(
+        sweep_slides(scene.cache, points, axes, scene.others, limit=limit, config=config.sweep)
+    )
+    cues = {**_motion_cues(scene, axes, with_parent, everything, config), **_shape_cues(scene, axes, sources)}
+    weights = config.slides.weights
+    scores = sum(
+        (np.clip(weights[name] * value, -config.slides.cap, config.slides.cap) for name, value in cues.items()),
+        start=np.zeros(len(axes)),
+    )
+    order = np.argsort(-scores, kind="stable")
+    return RankedSlides(
+        axes=axes[order],
+        sources=tuple(sources[i] for i in order),
+        scores=scores[order],
+        cues={name: value[order] for name, value in cues.items()},
+        free=everything.free(config.sweep.share)[order] / scene.diagonal,
+        free_parent=with_parent.free(config.sweep.share)[order] / scene.diagonal,
+    )
+
+
+def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> tuple[FloatArray, tuple[str, ...]]:
+    """Distinct directions: bearing, twins, the child's box, the parent's box, the contact normal."""
+    found: list[tuple[FloatArray, str]] = []
+    if scene.bearing is not None and scene.bearing.lines and scene.gated:
+        found.append((scene.bearing.lines[0].axis, "bearing"))
+    found += [(axis, "box") for axis in scene.frame.axes]
+    found += [(axis, "twin") for axis in twins]
+    found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
+    normal = contact_normal(scene)
+    if normal is not None:
+        found.append((normal, "contact_normal"))
+    kept: list[tuple[FloatArray, str]] = []
+    cosine = np.cos(np.radians(config.slides.distinct_deg))
+    for axis, source in found:
+        if all(abs(float(axis @ other)) < cosine for other, _ in kept):
+            kept.append((axis, source))
+    return np.array([axis for axis, _ in kept]), tuple(source for _, source in kept)
+
+
+def contact_normal(scene: JointScene) -> FloatArray | None:
+    """Dominant direction of the child's normals where it touches its parent; None without a dominant one."""
+    contact = scene.contact
+    if len(contact.points) == 0:
+        return None
+    values, vectors = np.linalg.eigh((contact.normals * contact.weights[:, None]).T @ contact.normals)
+    return np.asarray(vectors[:, 2]) if values[2] > 0.7 else None
+
+
+def _motion_cues(
+    scene: JointScene, axes: FloatArray, with_parent: Sweep, everything: Sweep, config: JointsConfig
+) -> dict[str, FloatArray]:
+    """Free travel one way, stop the other way, and what is crossed on a short way."""
+    large = 1.0 - scene.smallness
+    share = config.sweep.share
+    parent = with_parent.free(share) / scene.diagonal
+    free = everything.free(share) / scene.diagonal
+    useful = config.slides.useful_travel
+    longest = np.minimum(1.0, parent.max(axis=1) / useful)
+    shortest = np.minimum(1.0, parent.min(axis=1) / useful)
+    short = 0.5 * useful * scene.diagonal
+    crossed = 0.5 * (with_parent.crossed(short) + everything.crossed(short)).min(axis=1)
+    return {
+        "travel_parent": large * longest,
+        "travel_all": large * np.minimum(1.0, free.max(axis=1) / useful),
+        "one_way": large * (longest - shortest),
+        "crossed": crossed,
+    }
+
+
+def _shape_cues(scene: JointScene, axes: FloatArray, sources: tuple[str, ...]) -> dict[str, FloatArray]:
+    large = 1.0 - scene.smallness
+    thin = np.abs(axes @ scene.frame.axes[scene.frame.thin])
+    normal = contact_normal(scene)
+    pressed = np.abs(axes @ normal) if normal is not None else np.zeros(len(axes))
+    bearing = np.zeros(len(axes))
+    if scene.bearing is not None and scene.gated:
+        bearing = np.abs(axes @ scene.bearing.lines[0].axis)
+    return {
+        "thin_large": large * thin,
+        "horizontal": large * (1.0 - np.abs(axes @ UP)),
+        "along_bearing": bearing,
+        "thin_small": scene.smallness * thin,
+        "normal_small": scene.smallness * pressed,
+        "twin": np.array([float(source == "twin") for source in sources]),
+    }

@@ -1,0 +1,150 @@
+"""Derived geometry of every part, computed once per run and shared by all joints of an assembly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import igl
+import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+
+from kinematify.geometry.sampling import sample_surface
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kinematify.assembly.part import Assembly, FloatArray, IntArray
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.geometry.sampling import SurfaceSamples
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactView:
+    """Where the child of a pair touches its parent; empty arrays where the graph has no such edge."""
+
+    points: FloatArray
+    """Samples of the child near the parent, world frame [m], shape (n, 3)."""
+    normals: FloatArray
+    """Unit normals of the child there, shape (n, 3)."""
+    weights: FloatArray
+    """Contact area that each sample stands for, normalised to sum 1, shape (n,)."""
+    parent_points: FloatArray
+    """Samples of the parent near the child, world frame [m], shape (m, 3)."""
+    parent_normals: FloatArray
+    """Unit normals of the parent there, shape (m, 3)."""
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Area-weighted centre of the contact in the world frame [m], shape (3,); NaN without contact."""
+        if len(self.points) == 0:
+            return np.full(3, np.nan)
+        return np.asarray(self.weights @ self.points)
+
+
+class PartCache:
+    """Samples, ray-casting scenes and distance trees of the parts of one assembly, each made when first asked for."""
+
+    def __init__(self, assembly: Assembly, graph: ContactGraph, *, samples: int, seed: int) -> None:
+        """Keep the assembly.
+
+        Args:
+            assembly: The parts, world frame.
+            graph: Their contacts.
+            samples: Surface samples per part.
+            seed: Seed of the samples.
+        """
+        self.assembly = assembly
+        self.graph = graph
+        self._samples = samples
+        self._seed = seed
+        self._store: dict[tuple[str, int], Any] = {}
+
+    @property
+    def diagonal(self) -> float:
+        """Diagonal of the assembly [m]; the unit of most tolerances."""
+        return self.assembly.diagonal
+
+    def samples(self, part: int) -> SurfaceSamples:
+        """Area-uniform surface samples of a part."""
+        return self._once("samples", part, lambda: sample_surface(self.assembly.parts[part], self._samples, self._seed))
+
+    def first_hits(self, part: int, origins: FloatArray, steps: FloatArray) -> FloatArray:
+        """Cast segments at a part.
+
+        Args:
+            part: Index of the part that is hit.
+            origins: Starts in the world frame [m], shape (n, 3).
+            steps: Segment vectors [m], shape (n, 3).
+
+        Returns:
+            Fraction of each segment up to its first hit, shape (n,); inf where nothing is hit.
+        """
+        fractions = np.full(len(origins), np.inf)
+        lower, upper = self.assembly.parts[part].bounds
+        ends = origins + steps
+        near = np.all((np.minimum(origins, ends) <= upper) & (np.maximum(origins, ends) >= lower), axis=1)
+        index = np.flatnonzero(near)
+        if len(index) == 0:
+            return fractions
+        lengths = np.linalg.norm(steps[index], axis=1)
+        index, lengths = index[lengths > 0], lengths[lengths > 0]
+        directions = (steps[index] / lengths[:, None]).astype(np.float32)
+        reach = lengths.astype(np.float32)
+        starts = origins[index].astype(np.float32)
+        # Embree writes the distances into the array of ranges that it is given.
+        found = self._scene(part).run(starts, directions, dists=reach.copy(), query="DISTANCE")
+        hit = found < reach
+        fractions[index[hit]] = found[hit] / lengths[hit]
+        return fractions
+
+    def distances(self, part: int, points: FloatArray) -> FloatArray:
+        """Exact unsigned distance [m] from points (n, 3) in the world frame to the surface of a part, shape (n,)."""
+        tree, vertices, faces = self._tree(part)
+        squared = tree.squared_distance(vertices, faces, np.ascontiguousarray(points))[0]
+        return np.sqrt(np.maximum(squared, 0.0))
+
+    def contact(self, parent: int, child: int, band: float) -> ContactView:
+        """Contact samples of a pair that lie within `band` [m] beyond its gap."""
+        edge = self.graph.by_pair.get((min(parent, child), max(parent, child)))
+        if edge is None:
+            nothing = np.empty((0, 3))
+            return ContactView(
+                points=nothing, normals=nothing, weights=np.empty(0), parent_points=nothing, parent_normals=nothing
+            )
+        of_child, of_parent = (edge.samples_a, edge.samples_b) if edge.a == child else (edge.samples_b, edge.samples_a)
+        near = of_child.distances <= edge.gap + band
+        areas = of_child.areas[near]
+        near_parent = of_parent.distances <= edge.gap + band
+        return ContactView(
+            points=of_child.points[near],
+            normals=of_child.normals[near],
+            weights=areas / max(float(areas.sum()), 1e-300),
+            parent_points=of_parent.points[near_parent],
+            parent_normals=of_parent.normals[near_parent],
+        )
+
+    def _scene(self, part: int) -> EmbreeScene:
+        def build() -> EmbreeScene:
+            mesh = self.assembly.parts[part]
+            scene = EmbreeScene()
+            TriangleMesh(scene, mesh.vertices[mesh.faces].astype(np.float32))
+            return scene
+
+        return self._once("scene", part, build)
+
+    def _tree(self, part: int) -> tuple[igl.AABB, FloatArray, IntArray]:
+        def build() -> tuple[igl.AABB, FloatArray, IntArray]:
+            mesh = self.assembly.parts[part]
+            tree = igl.AABB()
+            tree.init(mesh.vertices, mesh.faces)
+            return tree, mesh.vertices, mesh.faces
+
+        return self._once("tree", part, build)
+
+    def _once(self, kind: str, part: int, build: Callable[[], Any]) -> Any:
+        key = (kind, part)
+        if key not in self._store:
+            self._store[key] = build()
+        return self._store[key]
