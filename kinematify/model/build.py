@@ -106,9 +106,7 @@ def _joint_names(children: Sequence[str], taken: set[str]) -> list[str]:
     return names
 
 
-def _joint(
-    estimate: JointEstimate, links: Sequence[Link], name: str, diagonal: float, config: ModelConfig
-) -> Joint:
+def _joint(estimate: JointEstimate, links: Sequence[Link], name: str, diagonal: float, config: ModelConfig) -> Joint:
     parent, child = links[estimate.parent], links[estimate.child]
     T_parent_child = np.eye(4)
     T_parent_child[:3, 3] = child.T_world_link[:3, 3] - parent.T_world_link[:3, 3]

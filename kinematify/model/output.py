@@ -75,9 +75,13 @@ def check_output(out: Path, *, overwrite: bool) -> None:
 
 def _check_replaceable(out: Path, overwrite: bool) -> None:
     if not overwrite:
-        raise OutputError(f"The output folder {out} exists already. Give another one with -o, or --force to replace it.")
+        raise OutputError(
+            f"The output folder {out} exists already. Give another one with -o, or --force to replace it."
+        )
     if not out.is_dir():
-        raise OutputError(f"The output {out} exists and is not a folder, so --force leaves it. Give another one with -o.")
+        raise OutputError(
+            f"The output {out} exists and is not a folder, so --force leaves it. Give another one with -o."
+        )
     ours = (out / MODEL_FILE).is_file() and (out / RECORD_FILE).is_file()
     if not ours and any(out.iterdir()):
         raise OutputError(

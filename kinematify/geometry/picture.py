@@ -1,0 +1,252 @@
+"""Pictures of coloured meshes and joint arrows by ray casting; needs no OpenGL, window or graphics card.
+
+Light comes from the whole sky, weakened where surfaces close by hide it, and from a lamp over the viewer's shoulder.
+One ray per pixel finds the surfaces; only pixels at edges and arrows get more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image
+from scipy.ndimage import binary_dilation
+
+from kinematify.geometry.daylight import SAME_SURFACE_COSINE, FloorShadow, SkyLight
+from kinematify.geometry.rays import RayScene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.config import PreviewConfig
+    from kinematify.geometry.camera import Camera
+    from kinematify.geometry.rays import RayHits
+
+    BoolArray = NDArray[np.bool_]
+
+BACKGROUND = np.array([0.972, 0.976, 0.984])
+"""sRGB of the empty picture, shape (3,)."""
+_FLOOR_SHADOW = 0.6  # share of the light that the floor loses where it sees no sky
+_SKY, _LAMP, _GLOSS = 0.80, 0.46, 0.07  # shares of the light; above 1 in all, so that lit faces are bright
+_UNDERSIDE = 0.58  # light of the sky on faces that look down, relative to those that look up
+_LAMP_IN_DARK = 0.35  # share of the lamp that reaches where the sky does not
+_DEPTH_STEP = 0.004  # of the scene's size: a larger step in depth from pixel to pixel is an edge
+_OUTLINE_DIRECTIONS = 240
+_OUTLINE_VERTICES = 30000
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PosedMesh:
+    """A mesh as it stands in the picture."""
+
+    vertices: FloatArray
+    """World frame [m], shape (V, 3)."""
+    faces: IntArray
+    """Shape (F, 3)."""
+    color: FloatArray
+    """sRGB in [0, 1], shape (3,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PictureScene:
+    """What a picture shows; what is derived from it is computed once for all points of view."""
+
+    meshes: tuple[PosedMesh, ...]
+    """At least one face in all."""
+    glyphs: tuple[PosedMesh, ...] = ()
+    """Drawn over the meshes; where a mesh is in front of them they are pale."""
+
+    @cached_property
+    def rays(self) -> RayScene:
+        """The meshes for ray casting."""
+        return RayScene([(mesh.vertices, mesh.faces) for mesh in self.meshes])
+
+    @cached_property
+    def outline(self) -> FloatArray:
+        """Extreme points in many directions, glyphs included, shape (n, 3): enough to fit a camera, and few."""
+        index = np.arange(_OUTLINE_DIRECTIONS)
+        height, turn = 1.0 - (2.0 * index + 1.0) / _OUTLINE_DIRECTIONS, index * np.pi * (3.0 - np.sqrt(5.0))
+        radius = np.sqrt(1.0 - height**2)
+        directions = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
+        used = np.zeros(len(self.rays.vertices), dtype=bool)
+        used[self.rays.faces] = True
+        # A dense mesh has another vertex next to the one that is left out.
+        vertices = self.rays.vertices[used][:: 1 + np.count_nonzero(used) // _OUTLINE_VERTICES]
+        points = np.concatenate([vertices, *(glyph.vertices for glyph in self.glyphs)])
+        extremes: FloatArray = points[np.unique((directions @ points.T).argmax(axis=1))]
+        return extremes
+
+    def visible_pixels(self, camera: Camera) -> IntArray:
+        """Count the pixels that show each mesh, shape (len(meshes),)."""
+        hits = self.rays.first_hits(*camera.rays(_pixel_centers(camera)))
+        return np.bincount(hits.mesh[hits.met], minlength=len(self.meshes))
+
+
+def render_scene(scene: PictureScene, camera: Camera, config: PreviewConfig) -> Image.Image:
+    """Draw meshes over a light floor, and arrows that shine faintly through them.
+
+    Args:
+        scene: What to show.
+        camera: Point of view and size of the picture.
+        config: Quality.
+
+    Returns:
+        An RGB image of the camera's size; the same input gives the same pixels.
+    """
+    return _Painter(scene, camera, config).paint()
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """Rays of a picture and what they meet."""
+
+    pixels: FloatArray
+    """Picture positions [pixels], shape (n, 2)."""
+    origins: FloatArray
+    directions: FloatArray
+    hits: RayHits
+    normals: FloatArray
+    """Smooth, facing the viewer, zero where nothing is met, shape (n, 3)."""
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Where the rays meet a mesh [m], shape (n, 3); their origin where they meet none."""
+        distance = np.where(self.hits.met, self.hits.distance, 0.0)
+        points: FloatArray = self.origins + distance[:, None] * self.directions
+        return points
+
+
+class _Painter:
+    """One picture; holds what all its pixels share."""
+
+    def __init__(self, scene: PictureScene, camera: Camera, config: PreviewConfig) -> None:
+        self.rays = scene.rays
+        self.glyphs = RayScene([(mesh.vertices, mesh.faces) for mesh in scene.glyphs]) if scene.glyphs else None
+        self.colors = _linear(np.array([mesh.color for mesh in scene.meshes]))
+        self.glyph_colors = _linear(np.array([mesh.color for mesh in scene.glyphs]).reshape(-1, 3))
+        self.camera, self.config = camera, config
+        self.shape = (camera.height, camera.width)
+        self.sky = SkyLight(self.rays, config)
+        self.floor = FloorShadow(self.rays, config)
+
+    def paint(self) -> Image.Image:
+        """Cast one ray per pixel, then more where one is not enough."""
+        view = self._view(_pixel_centers(self.camera))
+        light = self.sky.of_picture(view.points, view.normals, view.hits, self.camera).ravel()
+        image = self._colors(view, light)
+        rough = np.flatnonzero(self._edges(view) | self._near_glyphs(view))
+        image[rough] = self._subsampled(rough, view, light)
+        return Image.fromarray(np.round(_srgb(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
+
+    def _view(self, pixels: FloatArray) -> _View:
+        origins, directions = self.camera.rays(pixels)
+        hits = self.rays.first_hits(origins, directions)
+        met = hits.met
+        face = hits.face[met]
+        smooth = self.rays.smooth_normals(face, hits.barycentric[met], np.deg2rad(self.config.smooth_angle))
+        away = np.einsum("ij,ij->i", self.rays.face_normals[face], directions[met]) > 0.0
+        normals = np.zeros(directions.shape)
+        normals[met] = np.where(away[:, None], -smooth, smooth)
+        return _View(pixels, origins, directions, hits, normals)
+
+    def _colors(self, view: _View, light: FloatArray) -> FloatArray:
+        """Linear colour of what each ray meets: a mesh, the floor or the background, shape (n, 3)."""
+        shadow = self.floor.seen(view.origins, view.directions, view.pixels, self.camera)
+        colors = _linear(BACKGROUND) * (1.0 - _FLOOR_SHADOW * shadow)[:, None]
+        met = view.hits.met
+        normal, sky = view.normals[met], light[met]
+        upward = _UNDERSIDE + (1.0 - _UNDERSIDE) * 0.5 * (1.0 + normal[:, 2])
+        lamp = np.clip(normal @ self._lamp, 0.0, 1.0)
+        halfway = self._lamp - view.directions[met]
+        cosine = np.einsum("ij,ij->i", normal, halfway) / np.sqrt(np.einsum("ij,ij->i", halfway, halfway))
+        matt = _SKY * upward * sky + _LAMP * lamp * (_LAMP_IN_DARK + (1.0 - _LAMP_IN_DARK) * sky)
+        gloss = _GLOSS * np.clip(cosine, 0.0, 1.0) ** 40 * sky
+        colors[met] = self.colors[view.hits.mesh[met]] * matt[:, None] + gloss[:, None]
+        return colors
+
+    @cached_property
+    def _lamp(self) -> FloatArray:
+        """Unit direction to the lamp: behind the viewer, above and to the left."""
+        right, down, forward = self.camera.axes
+        lamp = -0.62 * right - 0.75 * down - forward
+        return np.asarray(lamp / np.linalg.norm(lamp), dtype=np.float64)
+
+    def _edges(self, view: _View) -> BoolArray:
+        """Pixels whose neighbours show another surface, shape (h * w,)."""
+        mesh = view.hits.mesh.reshape(self.shape)
+        normal = view.normals.reshape(*self.shape, 3)
+        depth = np.where(view.hits.met, view.hits.distance, 0.0).reshape(self.shape)
+        edge = np.zeros(self.shape, dtype=bool)
+        for first, second in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
+            bend = np.einsum("ijk,ijk->ij", normal[first], normal[second]) < SAME_SURFACE_COSINE
+            step = np.abs(depth[first] - depth[second]) > _DEPTH_STEP * self.rays.size
+            differs = (mesh[first] != mesh[second]) | ((mesh[first] >= 0) & (bend | step))
+            edge[first] |= differs
+            edge[second] |= differs
+        return edge.ravel()
+
+    def _near_glyphs(self, view: _View) -> BoolArray:
+        if self.glyphs is None:
+            return np.zeros(len(view.pixels), dtype=bool)
+        met = self.glyphs.first_hits(view.origins, view.directions).met.reshape(self.shape)
+        near: BoolArray = binary_dilation(met, iterations=2).ravel()
+        return near
+
+    def _subsampled(self, chosen: IntArray, coarse: _View, coarse_light: FloatArray) -> FloatArray:
+        """Mean linear colour of a grid of rays in each chosen pixel, shape (len(chosen), 3)."""
+        side = self.config.subsamples
+        ticks = (np.arange(side) + 0.5) / side - 0.5
+        grid = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
+        fine = self._view((coarse.pixels[chosen][:, None] + grid).reshape(-1, 2))
+        light = self._fine_light(fine, np.repeat(chosen, side * side), coarse, coarse_light)
+        colors = self._with_glyphs(self._colors(fine, light), fine)
+        mean: FloatArray = colors.reshape(len(chosen), side * side, 3).mean(axis=1)
+        return mean
+
+    def _fine_light(self, fine: _View, pixel: IntArray, coarse: _View, coarse_light: FloatArray) -> FloatArray:
+        """Light of the nearest pixel that shows the same surface; rays of their own for what no pixel shows."""
+        light = np.ones(len(pixel))
+        left = np.flatnonzero(fine.hits.met)
+        row, column = np.divmod(pixel, self.shape[1])
+        for down, right in ((0, 0), (0, -1), (0, 1), (-1, 0), (1, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)):
+            near_row = np.clip(row[left] + down, 0, self.shape[0] - 1)
+            near = near_row * self.shape[1] + np.clip(column[left] + right, 0, self.shape[1] - 1)
+            cosine = np.einsum("ij,ij->i", fine.normals[left], coarse.normals[near])
+            alike = (fine.hits.mesh[left] == coarse.hits.mesh[near]) & (cosine > SAME_SURFACE_COSINE)
+            light[left[alike]] = coarse_light[near[alike]]
+            left = left[~alike]
+        light[left] = self.sky.open_share(fine.points[left], fine.normals[left], left % len(self.sky.sets))
+        return light
+
+    def _with_glyphs(self, colors: FloatArray, view: _View) -> FloatArray:
+        """Lay the arrows over colours, pale where a mesh is nearer."""
+        if self.glyphs is None:
+            return colors
+        hits = self.glyphs.first_hits(view.origins, view.directions)
+        met = hits.met
+        facing = np.abs(np.einsum("ij,ij->i", self.glyphs.face_normals[hits.face[met]], view.directions[met]))
+        shaded = self.glyph_colors[hits.mesh[met]] * (0.55 + 0.5 * facing)[:, None]
+        in_front = hits.distance[met] <= view.hits.distance[met]
+        opacity = np.where(in_front, 1.0, self.config.hidden_glyph)[:, None]
+        colors[met] = opacity * shaded + (1.0 - opacity) * colors[met]
+        return colors
+
+
+def _pixel_centers(camera: Camera) -> FloatArray:
+    """Picture positions of all pixels, row by row, shape (h * w, 2)."""
+    x, y = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
+    return np.column_stack([x.ravel(), y.ravel()])
+
+
+def _linear(srgb: FloatArray) -> FloatArray:
+    values: FloatArray = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    return values
+
+
+def _srgb(linear: FloatArray) -> FloatArray:
+    clipped = np.clip(linear, 0.0, 1.0)
+    values: FloatArray = np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
+    return values

@@ -1,0 +1,198 @@
+"""Pictures of a whole model: at rest beside moved, and the story from loose parts to a mechanism."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from kinematify.geometry.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.model.palette import link_colors
+from kinematify.model.scene import (
+    GLYPH_COLORS,
+    best_azimuth,
+    camera_for,
+    joint_glyphs,
+    moving_joints,
+    opened_configuration,
+    posed_meshes,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import PreviewConfig
+    from kinematify.model.kinematic_model import KinematicModel
+
+_INK = (45, 50, 60)
+_FAINT = (120, 126, 138)
+_MARGIN = 34  # [pixels] around the object in a panel
+_LEAST_SHARE = 60  # [percent] of the configured width and height that a panel keeps in any case
+_CAPTION = 46  # [pixels] height of the line above a panel
+_LEGEND_ROW = 30  # [pixels]
+_LEGEND_COLUMN = 370  # [pixels] room for a swatch, a name and a type
+_LEGEND_PAD = 24  # [pixels]
+_UNSEGMENTED = np.array([0.74, 0.75, 0.77])  # anonymous parts are all the same grey
+
+
+@dataclass(frozen=True)
+class _Panel:
+    caption: str
+    scene: PictureScene
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """One line of the legend."""
+
+    color: FloatArray
+    """sRGB of the swatch, shape (3,)."""
+    name: str
+    kind: str
+    ink: tuple[int, int, int]
+    """Colour of the word for the kind."""
+
+
+def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
+    """Write a PNG with the model at rest and with every joint moved, side by side, and a legend of its joints.
+
+    Args:
+        model: What to show.
+        path: PNG file to write.
+        config: Size and quality.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    _draw(model, _rest_and_moved(model, config, ("at rest", "every joint moved")), config).save(path)
+
+
+def render_story(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
+    """Write a PNG with three panels: the anonymous parts taken apart, the joints found, the mechanism moved.
+
+    Args:
+        model: What to show.
+        path: PNG file to write.
+        config: Size and quality.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    rest, moved = _rest_and_moved(model, config, ("the joints that were found", "the mechanism, moved"))
+    loose = _Panel("parts in, without names", _exploded(rest.scene, config))
+    _draw(model, (loose, rest, moved), config).save(path)
+
+
+def _rest_and_moved(model: KinematicModel, config: PreviewConfig, captions: tuple[str, str]) -> tuple[_Panel, _Panel]:
+    rest, moved = (
+        _Panel(caption, _scene(model, q, config))
+        for caption, q in zip(captions, ({}, opened_configuration(model, config)), strict=True)
+    )
+    return rest, moved
+
+
+def _scene(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> PictureScene:
+    """All links in their colours, moving ones first, and the arrows of their joints."""
+    meshes = posed_meshes(model, q, link_colors(model))
+    moving = [joint.child for joint in moving_joints(model)]
+    order = [*moving, *(link.name for link in model.links if link.name not in set(moving))]
+    return PictureScene(
+        meshes=tuple(meshes[name] for name in order), glyphs=tuple(joint_glyphs(model, q, config).values())
+    )
+
+
+def _exploded(scene: PictureScene, config: PreviewConfig) -> PictureScene:
+    """Grey copies moved away from the middle of all, the farther off the more."""
+    middles = np.array([mesh.vertices[mesh.faces.reshape(-1)].mean(axis=0) for mesh in scene.meshes])
+    offsets = config.exploded * (middles - middles.mean(axis=0))
+    return PictureScene(
+        meshes=tuple(
+            PosedMesh(vertices=mesh.vertices + offset, faces=mesh.faces, color=_UNSEGMENTED)
+            for mesh, offset in zip(scene.meshes, offsets, strict=True)
+        )
+    )
+
+
+def _draw(model: KinematicModel, panels: Sequence[_Panel], config: PreviewConfig) -> Image.Image:
+    """Panels in a row under their captions, the legend below; the last two are seen by the same camera."""
+    shared = [panel.scene for panel in panels[-2:]]
+    azimuth = best_azimuth(model, shared, config)
+    groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
+    size = _panel_size(groups, azimuth, config)
+    legend = _legend(model, config, size[0] * len(panels))
+    sheet = Image.new("RGB", (legend.width, _CAPTION + size[1] + legend.height), _bytes(BACKGROUND))
+    for index, (panel, group) in enumerate(zip(panels, groups, strict=True)):
+        left = index * size[0]
+        camera = camera_for(group, azimuth, config, size=size, margin=_MARGIN)
+        sheet.paste(render_scene(panel.scene, camera, config), (left, _CAPTION))
+        center = (left + size[0] // 2, _CAPTION // 2 + 6)
+        ImageDraw.Draw(sheet).text(center, panel.caption, fill=_INK, font=ImageFont.load_default(24), anchor="mm")
+    sheet.paste(legend, (0, _CAPTION + size[1]))
+    return sheet
+
+
+def _panel_size(groups: Sequence[Sequence[PictureScene]], azimuth: float, config: PreviewConfig) -> tuple[int, int]:
+    """Width and height that all panels need: less than configured where everything shown is slim or flat."""
+    largest = (config.panel_width, config.panel_height)
+    needed = np.zeros(2)
+    for group in groups:
+        camera = camera_for(group, azimuth, config, size=largest, margin=_MARGIN)
+        seen, _ = camera.project(np.concatenate([scene.outline for scene in group]))
+        needed = np.maximum(needed, np.ptp(seen, axis=0) + 2.0 * _MARGIN)
+    least = [_LEAST_SHARE * pixels // 100 for pixels in largest]
+    width, height = (max(round(float(need)), few) for need, few in zip(needed, least, strict=True))
+    return min(width, largest[0]), min(height, largest[1])
+
+
+def _legend(model: KinematicModel, config: PreviewConfig, width: int) -> Image.Image:
+    """Swatch, part and joint type of the base and every joint, in columns; what does not fit is counted."""
+    entries = _legend_entries(model)
+    hidden = max(len(entries) - config.legend_entries, 0)
+    columns = max(width // _LEGEND_COLUMN, 1)
+    rows = -(-min(len(entries), config.legend_entries) // columns)
+    image = Image.new("RGB", (width, _LEGEND_ROW * (rows + (hidden > 0)) + 2 * _LEGEND_PAD), _bytes(BACKGROUND))
+    draw = ImageDraw.Draw(image)
+    for index, entry in enumerate(entries[: config.legend_entries]):
+        row, column = divmod(index, columns)
+        corner = (_LEGEND_PAD + column * (width // columns), _LEGEND_PAD + row * _LEGEND_ROW)
+        _draw_entry(draw, corner, entry)
+    if hidden:
+        place = (_LEGEND_PAD, _LEGEND_PAD + rows * _LEGEND_ROW + _LEGEND_ROW // 2)
+        draw.text(place, f"and {hidden} more", fill=_FAINT, font=ImageFont.load_default(17), anchor="lm")
+    return image
+
+
+def _legend_entries(model: KinematicModel) -> list[_Entry]:
+    colors = link_colors(model)
+    entries = [_Entry(colors[model.root], model.root, "base", _FAINT)]
+    for joint in model.joints:
+        ink = _bytes(GLYPH_COLORS[joint.kind]) if joint.kind in GLYPH_COLORS else _FAINT
+        entries.append(_Entry(colors[joint.child], joint.child, joint.kind.value, ink))
+    return entries
+
+
+def _draw_entry(draw: ImageDraw.ImageDraw, corner: tuple[int, int], entry: _Entry) -> None:
+    left, middle = corner[0], corner[1] + _LEGEND_ROW // 2
+    font = ImageFont.load_default(17)
+    draw.rounded_rectangle((left, middle - 8, left + 16, middle + 8), radius=4, fill=_bytes(entry.color))
+    name = _shortened(entry.name, font, _LEGEND_COLUMN - 60 - font.getlength(entry.kind))
+    draw.text((left + 26, middle), name, fill=_INK, font=font, anchor="lm")
+    after = left + 36 + font.getlength(name)
+    draw.text((after, middle), entry.kind, fill=entry.ink, font=font, anchor="lm")
+
+
+def _shortened(name: str, font: ImageFont.FreeTypeFont | ImageFont.ImageFont, room: float) -> str:
+    """The name, its end replaced by dots where it does not fit [pixels]."""
+    if font.getlength(name) <= room:
+        return name
+    kept = next(count for count in range(len(name), -1, -1) if font.getlength(name[:count] + "...") <= room)
+    return name[:kept] + "..."
+
+
+def _bytes(color: FloatArray) -> tuple[int, int, int]:
+    red, green, blue = (round(float(value) * 255.0) for value in color)
+    return red, green, blue

@@ -1,0 +1,175 @@
+"""What a picture of a model shows: posed meshes, joint arrows, a configuration that opens it, a good point of view."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.geometry.camera import fit_camera
+from kinematify.geometry.glyphs import sliding_arrow, turning_arrow
+from kinematify.geometry.picture import PosedMesh
+from kinematify.joints.candidate import JointType
+from kinematify.model.kinematics import forward_kinematics
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.config import PreviewConfig
+    from kinematify.geometry.camera import Camera
+    from kinematify.geometry.picture import PictureScene
+    from kinematify.model.kinematic_model import Joint, KinematicModel
+
+GLYPH_COLORS = {
+    JointType.REVOLUTE: np.array([0.84, 0.10, 0.16]),
+    JointType.CONTINUOUS: np.array([0.84, 0.10, 0.16]),
+    JointType.PRISMATIC: np.array([0.07, 0.33, 0.86]),
+}
+"""sRGB of the arrows by joint type."""
+_SWEEP = {JointType.REVOLUTE: np.deg2rad(250.0), JointType.CONTINUOUS: np.deg2rad(335.0)}
+_CONTINUOUS_TURN = np.deg2rad(35.0)  # shows that it turns without looking like an end stop
+_CHAIN_TURN = np.deg2rad(22.0)  # for models of many joints
+_ARROW_LENGTHS = (0.16, 0.75)  # of the model's diagonal: never lost, never larger than the object
+_OVERHANG = 1.15  # length of an axis line over that of its part
+_SLIDE_OVERHANG = 0.14  # of the model's diagonal: the heads of a sliding arrow stand out of its part
+_AXIS_SHARE = 0.3  # of a view's worth: how far axes lie across the line of sight
+_OFF_AXIS = 0.66  # of a step between views: most objects stand parallel to the axes and look flat from there
+
+
+def moving_joints(model: KinematicModel) -> tuple[Joint, ...]:
+    """Joints that are not fixed, in the model's order."""
+    return tuple(joint for joint in model.joints if joint.kind is not JointType.FIXED)
+
+
+def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[str, float]:
+    """A configuration in which every joint is clearly moved, towards its larger limit.
+
+    Returns:
+        Joint name -> position [rad or m].
+    """
+    moving = moving_joints(model)
+    max_turn = np.deg2rad(config.max_turn) if len(moving) <= config.chain_joints else _CHAIN_TURN
+    max_slide = config.max_slide * _diagonal(model)
+    q = {}
+    for joint in moving:
+        if joint.kind is JointType.CONTINUOUS:
+            q[joint.name] = float(min(_CONTINUOUS_TURN, max_turn))
+            continue
+        cap = max_turn if joint.kind.turns else max_slide
+        # Positive opens; the other way is taken only where nearly all of the range lies there.
+        end = joint.upper if joint.upper > 0.1 * -joint.lower else joint.lower
+        q[joint.name] = float(np.clip(config.moved_fraction * end, -cap, cap))
+    return q
+
+
+def posed_meshes(
+    model: KinematicModel, q: Mapping[str, float], colors: Mapping[str, FloatArray]
+) -> dict[str, PosedMesh]:
+    """Every link's mesh, set-aside visuals included, as it stands at a configuration.
+
+    Args:
+        model: The model.
+        q: Joint name -> position [rad or m].
+        colors: Link name -> sRGB (3,).
+
+    Returns:
+        Link name -> mesh in the world frame.
+    """
+    T_world_link = forward_kinematics(model, q)
+    posed = {}
+    for link in model.links:
+        parts = (link.visual, *(part for part in link.fixed_visuals if len(part.faces)))
+        starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+        vertices = np.concatenate([part.vertices for part in parts])
+        faces = np.concatenate([part.faces + start for part, start in zip(parts, starts[:-1], strict=True)])
+        T_moved = T_world_link[link.name] @ np.linalg.inv(link.T_world_link)
+        moved = vertices @ T_moved[:3, :3].T + T_moved[:3, 3]
+        posed[link.name] = PosedMesh(vertices=moved, faces=faces, color=colors[link.name])
+    return posed
+
+
+def joint_glyphs(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> dict[str, PosedMesh]:
+    """An arrow for every joint that moves, where its axis stands at a configuration.
+
+    Returns:
+        Joint name -> arrow in the world frame.
+    """
+    T_world_link = forward_kinematics(model, q)
+    diagonal = _diagonal(model)
+    glyphs = {}
+    for joint in moving_joints(model):
+        vertices, faces = _arrow_at_rest(model, joint, diagonal, config)
+        # The axis is fixed in the parent; the arrow rides on the child, about the same line.
+        T_moved = T_world_link[joint.child] @ np.linalg.inv(model.link_by_name[joint.child].T_world_link)
+        moved = vertices @ T_moved[:3, :3].T + T_moved[:3, 3]
+        glyphs[joint.name] = PosedMesh(vertices=moved, faces=faces, color=GLYPH_COLORS[joint.kind])
+    return glyphs
+
+
+def best_azimuth(model: KinematicModel, scenes: Sequence[PictureScene], config: PreviewConfig) -> float:
+    """The side from which the moving parts and their axes are seen best in all scenes together.
+
+    Args:
+        model: The model, for its axes.
+        scenes: Each with the meshes of moving parts first.
+        config: Views to try.
+
+    Returns:
+        Where the camera should stand, from x towards y [rad].
+    """
+    moving = moving_joints(model)
+    axes = np.array([joint.axis for joint in moving]).reshape(-1, 3)
+
+    def worth(azimuth: float) -> float:
+        size = (config.probe_pixels, round(config.probe_pixels * config.panel_height / config.panel_width))
+        probe = camera_for(scenes, azimuth, config, size=size, margin=2.0)
+        # The root weighs large parts less, so that a knob counts beside a door.
+        seen = sum(float(np.sqrt(scene.visible_pixels(probe)[: len(moving)]).sum()) for scene in scenes)
+        across = np.sqrt(1.0 - np.clip(axes @ probe.forward, -1.0, 1.0) ** 2)
+        return seen * (1.0 - _AXIS_SHARE + _AXIS_SHARE * float(across.mean() if len(across) else 1.0))
+
+    step = 2.0 * np.pi / config.azimuths
+    return max((step * (index + _OFF_AXIS) for index in range(config.azimuths)), key=worth)
+
+
+def camera_for(
+    scenes: Sequence[PictureScene], azimuth: float, config: PreviewConfig, *, size: tuple[int, int], margin: float
+) -> Camera:
+    """Camera that shows all scenes inside a margin [pixels] of a picture of some width and height [pixels]."""
+    return fit_camera(
+        np.concatenate([scene.outline for scene in scenes]),
+        azimuth=azimuth,
+        elevation=float(np.deg2rad(config.elevation)),
+        field_of_view=float(np.deg2rad(config.field_of_view)),
+        size=size,
+        margin=margin,
+    )
+
+
+def _arrow_at_rest(
+    model: KinematicModel, joint: Joint, diagonal: float, config: PreviewConfig
+) -> tuple[FloatArray, IntArray]:
+    """Arrow of a joint at zero configuration, world frame; beside its part's middle."""
+    link = model.link_by_name[joint.child]
+    axis = link.T_world_link[:3, :3] @ joint.axis
+    used = link.part.vertices[link.part.faces.reshape(-1)]
+    along = (used - link.T_world_link[:3, 3]) @ axis
+    low, high = float(along.min()), float(along.max())
+    # Arrows of many joints must leave room for each other.
+    crowd = min(1.0, float(np.sqrt(config.chain_joints / len(moving_joints(model)))))
+    shortest, longest = _ARROW_LENGTHS[0] * crowd * diagonal, _ARROW_LENGTHS[1] * diagonal
+    radius = config.glyph_radius * crowd * diagonal
+    if joint.kind is JointType.PRISMATIC:
+        middle = 0.5 * (used.min(axis=0) + used.max(axis=0))
+        length = min(max(high - low, 0.0) + 2.0 * _SLIDE_OVERHANG * crowd * diagonal, longest)
+        return sliding_arrow(middle, axis, length, radius)
+    center = link.T_world_link[:3, 3] + 0.5 * (low + high) * axis
+    length = float(np.clip(_OVERHANG * (high - low), shortest, longest))
+    return turning_arrow(center, axis, length, radius, _SWEEP[joint.kind])
+
+
+def _diagonal(model: KinematicModel) -> float:
+    low = np.min([link.part.bounds[0] for link in model.links], axis=0)
+    high = np.max([link.part.bounds[1] for link in model.links], axis=0)
+    return float(np.linalg.norm(high - low))
