@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     IntArray = NDArray[np.int64]
 
 
-def read_only(array: NDArray, dtype: type) -> NDArray:  # type: ignore[type-arg]
+def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     """Return a C-contiguous copy of `array` that refuses to be written."""
-    copy = np.array(array, dtype=dtype, order="C", copy=True)
+    copy: NDArray[Any] = np.array(array, dtype=dtype, order="C", copy=True)
     copy.setflags(write=False)
     return copy
 
@@ -105,9 +105,12 @@ class Assembly:
     """Part name -> mesh as given, for the parts that were simplified for inference; output uses these."""
     warnings: tuple[str, ...] = ()
     """What the user should know about the input, one sentence each."""
+    originals: Mapping[str, Part] = field(default_factory=dict)
+    """Part name -> full mesh, for parts that were simplified for the inference; the output shows these."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "original_names", MappingProxyType(dict(self.original_names)))
+        object.__setattr__(self, "originals", MappingProxyType(dict(self.originals)))
         object.__setattr__(self, "original_parts", MappingProxyType(dict(self.original_parts)))
 
     @property

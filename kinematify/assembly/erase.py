@@ -1,0 +1,265 @@
+"""Erasing the kinematics of a robot description: anonymous rigid parts in one pose, and the truth beside them.
+
+The protocol of the benchmark: links joined by fixed joints are one part, vertices are baked into world coordinates,
+order and names are shuffled. A part is a rigid group that has geometry. Movable links without geometry (the hidden
+cross of a universal joint) are no parts: the joints on both sides of them become a chain between two parts.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.erased_files import truth_path, write_parts
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.part import Assembly, Part
+from kinematify.assembly.robot import (
+    RobotDescription,
+    forward_kinematics,
+    joint_values,
+    rest_configuration,
+    rigid_groups,
+    rotation_about,
+)
+from kinematify.assembly.truth import GroundTruth, TrueJoint
+from kinematify.assembly.weld import welded
+from kinematify.errors import DescriptionError
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.random import Generator
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.robot import DescribedJoint, RigidGroup
+
+__all__ = ["ErasedModel", "GroundTruth", "TrueJoint", "erase", "truth_path", "write_erased"]
+
+POSES = ("rest", "random")
+RANDOM_SHARE = 0.3
+"""Largest motion of a joint in a random pose, as a share of half its range (the benchmark's protocol).
+
+A continuous joint counts as one with the range -180 to 180 deg."""
+_WELD = 1e-9
+"""Vertices closer than this fraction of their mesh's diagonal are one: equal but for rounding."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErasedModel:
+    """What a method may see, and what it must not."""
+
+    parts: tuple[Part, ...]
+    """World frame of the erased pose; part i is node i of the truth."""
+    truth: GroundTruth
+
+    @property
+    def assembly(self) -> Assembly:
+        """The parts alone."""
+        return Assembly(parts=self.parts, source="erased model")
+
+
+@dataclass(frozen=True)
+class _Way:
+    """From one part to another."""
+
+    start: str
+    """Top link of the parent part's group."""
+    steps: tuple[_Step, ...]
+
+
+@dataclass(frozen=True)
+class _Step:
+    """One joint on the way from one part to another."""
+
+    joint: DescribedJoint
+    downward: bool
+    """False where the way leads from the child link to the parent link."""
+
+
+def erase(
+    description: RobotDescription, *, pose: str = "rest", seed: int = 0, yaw_deg: float = 0.0, shuffle: bool = True
+) -> ErasedModel:
+    """Turn a description into anonymous rigid parts and the ground truth about their joints.
+
+    The root part is the first rigid group with geometry below the root link; joints above it move nothing against
+    anything and are listed in the truth as dropped, as are joints that carry no geometry.
+
+    Args:
+        description: The robot.
+        pose: ``rest`` (`rest_configuration`), or ``random``: each joint moved by up to 30 % of half its range
+            around rest, within its limits, followers following.
+        seed: Draws the random pose and the order of parts, vertices and faces.
+        yaw_deg: Turn of everything about the world's z axis [deg].
+        shuffle: False keeps parts (parents first), vertices and faces in the order of the description.
+
+    Raises:
+        DescriptionError: `pose` is unknown, or no link has geometry.
+    """
+    pose_random, order_random = (np.random.default_rng([seed, stream]) for stream in range(2))
+    q = _configuration(description, pose, pose_random)
+    T_world_link = _turned(forward_kinematics(description, q), np.deg2rad(yaw_deg))
+    groups = [group for group in rigid_groups(description) if group.has_geometry]
+    if not groups:
+        raise DescriptionError(f"No link of {description.name} has geometry, so there is no part to erase it to.")
+    order = order_random.permutation(len(groups)) if shuffle else np.arange(len(groups))
+    shown = [groups[k] for k in order]
+    parts = [_baked(description, group, f"part_{k:03d}", T_world_link) for k, group in enumerate(shown)]
+    if shuffle:
+        parts = [_scrambled(part, order_random) for part in parts]
+    index = {group.top: k for k, group in enumerate(shown)}
+    joints = _true_joints(_ways(description, groups), index, q, T_world_link)
+    used = {joint.source for joint in joints}
+    truth = GroundTruth(
+        name=description.name,
+        part_names=tuple(part.name for part in parts),
+        part_links=tuple(group.links for group in shown),
+        joints=joints,
+        dropped=tuple(name for name in q if name not in used),
+        configuration=q,
+        pose=pose,
+        seed=seed,
+        yaw_deg=yaw_deg,
+    )
+    return ErasedModel(parts=tuple(parts), truth=truth)
+
+
+def write_erased(erased: ErasedModel, folder: Path) -> Path:
+    """Write ``part_000.obj`` and so on into a new folder, without loss, and the truth as ``FOLDER.truth.json``.
+
+    Returns:
+        The path of the truth.
+
+    Raises:
+        OutputError: The folder or the truth exists already, or cannot be written. Nothing is left half-written.
+    """
+    return write_parts(erased.parts, erased.truth, folder)
+
+
+def _configuration(description: RobotDescription, pose: str, random: Generator) -> dict[str, float]:
+    """Value of every movable joint."""
+    if pose not in POSES:
+        raise DescriptionError(f"The pose {pose!r} is unknown. Choose one of {', '.join(POSES)}.")
+    values = rest_configuration(description)
+    if pose == "random":
+        leaders = [j for j in description.joints if j.mimic is None and j.kind is not JointType.FIXED]
+        values = joint_values(description, {j.name: _moved(j, values[j.name], random) for j in leaders})
+    return {j.name: values[j.name] for j in description.joints if j.kind is not JointType.FIXED}
+
+
+def _moved(joint: DescribedJoint, rest: float, random: Generator) -> float:
+    half_range = np.pi if joint.kind is JointType.CONTINUOUS else 0.5 * (joint.upper - joint.lower)
+    step = RANDOM_SHARE * half_range * random.uniform(-1.0, 1.0)
+    return float(np.clip(rest + step, joint.lower, joint.upper))
+
+
+def _turned(T_world_link: Mapping[str, FloatArray], yaw: float) -> dict[str, FloatArray]:
+    turn = np.eye(4)
+    if yaw != 0.0:
+        turn[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), yaw)
+    return {link: turn @ transform for link, transform in T_world_link.items()}
+
+
+def _baked(description: RobotDescription, group: RigidGroup, name: str, T_world_link: Mapping[str, FloatArray]) -> Part:
+    """All meshes of a rigid group as one, in the world frame."""
+    vertices, faces, count = [], [], 0
+    for link in group.links:
+        transform = T_world_link[link]
+        for mesh in description.link_by_name[link].meshes:
+            # Welded in the link frame, where equal vertices are still equal to the last digit.
+            points, triangles = welded(mesh.vertices, mesh.faces, _WELD)
+            vertices.append(points @ transform[:3, :3].T + transform[:3, 3])
+            faces.append(triangles + count)
+            count += len(points)
+    return Part(name=name, vertices=np.concatenate(vertices), faces=np.concatenate(faces))
+
+
+def _scrambled(part: Part, random: Generator) -> Part:
+    """The same surface with vertices, faces and the first corner of each face in random order."""
+    vertex_order = random.permutation(len(part.vertices))
+    faces = np.argsort(vertex_order)[part.faces[random.permutation(len(part.faces))]]
+    corners = (random.integers(3, size=len(faces))[:, None] + np.arange(3)) % 3
+    return Part(name=part.name, vertices=part.vertices[vertex_order], faces=np.take_along_axis(faces, corners, axis=1))
+
+
+def _true_joints(
+    ways: Mapping[str, _Way], index: Mapping[str, int], q: Mapping[str, float], T_world_link: Mapping[str, FloatArray]
+) -> tuple[TrueJoint, ...]:
+    """Joints between parts; `index` is the part of a group's top link."""
+    seen: Counter[str] = Counter()
+    joints = []
+    for top, way in ways.items():
+        for serial, step in enumerate(way.steps):
+            # A joint between empty links that several parts hang on stands in several chains.
+            seen[step.joint.name] += 1
+            copy = seen[step.joint.name]
+            joint = _true_joint(step, q[step.joint.name], T_world_link)
+            joints.append(
+                replace(
+                    joint,
+                    name=joint.source if copy == 1 else f"{joint.source}#{copy}",
+                    parent=index[way.start],
+                    child=index[top],
+                    serial=serial,
+                    chain_length=len(way.steps),
+                )
+            )
+    return tuple(joints)
+
+
+def _true_joint(step: _Step, value: float, T_world_link: Mapping[str, FloatArray]) -> TrueJoint:
+    """The joint in the world frame, ends still open; walked against its direction, its axis points the other way."""
+    joint, sign = step.joint, 1.0 if step.downward else -1.0
+    lower, upper = sorted((sign * (joint.lower - value), sign * (joint.upper - value)))
+    # The child's frame moves about or along the axis, so that its origin and the axis in it stay on the line.
+    T_world_child = T_world_link[joint.child]
+    return TrueJoint(
+        name=joint.name,
+        source=joint.name,
+        kind=joint.kind,
+        parent=-1,
+        child=-1,
+        axis=sign * (T_world_child[:3, :3] @ joint.axis),
+        pivot=T_world_child[:3, 3],
+        lower=lower,
+        upper=upper,
+        value=sign * value,
+        mimic=joint.mimic,
+    )
+
+
+def _ways(description: RobotDescription, groups: Sequence[RigidGroup]) -> dict[str, _Way]:
+    """The way to every group with geometry but the first, from its parent group; keyed by the group's top link."""
+    top_of = {link: group.top for group in rigid_groups(description) for link in group.links}
+    upward = {group.top: _movable_upward(description, top_of, group.top) for group in groups}
+    root = groups[0].top
+    return {group.top: _way(upward[group.top], upward[root], root, top_of, set(upward)) for group in groups[1:]}
+
+
+def _movable_upward(description: RobotDescription, top_of: Mapping[str, str], top: str) -> list[DescribedJoint]:
+    """Movable joints from a rigid group up to the root link, nearest first."""
+    found: list[DescribedJoint] = []
+    while top in description.joint_above:
+        found.append(description.joint_above[top])
+        top = top_of[found[-1].parent]
+    return found
+
+
+def _way(
+    upward: Sequence[DescribedJoint],
+    root_upward: Sequence[DescribedJoint],
+    root: str,
+    top_of: Mapping[str, str],
+    solid: Container[str],
+) -> _Way:
+    """The way from the nearest group with geometry above, or from the root part where all above is empty."""
+    for k, joint in enumerate(upward):
+        if top_of[joint.parent] in solid:
+            return _Way(top_of[joint.parent], tuple(_Step(item, True) for item in reversed(upward[: k + 1])))
+    shared = {joint.name for joint in upward} & {joint.name for joint in root_upward}
+    climb = [_Step(joint, False) for joint in root_upward if joint.name not in shared]
+    descent = [_Step(joint, True) for joint in reversed(upward) if joint.name not in shared]
+    return _Way(root, (*climb, *descent))

@@ -1,0 +1,152 @@
+"""Ground truth about an erased model: what the method must find out."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.part import read_only
+from kinematify.assembly.robot import Mimic
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+
+SCHEMA = 1
+"""Number of the JSON layout; raised whenever a reader of the old one would go wrong."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TrueJoint:
+    """One movable joint between two parts, in the world frame; its zero is the erased pose."""
+
+    name: str
+    """Unique; `source`, with a number behind it where one joint of the description stands in several chains."""
+    source: str
+    """Name in the description."""
+    kind: JointType
+    parent: int
+    """Index of the part that carries it."""
+    child: int
+    """Index of the part that moves."""
+    axis: FloatArray
+    """Unit direction, shape (3,); positive motion follows the right hand rule or goes along it. Read-only."""
+    pivot: FloatArray
+    """A point on the axis [m], shape (3,). Read-only."""
+    lower: float
+    """Limit relative to the erased pose [rad or m]; -inf for continuous."""
+    upper: float
+    """Limit relative to the erased pose [rad or m]; +inf for continuous."""
+    value: float
+    """Value in the description's terms at the erased pose [rad or m]; `lower` + `value` is the described limit."""
+    serial: int = 0
+    """Place in the chain of joints between the two parts, 0 next to the parent."""
+    chain_length: int = 1
+    """Joints between the two parts; more than 1 where links without geometry stand between them."""
+    mimic: Mimic | None = None
+    """Leader, by its name in the description; between values of the description."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "axis", read_only(self.axis, np.float64))
+        object.__setattr__(self, "pivot", read_only(self.pivot, np.float64))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GroundTruth:
+    """The tree of parts and the joints between them."""
+
+    name: str
+    """Of the robot."""
+    part_names: tuple[str, ...]
+    """Anonymous names, as the method sees them."""
+    part_links: tuple[tuple[str, ...], ...]
+    """Links of the description that each part consists of."""
+    joints: tuple[TrueJoint, ...]
+    """Parents before children, along each chain from parent to child."""
+    dropped: tuple[str, ...]
+    """Movable joints of the description that stand between no two parts."""
+    configuration: Mapping[str, float] = field(default_factory=dict)
+    """Value of every movable joint of the description at the erased pose [rad or m]."""
+    pose: str
+    """``rest`` or ``random``."""
+    seed: int
+    yaw_deg: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "configuration", MappingProxyType(dict(self.configuration)))
+
+    @property
+    def parents(self) -> tuple[int, ...]:
+        """Parent of every part, -1 for the root."""
+        parents = [-1] * len(self.part_names)
+        for joint in self.joints:
+            parents[joint.child] = joint.parent
+        return tuple(parents)
+
+    @property
+    def root(self) -> int:
+        """Index of the root part."""
+        return self.parents.index(-1)
+
+    def to_json(self) -> str:
+        """Return the truth as JSON text; unlimited is null."""
+        values = {"schema": SCHEMA, **{key: _plain(value) for key, value in vars(self).items()}}
+        return json.dumps(values, indent=1, allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> GroundTruth:
+        """Return the truth that `to_json` wrote.
+
+        Raises:
+            InputError: The text is no ground truth, or of another schema.
+        """
+        try:
+            return _truth(json.loads(text))
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
+            raise InputError(
+                f"The text is not a ground truth of schema {SCHEMA} ({error!r}). Write it again with `kinematify "
+                "erase`."
+            ) from error
+
+
+def _plain(value: Any) -> Any:
+    """Lists, dictionaries, texts and numbers only; infinity as None."""
+    if isinstance(value, TrueJoint | Mimic):
+        return {key: _plain(item) for key, item in vars(value).items()}
+    if isinstance(value, dict | MappingProxyType):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and math.isinf(value) else value
+
+
+def _truth(values: dict[str, Any]) -> GroundTruth:
+    if values.pop("schema") != SCHEMA:
+        raise ValueError("another schema")
+    made: dict[str, Any] = {
+        "joints": tuple(_joint(item) for item in values["joints"]),
+        "part_links": tuple(tuple(item) for item in values["part_links"]),
+        "part_names": tuple(values["part_names"]),
+        "dropped": tuple(values["dropped"]),
+    }
+    return GroundTruth(**{**values, **made})
+
+
+def _joint(values: dict[str, Any]) -> TrueJoint:
+    bounds = {
+        "lower": -math.inf if values["lower"] is None else values["lower"],
+        "upper": math.inf if values["upper"] is None else values["upper"],
+    }
+    mimic = None if values["mimic"] is None else Mimic(**values["mimic"])
+    arrays = {key: np.array(values[key], dtype=np.float64) for key in ("axis", "pivot")}
+    return TrueJoint(**{**values, **bounds, **arrays, "kind": JointType(values["kind"]), "mimic": mimic})
