@@ -124,10 +124,13 @@ def _objects_below(folder: Path) -> tuple[BenchObject, ...]:
         )
     objects = [_object_of(path) for path in files]
     clashes = {name for name, count in Counter(item.name for item in objects).items() if count > 1}
-    return tuple(
-        replace(item, name=item.urdf.relative_to(folder).with_suffix("").as_posix()) if item.name in clashes else item
-        for item in objects
-    )
+    return tuple(replace(item, name=_path_name(item, folder)) if item.name in clashes else item for item in objects)
+
+
+def _path_name(item: BenchObject, folder: Path) -> str:
+    """Name by place, for objects whose own names clash."""
+    place = item.urdf.relative_to(folder)
+    return (place.parent if place.name == "model.urdf" else place.with_suffix("")).as_posix()
 
 
 def _is_main_description(path: Path) -> bool:

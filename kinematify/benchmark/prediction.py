@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.assembly.joint_type import JointType
     from kinematify.assembly.part import FloatArray
-    from kinematify.joints.candidate import JointEstimate, JointType
+    from kinematify.joints.candidate import JointEstimate
     from kinematify.topology.tree import KinematicTree
 
 

@@ -1,0 +1,227 @@
+"""Scores of one predicted mechanism against the ground truth, per joint and per object (paper IV-A).
+
+What is missing or wrong is counted, never dropped: a true joint whose parent-child pair is not in the predicted tree
+counts 90 degrees, a wrong type and a limit overlap of 0. Line and pivot distances exist only where both axes do.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.benchmark.axis_metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
+from kinematify.benchmark.tree_metrics import TreeDistance, parent_errors, root_of, tree_edit_distance, without_nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.truth import GroundTruth, TrueJoint
+    from kinematify.benchmark.prediction import PredictedJoint, Prediction
+
+MISSING_ANGLE = 90.0
+"""What a joint without a predicted axis counts [deg]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointScore:
+    """One true joint against what was predicted for it."""
+
+    joint: str
+    """Name in the source description."""
+    parent: str
+    child: str
+    kind: str
+    """True type."""
+    predicted_kind: str | None
+    """None where the parent-child pair is not in the predicted tree, or stands for another joint of that pair."""
+    gripper: bool
+    """True for fingers that the paper's count leaves out."""
+    angle_deg: float
+    """Folded axis angle; 90 where there is no predicted axis."""
+    angle_given_type_deg: float
+    """The same for the best candidate of the true type, where one was kept."""
+    line_m: float | None
+    """Distance between the axis lines at the child; None for sliding joints, which have no place."""
+    pivot_m: float | None
+    """Distance between the pivots, the paper's axis position error; None for sliding joints."""
+    limit_iou: float
+    opens: bool | None
+    """Whether the positive direction opens; None where the true range does not say."""
+
+    @property
+    def matched(self) -> bool:
+        """True where a predicted joint stands for this one."""
+        return self.predicted_kind is not None
+
+    @property
+    def type_right(self) -> bool:
+        """Type accuracy; continuous counts as revolute."""
+        return self.predicted_kind is not None and _loose(self.predicted_kind) == _loose(self.kind)
+
+    @property
+    def type_right_strict(self) -> bool:
+        """Type accuracy with revolute and continuous told apart."""
+        return self.predicted_kind == self.kind
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObjectScore:
+    """One object under one condition."""
+
+    diagonal: float
+    """Of the input's bounding box [m]."""
+    joints: tuple[JointScore, ...]
+    ted: TreeDistance
+    """Node label = identity of the part."""
+    ted_unlabelled: TreeDistance
+    ted_without_gripper: TreeDistance
+    """Labelled, with the finger parts deleted from both trees."""
+    parent_errors: int
+    """Parts with another parent than in truth, the root included."""
+    root_right: bool
+
+
+def score_object(
+    truth: GroundTruth,
+    prediction: Prediction,
+    *,
+    centroids: Sequence[FloatArray],
+    diagonal: float,
+    gripper_joints: Sequence[str] = (),
+) -> ObjectScore:
+    """Compare a prediction with the ground truth.
+
+    Several true joints can stand between two parts (a screw cap: a turning and a sliding joint through a link without
+    geometry). A tree has one joint there; it is matched with the true joint that it fits best, type first, then
+    angle, and the others count as missing.
+
+    Args:
+        truth: Parts by index, joints in the world frame of the input.
+        prediction: The mechanism to score, parts by the same index.
+        centroids: Surface centroid of every part [m], shape (3,) each.
+        diagonal: Of the input's bounding box [m].
+        gripper_joints: Names of the joints of gripper fingers.
+    """
+    fingers = {joint.child for joint in truth.joints if joint.source in gripper_joints}
+    true_tree = dict(enumerate(truth.parents))
+    bare = [without_nodes(tree, fingers & set(tree)) for tree in (true_tree, prediction.parents)]
+    labelled = tree_edit_distance(true_tree, prediction.parents)
+    return ObjectScore(
+        diagonal=diagonal,
+        joints=tuple(_joint_scores(truth, prediction, centroids, gripper_joints)),
+        ted=labelled,
+        ted_unlabelled=tree_edit_distance(true_tree, prediction.parents, labelled=False),
+        ted_without_gripper=tree_edit_distance(*bare) if fingers else labelled,
+        parent_errors=parent_errors(true_tree, prediction.parents),
+        root_right=root_of(true_tree) == root_of(prediction.parents),
+    )
+
+
+def _joint_scores(
+    truth: GroundTruth, prediction: Prediction, centroids: Sequence[FloatArray], gripper_joints: Sequence[str]
+) -> list[JointScore]:
+    predicted = {(joint.parent, joint.child): joint for joint in prediction.joints}
+    chosen = _matches(truth.joints, predicted)
+    return [
+        _joint_score(
+            joint,
+            chosen.get(joint.name),
+            near=centroids[joint.child],
+            names=truth.part_names,
+            gripper=joint.source in gripper_joints,
+        )
+        for joint in truth.joints
+    ]
+
+
+def _matches(
+    joints: Sequence[TrueJoint], predicted: Mapping[tuple[int, int], PredictedJoint]
+) -> dict[str, PredictedJoint]:
+    """True joint name -> the predicted joint that stands for it."""
+    by_pair: dict[tuple[int, int], list[TrueJoint]] = defaultdict(list)
+    for joint in joints:
+        by_pair[joint.parent, joint.child].append(joint)
+    return {
+        min(rivals, key=lambda joint: _misfit(joint, predicted[pair])).name: predicted[pair]
+        for pair, rivals in by_pair.items()
+        if pair in predicted
+    }
+
+
+def _misfit(joint: TrueJoint, guess: PredictedJoint) -> tuple[bool, float]:
+    return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
+
+
+def _joint_score(
+    joint: TrueJoint, guess: PredictedJoint | None, *, near: FloatArray, names: Sequence[str], gripper: bool
+) -> JointScore:
+    placed = guess is not None and joint.kind.turns and guess.kind != JointType.FIXED
+    return JointScore(
+        joint=joint.name,
+        parent=names[joint.parent],
+        child=names[joint.child],
+        kind=str(joint.kind),
+        predicted_kind=None if guess is None else str(guess.kind),
+        gripper=gripper,
+        angle_deg=_angle(joint, guess),
+        angle_given_type_deg=_angle_given_type(joint, guess),
+        line_m=_line(joint, guess, near) if guess is not None and placed else None,
+        pivot_m=float(np.linalg.norm(joint.pivot - guess.pivot)) if guess is not None and placed else None,
+        limit_iou=_limit_iou(joint, guess),
+        opens=_opens(joint, guess),
+    )
+
+
+def _angle(joint: TrueJoint, guess: PredictedJoint | None) -> float:
+    if guess is None or guess.kind == JointType.FIXED:
+        return MISSING_ANGLE
+    return axis_angle(joint.axis, guess.axis)
+
+
+def _angle_given_type(joint: TrueJoint, guess: PredictedJoint | None) -> float:
+    if guess is None or _loose(guess.kind) == _loose(joint.kind):
+        return _angle(joint, guess)
+    axes = (axis for kind, axis in guess.alternatives if _loose(kind) == _loose(joint.kind))
+    best = next(axes, None)
+    return _angle(joint, guess) if best is None else axis_angle(joint.axis, best)
+
+
+def _line(joint: TrueJoint, guess: PredictedJoint, near: FloatArray) -> float:
+    return axis_line_distance(
+        true_axis=joint.axis, true_pivot=joint.pivot, axis=guess.axis, pivot=guess.pivot, near=near
+    )
+
+
+def _limit_iou(joint: TrueJoint, guess: PredictedJoint | None) -> float:
+    """Overlap in the true joint's sign; 0 for another type, or where perpendicular axes leave the sign open."""
+    if guess is None or _loose(guess.kind) != _loose(joint.kind):
+        return 0.0
+    agreement = float(joint.axis @ guess.axis)
+    if agreement == 0.0:
+        return 0.0
+    return limit_overlap(
+        (joint.lower, joint.upper),
+        (guess.lower, guess.upper),
+        same_sign=agreement > 0.0,
+        turns=joint.kind.turns,
+    )
+
+
+def _opens(joint: TrueJoint, guess: PredictedJoint | None) -> bool | None:
+    """The output promises that the positive direction opens, so the sign of its axis alone is judged."""
+    sign = opening_sign(joint.lower + joint.value, joint.upper + joint.value)
+    if sign == 0:
+        return None
+    if guess is None or _loose(guess.kind) != _loose(joint.kind):
+        return False
+    return bool(sign * float(joint.axis @ guess.axis) > 0.0)
+
+
+def _loose(kind: str) -> str:
+    """Type with continuous and revolute taken as one."""
+    return JointType.REVOLUTE if kind == JointType.CONTINUOUS else kind

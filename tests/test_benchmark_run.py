@@ -1,0 +1,281 @@
+"""The benchmark runner: isolation, resumption, honest counting, and reports."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+
+import pytest
+
+from kinematify.benchmark.datasets import bench_folder, find_objects
+from kinematify.benchmark.report import load_report, write_report
+from kinematify.benchmark.run import BenchmarkReport, BenchmarkRequest, Variant, changed, run_benchmark
+from kinematify.benchmark.summary import summarise
+from kinematify.config import load_config
+from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
+
+TESTS = Path(__file__).resolve().parent
+
+BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'
+
+
+def link(name: str, size: str) -> str:
+    return f'<link name="{name}">{BOX.format(size=size)}</link>'
+
+
+def joint(name: str, kind: str, child: str, *, xyz: str, axis: str, upper: float) -> str:
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="secret_body"/><child link="{child}"/>'
+        f'<origin xyz="{xyz}"/><axis xyz="{axis}"/><limit lower="0" upper="{upper}" effort="1" velocity="1"/></joint>'
+    )
+
+
+def write_object(folder: Path, *, with_knob: bool) -> None:
+    """A body with a door on a vertical hinge and a drawer, and a knob or not."""
+    text = (
+        '<robot name="secret_cabinet">'
+        + link("secret_body", "1 1 1")
+        + link("secret_door", "0.02 0.5 1")
+        + joint("secret_hinge", "revolute", "secret_door", xyz="0.52 0 0", axis="0 0 1", upper=1.5)
+    )
+    if with_knob:
+        text += link("secret_drawer", "0.5 0.4 0.2")
+        text += joint("secret_slide", "prismatic", "secret_drawer", xyz="0 0.7 0", axis="1 0 0", upper=0.4)
+    folder.mkdir(parents=True)
+    (folder / "model.urdf").write_text(text + "</robot>")
+    facts = {"kind": "everyday", "category": "cabinet"}
+    (folder / "source.json").write_text(json.dumps(facts))
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    write_object(tmp_path / "data" / "two_parts", with_knob=False)
+    write_object(tmp_path / "data" / "three_parts", with_knob=True)
+    return tmp_path / "data"
+
+
+def request(data: Path, work: Path, infer: str, **changes: object) -> BenchmarkRequest:
+    base = BenchmarkRequest(data=data, work_folder=work, workers=2, infer=f"quick_inference:{infer}", timeout=60.0)
+    return replace(base, **changes)  # type: ignore[arg-type]
+
+
+def without_costs(report: BenchmarkReport) -> list[object]:
+    return [replace(result, seconds=0.0, peak_mb=None) for result in report.results]
+
+
+def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_path: Path) -> None:
+    told: list[float] = []
+    report = run_benchmark(request(data, tmp_path / "work", "star"), lambda _, fraction: told.append(fraction))
+    assert [(result.object, result.condition) for result in report.results[:6]] == [
+        ("three_parts", "rest"),
+        ("three_parts", "random-0"),
+        ("three_parts", "random-1"),
+        ("three_parts", "random-2"),
+        ("three_parts", "yaw37"),
+        ("two_parts", "rest"),
+    ]
+    assert all(result.status == "ok" for result in report.results)
+    assert all(result.peak_mb is not None and result.peak_mb > 1.0 for result in report.results)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    for result in report.results:
+        assert result.score is not None
+        assert result.score.ted.value == 0
+        assert result.score.root_right
+        scores = {joint.joint: joint for joint in result.score.joints}
+        assert scores["secret_hinge"].type_right
+        assert scores["secret_hinge"].angle_deg == pytest.approx(0.0, abs=1e-6)
+        if result.object == "three_parts":
+            assert not scores["secret_slide"].type_right
+            assert scores["secret_slide"].angle_deg == pytest.approx(90.0, abs=1e-6)
+
+
+def test_truth_never_reaches_the_inference(data: Path, tmp_path: Path) -> None:
+    report = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest", "random-1")))
+    for result in report.results:
+        assert result.status == "error"
+        assert "SEEN" in result.message
+        assert "given=['config']" in result.message
+        for word in ("secret", "cabinet", "parts/", "urdf", str(tmp_path)):
+            assert word not in result.message, word
+
+
+def test_failed_inference_counts_as_if_nothing_was_predicted(data: Path, tmp_path: Path) -> None:
+    report = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",)))
+    values = summarise(report.results).values
+    assert values["angle_deg"] == 90.0
+    assert values["types"] == 0.0
+    assert values["ted"] == pytest.approx(2.5)
+    assert values["root"] == 0.0
+
+
+def test_crashing_worker_ends_its_own_job_only(data: Path, tmp_path: Path) -> None:
+    report = run_benchmark(request(data, tmp_path / "work", "crashing_on_three_parts", conditions=("rest",)))
+    crashed, fine = report.results
+    assert (crashed.status, crashed.peak_mb) == ("crash", None)
+    assert "SIGSEGV" in crashed.message
+    assert crashed.score is not None
+    assert [joint.angle_deg for joint in crashed.score.joints] == [90.0, 90.0]
+    assert fine.status == "ok"
+
+
+def test_hanging_worker_is_stopped_and_its_answer_counts_as_missing(data: Path, tmp_path: Path) -> None:
+    quick = request(data, tmp_path / "work", "endless", conditions=("rest",), only=("two_parts",), timeout=4.0)
+    (result,) = run_benchmark(quick).results
+    assert result.status == "timeout"
+    assert 4.0 <= result.seconds < 20.0
+    assert result.score is not None
+    assert result.score.joints[0].predicted_kind is None
+
+
+def test_unreadable_description_is_reported_and_in_no_mean(data: Path, tmp_path: Path) -> None:
+    (data / "broken").mkdir()
+    (data / "broken" / "model.urdf").write_text("<robot")
+    report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",)))
+    (broken,) = [result for result in report.results if result.object == "broken"]
+    assert broken.status == "unreadable"
+    assert broken.score is None
+    summary = summarise(report.results)
+    assert (summary.objects, summary.unscored_runs) == (2, 1)
+    markdown = write_report(report, tmp_path / "out")[0].read_text()
+    assert "| broken | rest | default | unreadable |" in markdown
+
+
+def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path) -> None:
+    work = tmp_path / "work"
+    ledger = work / "jobs.jsonl"
+    program = (
+        "from pathlib import Path\n"
+        "from kinematify.benchmark.run import BenchmarkRequest, run_benchmark\n"
+        "if __name__ == '__main__':\n"
+        f"    run_benchmark(BenchmarkRequest(data={str(data)!r}, work_folder=Path({str(work)!r}), workers=2,\n"
+        "        infer='quick_inference:slow_star'))\n"
+    )
+    script = tmp_path / "program.py"
+    script.write_text(program)
+    places = os.pathsep.join([str(TESTS), *sys.path])
+    child = subprocess.Popen([sys.executable, str(script)], env={**os.environ, "PYTHONPATH": places})
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline and (not ledger.exists() or ledger.read_bytes().count(b"\n") < 3):
+        time.sleep(0.02)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    finished = ledger.read_bytes().splitlines()
+    assert 3 <= len(finished) < 10
+    # What a kill in the middle of a write leaves behind.
+    with ledger.open("ab") as file:
+        file.write(b'{"key": "half a li')
+
+    resumed = run_benchmark(request(data, work, "slow_star"))
+    lines = ledger.read_bytes().splitlines()
+    assert lines[: len(finished)] == finished
+    assert len(lines) == len(resumed.results) == 10
+    uninterrupted = run_benchmark(request(data, tmp_path / "other", "slow_star"))
+    assert without_costs(resumed) == without_costs(uninterrupted)
+
+
+def test_finished_jobs_are_taken_up_unless_something_changed_or_fresh(data: Path, tmp_path: Path) -> None:
+    base = request(data, tmp_path / "work", "star", conditions=("rest",))
+    first = run_benchmark(base)
+    ledger = tmp_path / "work" / "jobs.jsonl"
+    before = ledger.read_bytes()
+    assert run_benchmark(base).results == first.results
+    assert ledger.read_bytes() == before
+    run_benchmark(replace(base, variants=(Variant(label="seeded", config="default", changes={"seed": 7}),)))
+    assert ledger.read_bytes().count(b"\n") == 4
+    run_benchmark(replace(base, fresh=True))
+    assert ledger.read_bytes().count(b"\n") == 2
+
+
+def test_report_survives_the_disk_and_compares_with_a_baseline(data: Path, tmp_path: Path) -> None:
+    both = (Variant(label="default", config="default"), Variant(label="other", config="default", changes={"seed": 1}))
+    report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
+    markdown, values = write_report(report, tmp_path / "out", name="first")
+    text = markdown.read_text()
+    assert "2.92 / 22.50" in text
+    assert "secret_slide" in text
+    assert "Configurations beside the paper's ablation" in text
+    read = load_report(values)
+    assert read.results == report.results
+    assert json.loads(values.read_text())["summaries"][0]["with_gripper"]["values"]["ted"] == 0.0
+
+    worse = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",)))
+    compared = write_report(worse, tmp_path / "out", name="second", baseline=read)[0].read_text()
+    assert "22.50 -> 90.00" in compared
+    assert "2 runs in both" in compared
+
+
+def test_same_configuration_under_two_labels_runs_once(data: Path, tmp_path: Path) -> None:
+    both = (Variant(label="one", config="default"), Variant(label="two", config="default"))
+    report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
+    assert [result.variant for result in report.results] == ["one", "one", "two", "two"]
+    assert (tmp_path / "work" / "jobs.jsonl").read_bytes().count(b"\n") == 2
+
+
+def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no object, category or kind called piano"):
+        run_benchmark(request(data, tmp_path, "star", only=("piano",)))
+    with pytest.raises(InputError, match="no condition upside-down"):
+        run_benchmark(request(data, tmp_path, "star", conditions=("upside-down",)))
+    with pytest.raises(ConfigError, match=r"no field topology\.colour"):
+        changed(load_config("default"), {"topology.colour": "red"})
+    with pytest.raises(InputError, match="is not a benchmark report"):
+        load_report(data / "two_parts" / "model.urdf")
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    with pytest.raises(OutputError, match="work folder"):
+        run_benchmark(request(data, blocked / "work", "star"))
+
+
+def test_objects_are_found_in_folders_files_and_the_environment(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (data / "loose.urdf").write_text("<robot/>")
+    (data / "two_parts" / "variant.urdf").write_text("<robot/>")
+    write_object(tmp_path / "data" / "more" / "two_parts", with_knob=False)
+    names = [item.name for item in find_objects(data)]
+    assert names == ["loose", "more/two_parts", "three_parts", "two_parts"]
+    (single,) = find_objects(data / "three_parts" / "model.urdf")
+    assert (single.name, single.kind, single.category) == ("three_parts", "everyday", "cabinet")
+    monkeypatch.setenv("KINEMATIFY_BENCH", str(data))
+    assert find_objects() == find_objects(data)
+    with pytest.raises(InputError, match="no benchmark data"):
+        find_objects(tmp_path / "nowhere")
+    with pytest.raises(InputError, match="holds no URDF"):
+        find_objects(_empty(tmp_path))
+
+
+def _empty(folder: Path) -> Path:
+    empty = folder / "empty"
+    empty.mkdir()
+    return empty
+
+
+def test_pip_data_is_found_or_its_installation_named() -> None:
+    try:
+        distribution("example-robot-data")
+    except PackageNotFoundError:
+        with pytest.raises(EnvironmentFault, match=r"pip install kinematify\[bench\]"):
+            find_objects("pip")
+    else:
+        robots = find_objects("pip")
+        assert [robot.name for robot in robots] == ["panda", "go2", "allegro", "ur10"]
+        assert all(robot.urdf.is_file() for robot in robots)
+
+
+def test_benchmark_folder_holds_the_robots_of_the_paper() -> None:
+    try:
+        folder = bench_folder()
+    except InputError as error:
+        pytest.skip(f"needs the benchmark models: {error}")
+    objects = {item.name: item for item in find_objects(folder)}
+    assert {"ur10e", "panda", "go2", "fetch", "allegro", "h1"} <= set(objects)
+    assert len(objects) == 54
+    assert objects["panda"].gripper_joints == ("panda_finger_joint1", "panda_finger_joint2")
