@@ -15,8 +15,16 @@ from pathlib import Path
 import pytest
 
 from kinematify.benchmark.datasets import bench_folder, find_objects
+from kinematify.benchmark.paper import ABLATION
 from kinematify.benchmark.report import load_report, write_report
-from kinematify.benchmark.run import BenchmarkReport, BenchmarkRequest, Variant, changed, run_benchmark
+from kinematify.benchmark.run import (
+    PAPER_VARIANTS,
+    BenchmarkReport,
+    BenchmarkRequest,
+    Variant,
+    changed,
+    run_benchmark,
+)
 from kinematify.benchmark.summary import summarise
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
@@ -148,7 +156,8 @@ def test_unreadable_description_is_reported_and_in_no_mean(data: Path, tmp_path:
     assert "| broken | rest | default | unreadable |" in markdown
 
 
-def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
+def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: signal.Signals) -> None:
     work = tmp_path / "work"
     ledger = work / "jobs.jsonl"
     program = (
@@ -161,12 +170,14 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path) -> No
     script = tmp_path / "program.py"
     script.write_text(program)
     places = os.pathsep.join([str(TESTS), *sys.path])
-    child = subprocess.Popen([sys.executable, str(script)], env={**os.environ, "PYTHONPATH": places})
+    child = subprocess.Popen(
+        [sys.executable, str(script)], env={**os.environ, "PYTHONPATH": places}, stderr=subprocess.DEVNULL
+    )
     deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline and (not ledger.exists() or ledger.read_bytes().count(b"\n") < 3):
         time.sleep(0.02)
-    child.send_signal(signal.SIGKILL)
-    child.wait()
+    child.send_signal(end)
+    assert child.wait(timeout=20.0) == -end
     finished = ledger.read_bytes().splitlines()
     assert 3 <= len(finished) < 10
     # What a kill in the middle of a write leaves behind.
@@ -217,6 +228,15 @@ def test_same_configuration_under_two_labels_runs_once(data: Path, tmp_path: Pat
     report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
     assert [result.variant for result in report.results] == ["one", "one", "two", "two"]
     assert (tmp_path / "work" / "jobs.jsonl").read_bytes().count(b"\n") == 2
+
+
+def test_ablations_differ_from_the_paper_in_one_thing() -> None:
+    full, without_search, without_anchor = (variant.load() for variant in PAPER_VARIANTS)
+    assert without_search.topology.mode == "bfs" != full.topology.mode
+    assert without_search.cavl == full.cavl
+    assert without_anchor.cavl == full.cavl.without_anchor() != full.cavl
+    assert without_anchor.topology == full.topology
+    assert set(ABLATION) == {variant.label for variant in PAPER_VARIANTS}
 
 
 def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:

@@ -193,9 +193,10 @@ def _example_robot_data() -> Path:
             "Run `pip install kinematify[bench]`."
         ) from error
     share = Path(str(package.locate_file("cmeel.prefix/share")))
-    if (share / "example-robot-data" / "robots").is_dir():
+    robots = share / "example-robot-data" / "robots"
+    if all((robots / place).is_file() for _, _, place, _ in _PIP_ROBOTS):
         return share
     raise EnvironmentFault(
-        f"The installed example-robot-data {package.version} keeps no robots in {share}. Run "
+        f"The installed example-robot-data {package.version} does not hold all robots in {robots}. Run "
         "`pip install --force-reinstall kinematify[bench]`."
     )

@@ -48,6 +48,16 @@ class Variant:
 
 
 DEFAULT_VARIANTS = (Variant(label="default", config="default"),)
+PAPER_VARIANTS = (
+    Variant(label="paper", config="paper"),
+    Variant(label="paper without MCTS", config="paper", changes={"topology.mode": "bfs"}),
+    Variant(
+        label="paper without DW-CAVL",
+        config="paper",
+        changes={"cavl.consistency_weight": 0.0, "cavl.pivot_weight": 0.0},
+    ),
+)
+"""The paper as written and its two ablations: breadth-first search for the tree, and no anchor term."""
 
 
 @dataclass(frozen=True, kw_only=True)
