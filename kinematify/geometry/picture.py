@@ -218,7 +218,8 @@ class _Painter:
             alike = (fine.hits.mesh[left] == coarse.hits.mesh[near]) & (cosine > SAME_SURFACE_COSINE)
             light[left[alike]] = coarse_light[near[alike]]
             left = left[~alike]
-        light[left] = self.sky.open_share(fine.points[left], fine.normals[left], left % len(self.sky.sets))
+        sets = left % self.config.subsamples**2 % len(self.sky.sets)
+        light[left] = self.sky.open_share(fine.points[left], fine.normals[left], sets)
         return light
 
     def _with_glyphs(self, colors: FloatArray, view: _View) -> FloatArray:

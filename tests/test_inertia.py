@@ -1,0 +1,147 @@
+"""Mass properties: exact for known solids, and with the laws of mechanics for all others."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from kinematify.assembly.part import Part
+from kinematify.config import load_config
+from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.model.inertia import inertial_of
+from kinematify.model.kinematic_model import Inertial
+
+CONFIG = load_config().model
+ORIGIN = np.zeros(3)
+
+
+def inertial(vertices, faces, origin=ORIGIN, thickness=1e-5) -> Inertial:
+    part = Part(name="part", vertices=vertices, faces=faces)
+    return inertial_of(part, origin, thickness=thickness, config=CONFIG)
+
+
+def assert_physical(found: Inertial) -> None:
+    low, middle, high = np.linalg.eigvalsh(found.tensor)
+    assert found.mass > 0
+    assert low > 0
+    assert low + middle >= high
+
+
+def test_box():
+    mesh = trimesh.creation.box((0.2, 0.3, 0.5))
+    found = inertial(mesh.vertices + np.array([1, 2, 3]), mesh.faces, origin=np.array([1, 2, 2.5]))
+    mass = CONFIG.solid_density * 0.03
+    assert found.source == "volume"
+    assert found.mass == pytest.approx(mass)
+    np.testing.assert_allclose(found.center_of_mass, (0, 0, 0.5), atol=1e-12)
+    expected = mass / 12 * np.diag([0.3**2 + 0.5**2, 0.2**2 + 0.5**2, 0.2**2 + 0.3**2])
+    np.testing.assert_allclose(found.tensor, expected, atol=1e-12)
+
+
+def test_cylinder_and_sphere():
+    cylinder = trimesh.creation.cylinder(radius=0.1, height=0.4, sections=400)
+    found = inertial(cylinder.vertices, cylinder.faces)
+    assert found.mass == pytest.approx(CONFIG.solid_density * np.pi * 0.01 * 0.4, rel=1e-3)
+    across = found.mass * (3 * 0.01 + 0.16) / 12
+    np.testing.assert_allclose(np.diag(found.tensor), (across, across, found.mass * 0.005), rtol=1e-3)
+    sphere = trimesh.creation.icosphere(subdivisions=5, radius=0.3)
+    found = inertial(sphere.vertices, sphere.faces)
+    np.testing.assert_allclose(found.tensor, 0.4 * found.mass * 0.09 * np.eye(3), rtol=2e-3, atol=1e-9)
+
+
+def test_hollow_and_inside_out_and_soup():
+    outer, inner = trimesh.creation.box((2, 2, 2)), trimesh.creation.box((1, 1, 1))
+    vertices = np.concatenate([outer.vertices, inner.vertices])
+    hollow = np.concatenate([outer.faces, inner.faces[:, ::-1] + 8])
+    found = inertial(vertices, hollow)
+    assert found.mass == pytest.approx(7 * CONFIG.solid_density)
+    inside_out = inertial(vertices, hollow[:, ::-1])
+    assert inside_out.mass == pytest.approx(found.mass)
+    np.testing.assert_allclose(inside_out.tensor, found.tensor)
+    soup = inertial(vertices[hollow].reshape(-1, 3), np.arange(hollow.size).reshape(-1, 3))
+    assert soup.source == "volume"
+    assert soup.mass == pytest.approx(found.mass)
+
+
+@pytest.mark.parametrize("case", ["open", "one face turned", "double sided", "overlapping copies"])
+def test_what_encloses_nothing_definite_weighs_as_its_hull(case):
+    mesh = trimesh.creation.box((0.2, 0.3, 0.5))
+    faces = {
+        "open": mesh.faces[1:],
+        "one face turned": np.concatenate([mesh.faces[:1, ::-1], mesh.faces[1:]]),
+        "double sided": np.concatenate([mesh.faces, mesh.faces[:, ::-1]]),
+        "overlapping copies": np.concatenate([mesh.faces, mesh.faces]),
+    }[case]
+    found = inertial(mesh.vertices, faces)
+    assert found.source == "hull"
+    assert found.mass == pytest.approx(CONFIG.hull_density * 0.03)
+
+
+@pytest.mark.parametrize(
+    "vertices",
+    [
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+        [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        [[3, 3, 3], [3, 3, 3], [3, 3, 3]],
+        [[0, 0, 0], [1, 1, 1e-9], [-1, 1, 2]],
+    ],
+    ids=["flat", "line", "point", "oblique"],
+)
+def test_parts_without_volume_get_a_thickness(vertices):
+    found = inertial(np.array(vertices, dtype=float), np.array([[0, 1, 2]]), thickness=1e-3)
+    assert found.source == "hull"
+    assert_physical(found)
+    np.testing.assert_allclose(found.center_of_mass, np.mean(np.array(vertices), axis=0), atol=0.4)
+
+
+def test_thickness_of_a_flat_square_is_exact():
+    square = np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5.0]])
+    vertices, faces = convex_hull(thickened(square, 0.01))
+    np.testing.assert_allclose([vertices.min(0), vertices.max(0)], [[0, 0, 4.995], [1, 1, 5.005]])
+    assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(0.01)
+    np.testing.assert_array_equal(thickened(vertices, 0.01 * (1 - 1e-9)), vertices)
+
+
+def random_hull(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+    return convex_hull(np.random.default_rng(seed).normal(size=(count, 3)) * [1.0, 0.6, 0.3])
+
+
+hulls = st.builds(random_hull, st.integers(0, 1000), st.integers(5, 40))
+rotations = st.integers(0, 1000).map(lambda seed: Rotation.random(random_state=seed).as_matrix())
+
+
+@settings(max_examples=40)
+@given(hull=hulls, rotation=rotations, shift=st.floats(-5, 5))
+def test_rotating_and_moving_the_part_rotates_the_tensor(hull, rotation, shift):
+    vertices, faces = hull
+    still = inertial(vertices, faces)
+    moved = inertial(vertices @ rotation.T + shift, faces, origin=np.full(3, shift))
+    assert_physical(still)
+    assert still.source == moved.source == "volume"
+    assert moved.mass == pytest.approx(still.mass, rel=1e-9)
+    np.testing.assert_allclose(moved.center_of_mass, rotation @ still.center_of_mass, atol=1e-9)
+    expected = rotation @ still.tensor @ rotation.T
+    np.testing.assert_allclose(moved.tensor, expected, atol=1e-9 * np.abs(expected).max())
+
+
+@settings(max_examples=40)
+@given(hull=hulls, scale=st.floats(0.05, 20.0))
+def test_scaling_lengths_scales_mass_cubed_and_tensor_to_the_fifth(hull, scale):
+    vertices, faces = hull
+    unit, scaled = inertial(vertices, faces), inertial(vertices * scale, faces)
+    assert scaled.mass == pytest.approx(unit.mass * scale**3, rel=1e-9)
+    np.testing.assert_allclose(
+        scaled.tensor, unit.tensor * scale**5, rtol=1e-6, atol=1e-9 * np.abs(scaled.tensor).max()
+    )
+
+
+def test_tiny_parts_stay_above_the_bounds_of_engines():
+    mesh = trimesh.creation.box((1e-5, 2e-5, 1e-5))
+    found = inertial(mesh.vertices, mesh.faces)
+    assert found.mass == CONFIG.min_mass
+    assert np.linalg.eigvalsh(found.tensor)[0] >= CONFIG.min_inertia * (1 - 1e-9)
+    assert_physical(found)
