@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 
 from kinematify.errors import ConfigError
 
@@ -38,7 +38,11 @@ class AssemblyConfig(StageConfig):
     min_extent: float
     """A part whose largest extent is below this fraction of the assembly's diagonal is set aside."""
     max_archive_bytes: int
-    """Unpacked size of a ZIP [bytes]."""
+    """Size of a mesh file, and unpacked size of a ZIP [bytes]."""
+    weld: float
+    """Vertices closer than this fraction of their mesh's diagonal are merged."""
+    duplicate: float
+    """Two parts whose vertices agree within this fraction of the assembly's diagonal are the same part twice."""
 
 
 class SurfaceConfig(StageConfig):
@@ -484,11 +488,13 @@ class CavlConfig(StageConfig):
     angles_deg: list[float]
     """Theta of revolute candidates [deg]."""
     travels: list[float]
-    """Theta of prismatic candidates; unused with `match_motion`."""
+    """Theta of prismatic candidates, paired with `angles_deg`."""
     match_motion: bool
-    """Slide by what the contact moves on average when it turns, instead of by `travels`."""
+    """Turn and slide so that the contact moves equally far: by at most `angles_deg` and about `travels`."""
     least_lever: float
     """Smallest lever arm of a contact in that comparison."""
+    better_direction: bool
+    """Average over the positive or the negative half of Theta, whichever costs less; false: over all of it."""
     symmetric: bool
     """Average J over both parts' fields; false: the parent's field alone, as in the paper."""
     type_ratio: float
@@ -509,6 +515,13 @@ class CavlConfig(StageConfig):
     """Step of the gradient descent [rad, and fraction of the diagonal]."""
     batch_queries: int
     """Distance queries at a time; bounds the memory at about 200 bytes each."""
+
+    @model_validator(mode="after")
+    def _paired(self) -> CavlConfig:
+        signs = [(angle > 0) - (angle < 0) for angle in self.angles_deg]
+        if not signs or 0 in signs or signs != [(travel > 0) - (travel < 0) for travel in self.travels]:
+            raise ValueError("angles_deg and travels must be pairs of equal sign, without zeros")
+        return self
 
     def without_anchor(self) -> CavlConfig:
         """Collision avoidance alone: the paper's ablation "w/o DW-CAVL"."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.bake import baked
 from kinematify.assembly.erased_files import truth_path, write_parts
 from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Assembly, Part
@@ -25,7 +26,6 @@ from kinematify.assembly.robot import (
     rotation_about,
 )
 from kinematify.assembly.truth import GroundTruth, TrueJoint
-from kinematify.assembly.weld import welded
 from kinematify.errors import DescriptionError
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from numpy.random import Generator
 
+    from kinematify.assembly.mesh_file import RawMesh
     from kinematify.assembly.part import FloatArray
     from kinematify.assembly.robot import DescribedJoint, RigidGroup
 
@@ -44,8 +45,6 @@ RANDOM_SHARE = 0.3
 """Largest motion of a joint in a random pose, as a share of half its range (the benchmark's protocol).
 
 A continuous joint counts as one with the range -180 to 180 deg."""
-_WELD = 1e-9
-"""Vertices closer than this fraction of their mesh's diagonal are one: equal but for rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +106,7 @@ def erase(
         raise DescriptionError(f"No link of {description.name} has geometry, so there is no part to erase it to.")
     order = order_random.permutation(len(groups)) if shuffle else np.arange(len(groups))
     shown = [groups[k] for k in order]
-    parts = [_baked(description, group, f"part_{k:03d}", T_world_link) for k, group in enumerate(shown)]
+    parts = [_part(baked(description, group, T_world_link), f"part_{k:03d}") for k, group in enumerate(shown)]
     if shuffle:
         parts = [_scrambled(part, order_random) for part in parts]
     index = {group.top: k for k, group in enumerate(shown)}
@@ -163,18 +162,8 @@ def _turned(T_world_link: Mapping[str, FloatArray], yaw: float) -> dict[str, Flo
     return {link: turn @ transform for link, transform in T_world_link.items()}
 
 
-def _baked(description: RobotDescription, group: RigidGroup, name: str, T_world_link: Mapping[str, FloatArray]) -> Part:
-    """All meshes of a rigid group as one, in the world frame."""
-    vertices, faces, count = [], [], 0
-    for link in group.links:
-        transform = T_world_link[link]
-        for mesh in description.link_by_name[link].meshes:
-            # Welded in the link frame, where equal vertices are still equal to the last digit.
-            points, triangles = welded(mesh.vertices, mesh.faces, _WELD)
-            vertices.append(points @ transform[:3, :3].T + transform[:3, 3])
-            faces.append(triangles + count)
-            count += len(points)
-    return Part(name=name, vertices=np.concatenate(vertices), faces=np.concatenate(faces))
+def _part(mesh: RawMesh, name: str) -> Part:
+    return Part(name=name, vertices=mesh.vertices, faces=mesh.faces)
 
 
 def _scrambled(part: Part, random: Generator) -> Part:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,9 +38,11 @@ class RawMesh:
     """File's world frame and unit, shape (V, 3); may hold anything, NaN included."""
     faces: IntArray
     """Shape (F, 3); every index is below V."""
+    unit: str = ""
+    """Unit that the file states, where it is neither metres nor converted to them."""
 
 
-def read_meshes(path: Path) -> tuple[RawMesh, ...]:
+def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
     """Read a mesh file: one mesh per node of a scene, group of an OBJ, or object of a 3MF, transforms applied.
 
     COLLADA lengths are turned into metres by the unit that the file states, and its up axis is ignored, as URDF
@@ -48,9 +50,11 @@ def read_meshes(path: Path) -> tuple[RawMesh, ...]:
 
     Args:
         path: A file with one of `MESH_SUFFIXES`.
+        empty_ok: True returns a well-formed file without triangles as it is, perhaps as no mesh at all.
 
     Raises:
-        AssemblyError: The file is missing, empty, truncated, of another format, or holds no triangle.
+        AssemblyError: The file is missing, empty, truncated, of another format, or (unless `empty_ok`) holds no
+            triangle.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
         raise AssemblyError(
@@ -60,12 +64,18 @@ def read_meshes(path: Path) -> tuple[RawMesh, ...]:
     if not path.is_file():
         raise AssemblyError(f"There is no mesh file {path}. Check the path.")
     meshes = _guarded(path, _read_obj if path.suffix.lower() == ".obj" else _read_scene)
-    if not any(len(mesh.faces) for mesh in meshes):
+    if not empty_ok and not any(len(mesh.faces) for mesh in meshes):
         raise AssemblyError(
             f"The file {path} holds no triangle (it may be empty, a point cloud, or a drawing). Give a file with a "
             "triangle mesh."
         )
     return meshes
+
+
+def compacted(mesh: RawMesh) -> RawMesh:
+    """Return the mesh without vertices that no face uses."""
+    used, corners = np.unique(mesh.faces, return_inverse=True)
+    return replace(mesh, vertices=mesh.vertices[used], faces=corners.reshape(-1, 3).astype(np.int64))
 
 
 def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
@@ -84,9 +94,7 @@ def _guarded(path: Path, read: Callable[[Path], tuple[RawMesh, ...]]) -> tuple[R
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             meshes = read(path)
-            for mesh in meshes:
-                if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
-                    raise ValueError("a face refers to a vertex that the file does not hold")
+            _check_indices(meshes)
     except MemoryError as error:
         raise AssemblyError(f"The mesh file {path} does not fit into memory. Simplify it first.") from error
     except Exception as error:
@@ -98,9 +106,20 @@ def _guarded(path: Path, read: Callable[[Path], tuple[RawMesh, ...]]) -> tuple[R
     return meshes
 
 
+def _check_indices(meshes: tuple[RawMesh, ...]) -> None:
+    for mesh in meshes:
+        if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices):
+            raise ValueError("a face refers to a vertex that the file does not hold")
+
+
 def _read_obj(path: Path) -> tuple[RawMesh, ...]:
     vertices, groups = read_obj(path)
-    return tuple(RawMesh(name=group.name, vertices=vertices, faces=group.faces) for group in groups)
+    if not len(vertices):
+        raise ValueError("it has no vertex")
+    meshes = tuple(RawMesh(name=group.name, vertices=vertices, faces=group.faces) for group in groups)
+    _check_indices(meshes)
+    # Every group keeps its own vertices only: with thousands of groups the copies would fill the memory.
+    return tuple(compacted(mesh) for mesh in meshes) if len(meshes) > 1 else meshes
 
 
 def _read_scene(path: Path) -> tuple[RawMesh, ...]:
@@ -108,10 +127,21 @@ def _read_scene(path: Path) -> tuple[RawMesh, ...]:
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
     options: dict[str, Any] = {"merge_primitives": True} if suffix in GLTF_SUFFIXES else {}
     scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True, **options)
-    return tuple(_scene_meshes(scene, _collada_unit(path) if suffix == ".dae" else 1.0))
+    meshes = tuple(_scene_meshes(scene, path))
+    if suffix == ".stl" and not meshes and not _is_empty_stl(path):
+        raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
+    return meshes
 
 
-def _scene_meshes(scene: Scene, unit: float) -> Iterator[RawMesh]:
+def _is_empty_stl(path: Path) -> bool:
+    """True for a file that states no triangle, as opposed to one of which no triangle can be read."""
+    content = path.read_bytes()
+    return content == content[:80] + bytes(4) or (content.startswith(b"solid") and b"facet" not in content)
+
+
+def _scene_meshes(scene: Scene, path: Path) -> Iterator[RawMesh]:
+    suffix = path.suffix.lower()
+    unit = _collada_unit(path) if suffix == ".dae" else 1.0
     for node in scene.graph.nodes_geometry:
         transform, key = scene.graph[node]
         geometry = scene.geometry[key]
@@ -124,6 +154,7 @@ def _scene_meshes(scene: Scene, unit: float) -> Iterator[RawMesh]:
             name=str(node),
             vertices=unit * (vertices @ transform[:3, :3].T + transform[:3, 3]),
             faces=np.asarray(geometry.faces, dtype=np.int64)[:, order],
+            unit=str(geometry.metadata.get("units", "")) if suffix == ".3mf" else "",
         )
 
 

@@ -1,0 +1,220 @@
+"""Raw meshes become an assembly: welded and named, degenerate and double ones set aside, heavy ones thinned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import fast_simplification
+import igl
+import numpy as np
+from scipy.spatial import cKDTree
+
+from kinematify.assembly.names import part_names
+from kinematify.assembly.part import Assembly, Part, SetAside
+from kinematify.assembly.weld import welded
+from kinematify.errors import AssemblyError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.mesh_file import RawMesh
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import AssemblyConfig
+
+_PROBES = 200
+"""Vertices of a set-aside mesh that are looked at to find the part nearest to it."""
+
+
+def assemble(
+    meshes: Sequence[RawMesh], *, source: str, config: AssemblyConfig, warnings: Sequence[str] = ()
+) -> Assembly:
+    """Turn one mesh per part into an assembly.
+
+    Args:
+        meshes: World frame, z up [m], in the order that the parts shall have; names as in the input.
+        source: What the user gave, for messages and the record.
+        config: Limits and tolerances.
+        warnings: What is known to be odd already.
+
+    Raises:
+        AssemblyError: Too many parts or faces, a coordinate that is not finite, or fewer than two usable parts.
+    """
+    _check_counts(meshes, source, config)
+    names = part_names([mesh.name for mesh in meshes])
+    for mesh in meshes:
+        check_finite(mesh, source)
+    parts = [_welded_part(mesh, name, config) for mesh, name in zip(meshes, names, strict=True)]
+    triage = _without_duplicates(_without_degenerate(parts, source, config), config)
+    if len(triage.kept) < 2:
+        raise AssemblyError(_too_few(source, triage))
+    thin, originals = _thinned(triage.kept, config)
+    return Assembly(
+        parts=tuple(thin),
+        source=source,
+        set_aside=tuple(_set_aside(part, reason, triage.kept) for part, reason in triage.aside),
+        original_names=dict(zip(names, (mesh.name for mesh in meshes), strict=True)),
+        warnings=(*warnings, *triage.warnings, *_thinning_warnings(thin, originals)),
+        originals=originals,
+    )
+
+
+@dataclass(frozen=True)
+class _Triage:
+    """Parts that take part, and those that do not with the reason."""
+
+    kept: list[Part]
+    aside: list[tuple[Part, str]]
+    warnings: tuple[str, ...] = ()
+
+
+def _check_counts(meshes: Sequence[RawMesh], source: str, config: AssemblyConfig) -> None:
+    if len(meshes) > config.max_parts:
+        raise AssemblyError(
+            f"The input {source} consists of {len(meshes)} parts; at most {config.max_parts} are accepted "
+            "(assembly.max_parts). If these are loose triangles or screws of one rigid body, join them before, or "
+            "label the faces with --labels."
+        )
+    faces = sum(len(mesh.faces) for mesh in meshes)
+    if faces > config.max_faces:
+        raise AssemblyError(
+            f"The input {source} has {faces} triangles; at most {config.max_faces} are accepted (assembly.max_faces). "
+            "Simplify the meshes first."
+        )
+
+
+def check_finite(mesh: RawMesh, source: str) -> None:
+    """Refuse a mesh with a triangle that has a corner at no finite place.
+
+    Raises:
+        AssemblyError: There is one; the message names the mesh.
+    """
+    used = mesh.vertices[np.unique(mesh.faces)]
+    bad = int((~np.isfinite(used).all(axis=1)).sum())
+    if bad:
+        raise AssemblyError(
+            f"The part {mesh.name!r} of {source} has {bad} vertices whose coordinates are not finite numbers (NaN or "
+            "infinite). Repair the mesh, or export it again."
+        )
+
+
+def _welded_part(mesh: RawMesh, name: str, config: AssemblyConfig) -> Part:
+    vertices, faces = welded(mesh.vertices, mesh.faces, config.weld)
+    if len(faces):
+        return Part(name=name, vertices=vertices, faces=faces)
+    # Nothing has area: kept as it was given, so that the user finds it in the output.
+    finite = mesh.vertices if np.isfinite(mesh.vertices).all() else mesh.vertices[:0]
+    return Part(name=name, vertices=finite, faces=mesh.faces)
+
+
+def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> _Triage:
+    solid = [part for part in parts if len(part.faces) and part.area > 0.0]
+    if not solid:
+        raise AssemblyError(f"No part of {source} has a triangle with area. Give meshes with surfaces.")
+    diagonal = Assembly(parts=tuple(solid), source=source).diagonal
+    reasons = [(part, _degenerate_reason(part, diagonal, config)) for part in parts]
+    return _Triage([part for part, reason in reasons if not reason], [item for item in reasons if item[1]])
+
+
+def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> str:
+    """Why a part cannot take part in the inference; empty if it can."""
+    if not len(part.faces):
+        return "It holds no triangle."
+    if part.area == 0.0:
+        return "Its surface has no area."
+    distinct = len(np.unique(part.faces))
+    if distinct < config.min_vertices:
+        return f"It has {distinct} distinct vertices; {config.min_vertices} are needed."
+    extent = float(np.ptp(part.bounds, axis=0).max())
+    if extent < config.min_extent * diagonal:
+        return f"Its largest extent is {extent:.3g} m, below {config.min_extent:g} of the assembly's diagonal."
+    return ""
+
+
+def _without_duplicates(triage: _Triage, config: AssemblyConfig) -> _Triage:
+    """Set aside every part that stands where an earlier one of the same shape stands."""
+    if not triage.kept:
+        return triage
+    tolerance = config.duplicate * Assembly(parts=tuple(triage.kept), source="").diagonal
+    kept: list[Part] = []
+    aside = list(triage.aside)
+    warnings = []
+    corners: FloatArray = np.array([part.bounds.reshape(-1) for part in triage.kept])
+    rows: list[int] = []
+    for k, part in enumerate(triage.kept):
+        near = np.abs(corners[rows] - corners[k]).max(axis=1, initial=0.0) <= tolerance
+        twin = next((kept[i] for i in np.flatnonzero(near) if _same_vertices(kept[i], part, tolerance)), None)
+        if twin is None:
+            kept.append(part)
+            rows.append(k)
+        else:
+            aside.append((part, f"It is the same mesh at the same place as {twin.name}."))
+            warnings.append(f"The part {part.name} is {twin.name} once more; only {twin.name} is used.")
+    return _Triage(kept, aside, tuple(warnings))
+
+
+def _same_vertices(one: Part, other: Part, tolerance: float) -> bool:
+    if len(one.vertices) != len(other.vertices):
+        return False
+    pairs = ((one.vertices, other.vertices), (other.vertices, one.vertices))
+    return all(cKDTree(a).query(b)[0].max() <= tolerance for a, b in pairs)
+
+
+def _too_few(source: str, triage: _Triage) -> str:
+    aside = "".join(f" {part.name}: {reason}" for part, reason in triage.aside[:8])
+    return (
+        f"The input {source} has {len(triage.kept)} usable part, but a mechanism needs at least two.{aside} Give one "
+        "mesh per rigid part; one mesh that holds several needs --labels, or pieces that do not share vertices."
+    )
+
+
+def _set_aside(part: Part, reason: str, kept: Sequence[Part]) -> SetAside:
+    return SetAside(part=part, reason=reason, nearest=_nearest(part, kept))
+
+
+def _nearest(part: Part, kept: Sequence[Part]) -> str:
+    """Name of the part whose surface comes nearest; of the largest where there is nothing to measure from."""
+    if not len(part.vertices):
+        return max(kept, key=lambda other: other.area).name
+    probes = part.vertices[np.linspace(0, len(part.vertices) - 1, _PROBES).round().astype(int)]
+    gaps = [_box_gap(probes, other.bounds) for other in kept]
+    best, name = np.inf, ""
+    for k in np.argsort(gaps, kind="stable"):
+        if gaps[k] >= best:
+            break
+        distance = _mean_distance(probes, kept[k])
+        if distance < best:
+            best, name = distance, kept[k].name
+    return name
+
+
+def _box_gap(points: FloatArray, bounds: FloatArray) -> float:
+    """Mean distance of points to a box, which is no more than that to the surface inside it."""
+    outside = np.maximum(np.maximum(bounds[0] - points, points - bounds[1]), 0.0)
+    return float(np.linalg.norm(outside, axis=1).mean())
+
+
+def _mean_distance(points: FloatArray, part: Part) -> float:
+    squared = igl.point_mesh_squared_distance(np.ascontiguousarray(points), part.vertices, part.faces)[0]
+    return float(np.sqrt(squared).mean())
+
+
+def _thinned(parts: Sequence[Part], config: AssemblyConfig) -> tuple[list[Part], dict[str, Part]]:
+    """The parts with few enough faces, and the full mesh of every part that had too many."""
+    heavy = {part.name: part for part in parts if len(part.faces) > config.max_part_faces}
+    return [_simplified(part, config) if part.name in heavy else part for part in parts], heavy
+
+
+def _simplified(part: Part, config: AssemblyConfig) -> Part:
+    vertices, faces = fast_simplification.simplify(part.vertices, part.faces, target_count=config.max_part_faces)
+    vertices, faces = welded(np.asarray(vertices, dtype=np.float64), faces.astype(np.int64), config.weld)
+    return Part(name=part.name, vertices=vertices, faces=faces)
+
+
+def _thinning_warnings(thin: Sequence[Part], originals: dict[str, Part]) -> list[str]:
+    return [
+        f"The part {part.name} has {len(originals[part.name].faces)} triangles; the inference uses a simplified mesh "
+        f"of {len(part.faces)}, the output keeps all."
+        for part in thin
+        if part.name in originals
+    ]

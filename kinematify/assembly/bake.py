@@ -1,0 +1,39 @@
+"""A rigid group of links as one mesh in the world frame."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.mesh_file import RawMesh
+from kinematify.assembly.weld import welded
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.robot import RigidGroup, RobotDescription
+
+_WELD = 1e-9
+"""Vertices closer than this fraction of their mesh's diagonal are one: equal but for rounding."""
+
+
+def baked(description: RobotDescription, group: RigidGroup, T_world_link: Mapping[str, FloatArray]) -> RawMesh:
+    """Return all meshes of a group that has geometry as one, in the world frame [m], named after its top link.
+
+    Args:
+        description: The robot.
+        group: One of its rigid groups.
+        T_world_link: Pose of every link, shape (4, 4).
+    """
+    vertices, faces, count = [], [], 0
+    for link in group.links:
+        transform = T_world_link[link]
+        for mesh in description.link_by_name[link].meshes:
+            # Welded in the link frame, where equal vertices are still equal to the last digit.
+            points, triangles = welded(mesh.vertices, mesh.faces, _WELD)
+            vertices.append(points @ transform[:3, :3].T + transform[:3, 3])
+            faces.append(triangles + count)
+            count += len(points)
+    return RawMesh(name=group.top, vertices=np.concatenate(vertices), faces=np.concatenate(faces))

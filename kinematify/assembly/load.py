@@ -1,0 +1,239 @@
+"""Every form of input becomes an assembly: which files are opened, which way is up, what the unit is."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.archive import check_packed_mesh, unpack
+from kinematify.assembly.assemble import assemble, check_finite
+from kinematify.assembly.bake import baked
+from kinematify.assembly.description import forward_kinematics, read_description, rest_configuration, rigid_groups
+from kinematify.assembly.mesh_file import GLTF_SUFFIXES, RawMesh, merged, read_meshes
+from kinematify.assembly.names import natural_key
+from kinematify.assembly.pieces import connected_pieces, labelled_parts
+from kinematify.errors import AssemblyError, InputError
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.config import AssemblyConfig
+
+UP_CHOICES = ("auto", "y", "z")
+PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf")
+"""Mesh files that an assembly can be given as."""
+_SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
+"""Files beside meshes that nobody takes for a part."""
+_UNITS = {"millimeter": 1e-3, "micron": 1e-6, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Given:
+    """What was found under the path."""
+
+    meshes: tuple[RawMesh, ...]
+    """One per part, in the frame and unit of the file but z up."""
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Reading:
+    """How files are to be read."""
+
+    up: str
+    labels: Path | None
+    config: AssemblyConfig
+
+
+def load_assembly(
+    path: Path, *, config: AssemblyConfig, up: str = "auto", scale: float = 1.0, labels: Path | None = None
+) -> Assembly:
+    """Load an object in one static configuration as rigid parts.
+
+    One part is: a node of a GLB or glTF, a file of a folder, a group or object of an OBJ, an object of a 3MF, a label
+    of a mesh with labels, a connected piece of a mesh without, or a rigid group of links of a URDF, whose joints are
+    not looked at. A ZIP may hold any of these. Parts are in natural order of their names. Ground truth written by
+    `erase` is never opened.
+
+    Args:
+        path: File or folder.
+        config: Limits and tolerances.
+        up: ``auto`` (y for glTF as its standard says, z for all else), ``y`` or ``z``; y-up input is turned to z up.
+        scale: Metres per unit of the input.
+        labels: Labels per triangle of a single mesh.
+
+    Raises:
+        AssemblyError: The input cannot become an assembly; the message names the file and the remedy.
+        DescriptionError: A URDF cannot be read.
+    """
+    path = Path(path)
+    _check_arguments(up, scale)
+    given = _given(path, _Reading(up=up, labels=labels, config=config))
+    meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
+    scaled = [replace(mesh, vertices=mesh.vertices * scale) for mesh in meshes]
+    warnings = (*given.warnings, *(_unit_warnings(given.meshes) if scale == 1.0 else ()))
+    return assemble(scaled, source=str(path), config=config, warnings=warnings)
+
+
+def _check_arguments(up: str, scale: float) -> None:
+    if up not in UP_CHOICES:
+        raise InputError(f"The up axis {up!r} is unknown. Choose one of {', '.join(UP_CHOICES)}.")
+    if not (math.isfinite(scale) and scale > 0.0):
+        raise InputError(f"The scale {scale} is not usable. Give metres per unit, above zero: 0.001 for millimetres.")
+
+
+def _given(path: Path, reading: _Reading) -> _Given:
+    if path.is_dir():
+        _refuse_labels(path, reading)
+        return _folder(path, reading)
+    if not path.is_file():
+        raise AssemblyError(f"There is no file or folder {path}. Check the path.")
+    suffix = path.suffix.lower()
+    if suffix == ".zip":
+        return _archive(path, reading)
+    if suffix == ".urdf":
+        _refuse_labels(path, reading)
+        return _description(path, reading)
+    if suffix in PART_SUFFIXES:
+        return _single_file(path, reading)
+    raise AssemblyError(
+        f"The file {path} is not an input that can be read. Give a folder or ZIP of mesh files, a URDF, or one of "
+        f"{', '.join(PART_SUFFIXES)}."
+    )
+
+
+def _refuse_labels(path: Path, reading: _Reading) -> None:
+    if reading.labels is not None:
+        raise AssemblyError(f"Labels belong to one mesh, but {path} holds several parts already. Leave --labels out.")
+
+
+def _folder(folder: Path, reading: _Reading) -> _Given:
+    """One part per mesh file; other files are named in a warning."""
+    try:
+        entries = sorted(folder.iterdir(), key=lambda entry: natural_key(entry.name))
+    except OSError as error:
+        raise AssemblyError(f"The folder {folder} cannot be read ({error.strerror}). Check its permissions.") from error
+    visible = [entry for entry in entries if not entry.name.startswith(".")]
+    files = [entry for entry in visible if entry.is_file() and entry.suffix.lower() in PART_SUFFIXES]
+    if not files:
+        raise AssemblyError(
+            f"The folder {folder} holds no mesh file. Put one file per rigid part in it ({', '.join(PART_SUFFIXES)})"
+            f"{_instead(visible)}."
+        )
+    if len(files) > reading.config.max_parts:
+        raise AssemblyError(
+            f"The folder {folder} holds {len(files)} mesh files; at most {reading.config.max_parts} parts are accepted "
+            "(assembly.max_parts). Join what is rigid."
+        )
+    ignored = [entry.name for entry in visible if entry not in files and _is_noticed(entry)]
+    warnings = (f"Not read, because they are no mesh files: {', '.join(ignored[:20])}.",) if ignored else ()
+    return _Given(meshes=tuple(_whole_file(file, reading) for file in files), warnings=warnings)
+
+
+def _instead(entries: list[Path]) -> str:
+    """What the user may have meant."""
+    urdf = next((entry for entry in entries if entry.suffix.lower() == ".urdf"), None)
+    return f", or give the description {urdf} itself" if urdf else ""
+
+
+def _is_noticed(entry: Path) -> bool:
+    return entry.is_dir() or entry.suffix.lower() not in _SILENT_SUFFIXES
+
+
+def _whole_file(path: Path, reading: _Reading) -> RawMesh:
+    """All that a file holds as one part; an empty mesh stays, to be set aside by name."""
+    meshes = _read(path, reading, empty_ok=True)
+    if not meshes:
+        return _empty(path.stem)
+    return replace(merged(meshes, path.stem), unit=meshes[0].unit)
+
+
+def _archive(path: Path, reading: _Reading) -> _Given:
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        unpack(path, Path(folder), reading.config.max_archive_bytes)
+        try:
+            return _unpacked(path, Path(folder), reading)
+        except InputError as error:
+            # The user knows the archive, not the folder that it was unpacked to.
+            message = str(error).replace(f"{folder}/", "").replace(folder, path.name)
+            raise type(error)(f"In the archive {path}: {message}") from error
+
+
+def _unpacked(archive: Path, folder: Path, reading: _Reading) -> _Given:
+    files = [file for file in folder.rglob("*") if file.is_file()]
+    urdfs = [file for file in files if file.suffix.lower() == ".urdf"]
+    meshes = [file for file in files if file.suffix.lower() in PART_SUFFIXES]
+    if len(urdfs) == 1:
+        return _given(urdfs[0], reading)
+    if len(meshes) == 1:
+        return _given(meshes[0], reading)
+    places = sorted({file.parent for file in meshes})
+    if len(places) != 1:
+        raise AssemblyError(
+            f"The archive {archive} holds mesh files in {len(places)} folders and {len(urdfs)} URDF files. Pack one "
+            "folder of mesh files, one mesh file, or one URDF with its meshes."
+        )
+    return _given(places[0], reading)
+
+
+def _description(path: Path, reading: _Reading) -> _Given:
+    """Rigid groups of links at rest; everything else that the description says is dropped."""
+    description = read_description(path)
+    poses = forward_kinematics(description, rest_configuration(description))
+    groups = [group for group in rigid_groups(description) if group.has_geometry]
+    meshes = tuple(_upright(baked(description, group, poses), reading.up == "y") for group in groups)
+    return _Given(meshes=meshes, warnings=description.notes)
+
+
+def _single_file(path: Path, reading: _Reading) -> _Given:
+    meshes = _read(path, reading, empty_ok=False)
+    if reading.labels is not None:
+        return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
+    if len(meshes) > 1:
+        return _Given(meshes=tuple(mesh if mesh.name else replace(mesh, name=path.stem) for mesh in meshes))
+    check_finite(meshes[0], str(path))
+    return _Given(meshes=connected_pieces(meshes[0], reading.config.weld))
+
+
+def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ...]:
+    """Meshes of a file, z up."""
+    size, allowed = path.stat().st_size, reading.config.max_archive_bytes
+    if size > allowed:
+        raise AssemblyError(
+            f"The file {path} has {size} bytes; at most {allowed} are read (assembly.max_archive_bytes). Simplify it."
+        )
+    if path.suffix.lower() == ".3mf":
+        check_packed_mesh(path, allowed)
+    y_up = reading.up == "y" or (reading.up == "auto" and path.suffix.lower() in GLTF_SUFFIXES)
+    return tuple(_upright(mesh, y_up) for mesh in read_meshes(path, empty_ok=empty_ok))
+
+
+def _upright(mesh: RawMesh, y_up: bool) -> RawMesh:
+    """Turn y up to z up: a quarter turn about x, the front stays in front."""
+    if not y_up:
+        return mesh
+    x, y, z = mesh.vertices.T
+    turned: FloatArray = np.stack([x, -z, y], axis=1)
+    return replace(mesh, vertices=turned)
+
+
+def _empty(name: str) -> RawMesh:
+    return RawMesh(name=name, vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int64))
+
+
+def _unit_warnings(meshes: tuple[RawMesh, ...]) -> tuple[str, ...]:
+    units = sorted({mesh.unit for mesh in meshes if mesh.unit and not mesh.unit.startswith("meter")})
+    return tuple(
+        f"The file states its lengths in {unit}; they were taken as metres. Give --scale {_metres(unit)} to convert."
+        for unit in units
+    )
+
+
+def _metres(unit: str) -> str:
+    """The number for --scale, as a word where the unit is not known."""
+    known = _UNITS.get(unit.rstrip("s"))
+    return "METRES_PER_UNIT" if known is None else f"{known:g}"

@@ -1,0 +1,98 @@
+"""One mesh that holds several parts: cut by labels per face, or into its connected pieces."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from kinematify.assembly.mesh_file import RawMesh, compacted
+from kinematify.assembly.weld import welded
+from kinematify.errors import AssemblyError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import IntArray
+
+
+def labelled_parts(mesh: RawMesh, labels: Path) -> tuple[RawMesh, ...]:
+    """Return one mesh per label, in natural order of the labels.
+
+    Args:
+        mesh: Triangles in the order of the file.
+        labels: ``.npy`` with F integers, or ``.json`` with a list of F integers or texts (or an object with this list
+            under ``labels``). Text labels name the parts; integers give ``part_<label>``.
+
+    Raises:
+        AssemblyError: The file cannot be read, or has not one label per triangle.
+    """
+    values = _read_labels(labels)
+    if values.shape != (len(mesh.faces),):
+        raise AssemblyError(
+            f"The labels {labels} have the shape {values.shape}, but the mesh has {len(mesh.faces)} triangles. Give "
+            "one label per triangle, in the order of the file; polygons count as their triangles."
+        )
+    distinct, index = np.unique(values, return_inverse=True)
+    prefix = "" if values.dtype.kind == "U" else "part_"
+    return _split(mesh, index, [f"{prefix}{label}" for label in distinct.tolist()])
+
+
+def _read_labels(path: Path) -> NDArray[Any]:
+    if path.name.endswith(".truth.json") or path.suffix.lower() not in (".npy", ".json"):
+        raise AssemblyError(f"The labels {path} are no labels file. Give a .npy or .json with one label per triangle.")
+    try:
+        values = np.load(path, allow_pickle=False) if path.suffix.lower() == ".npy" else _json_labels(path)
+    except (OSError, ValueError, EOFError) as error:
+        raise AssemblyError(
+            f"The labels {path} cannot be read ({error}). Write them with numpy.save, or as a JSON list."
+        ) from error
+    if not isinstance(values, np.ndarray) or values.dtype.kind not in "iuU":
+        raise AssemblyError(f"The labels {path} must be integers, or texts in a JSON file: they name the parts.")
+    return values
+
+
+def _json_labels(path: Path) -> NDArray[Any]:
+    values = json.loads(path.read_text(encoding="utf-8"))
+    if isinstance(values, dict):
+        values = values.get("labels")
+    if not isinstance(values, list) or len({type(value) for value in values}) > 1:
+        raise ValueError("expected a list of labels of one kind")
+    return np.array(values)
+
+
+def connected_pieces(mesh: RawMesh, tolerance: float) -> tuple[RawMesh, ...]:
+    """Return the pieces of a mesh that share no vertex, in the order of their first triangle.
+
+    Args:
+        mesh: Any mesh with finite vertices; it is welded first, because many formats store corners per triangle.
+        tolerance: Fraction of the mesh's diagonal below which vertices are one.
+    """
+    vertices, faces = welded(mesh.vertices, mesh.faces, tolerance)
+    _, first, piece = np.unique(_piece_of_face(faces, len(vertices)), return_index=True, return_inverse=True)
+    rank = np.argsort(np.argsort(first))
+    names = [f"piece_{k:03d}" for k in range(len(first))]
+    return _split(replace(mesh, vertices=vertices, faces=faces), rank[piece], names)
+
+
+def _split(mesh: RawMesh, index: IntArray, names: Sequence[str]) -> tuple[RawMesh, ...]:
+    """One mesh per name, made of the faces with its index; one pass, since there may be thousands."""
+    faces = mesh.faces[np.argsort(index, kind="stable")]
+    ends = np.cumsum(np.bincount(index, minlength=len(names)))[:-1]
+    return tuple(
+        compacted(replace(mesh, name=name, faces=part)) for name, part in zip(names, np.split(faces, ends), strict=True)
+    )
+
+
+def _piece_of_face(faces: IntArray, n_vertices: int) -> IntArray:
+    ends = np.concatenate([faces[:, :2], faces[:, 1:]])
+    links = coo_array((np.ones(len(ends), dtype=np.int8), (ends[:, 0], ends[:, 1])), shape=(n_vertices, n_vertices))
+    label: IntArray = connected_components(links, directed=False)[1].astype(np.int64)
+    return label[faces[:, 0]]
