@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from kinematify.benchmark.run import BenchmarkReport, Variant
 
 _FOUND_FAILURES = 1
-_ABLATIONS = {"paper without MCTS": {"topology.mode": "bfs"}}
-"""Name of a row of the paper's ablation -> what differs from `paper.yaml`."""
 
 
 @click.command(
@@ -141,15 +139,11 @@ def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple
 
 
 def _variants(configs: Sequence[str]) -> tuple[Variant, ...]:
-    from kinematify.benchmark.run import Variant
+    """Return one variant per configuration; `paper` stands for its ablations too."""
+    from kinematify.benchmark.run import PAPER_VARIANTS, Variant
 
-    variants = []
-    for config in configs:
-        label = Path(config).stem
-        variants.append(Variant(label=label, config=config))
-        if label == "paper":
-            variants += [Variant(label=name, config=config, changes=changes) for name, changes in _ABLATIONS.items()]
-    return tuple(variants)
+    own = [(Variant(label=Path(config).stem, config=config),) for config in configs]
+    return tuple(variant for one in own for variant in (PAPER_VARIANTS if one[0].label == "paper" else one))
 
 
 def _describe(report: BenchmarkReport) -> str:

@@ -1,0 +1,55 @@
+"""`kinematify erase`: a URDF with its kinematics removed."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import click
+
+from kinematify.cli.help import examples
+
+
+@click.command(
+    "erase",
+    short_help="URDF -> anonymous part meshes, and the truth in a file beside them.",
+    epilog=examples(
+        "kinematify erase franka/model.urdf -o panda-parts",
+        "kinematify erase robot.urdf -o robot-parts --pose random --seed 3 --yaw 37",
+        "kinematify erase go2_description/urdf/go2.urdf -o go2-parts --package-dir .",
+    ),
+)
+@click.argument("model", type=click.Path(path_type=Path))
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder to make for the parts.")
+@click.option(
+    "--pose",
+    type=click.Choice(["rest", "random"]),
+    default="rest",
+    show_default=True,
+    help="Zero (or the middle of the limits where zero is outside), or each joint moved a little at random.",
+)
+@click.option("--seed", type=int, default=0, show_default=True, help="Seed of pose, order and names of the parts.")
+@click.option("--yaw", type=float, default=0.0, show_default=True, metavar="DEG", help="Turn about the vertical axis.")
+@click.option(
+    "--package-dir",
+    "package_dirs",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="Folder in which package:// names are looked up; may be given more than once.",
+)
+def command(*, model: Path, out: Path, pose: str, seed: int, yaw: float, package_dirs: tuple[Path, ...]) -> None:
+    """Remove the kinematics of the URDF MODEL: what is left is what a scan of the object would show.
+
+    Links joined by fixed joints become one part. Order and names of the parts are shuffled. OUT is an input of
+    `kinematify infer`; the truth is written beside it as OUT.truth.json and is never read by `infer`.
+    """
+    from kinematify.assembly.description import read_description
+    from kinematify.assembly.erase import erase, write_erased
+
+    description = read_description(model, package_dirs=package_dirs)
+    erased = erase(description, pose=pose, seed=seed, yaw_deg=yaw)
+    truth = write_erased(erased, out)
+    for note in description.notes:
+        click.echo(f"Note: {note}", err=True)
+    click.echo(f"{len(erased.parts)} parts in {out}, {len(erased.truth.joints)} joints erased. The truth: {truth}")
+    click.echo(f"Next: kinematify infer {shlex.quote(str(out))} -o {shlex.quote(f'{out}-model')}")
