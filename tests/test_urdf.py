@@ -151,7 +151,7 @@ def test_original_mesh_is_written_instead_of_the_simplified_one(tmp_path):
         vertices=np.vstack([leaf.vertices, leaf.vertices[leaf.faces[0]].mean(axis=0)]),
         faces=np.vstack([leaf.faces[1:], [[a, b, 8], [b, c, 8], [c, a, 8]]]),
     )
-    assembly = Assembly(parts=mechanism.assembly.parts, source="door", original_parts={"leaf": finer})
+    assembly = Assembly(parts=mechanism.assembly.parts, source="door", originals={"leaf": finer})
     model = build_model(assembly, mechanism.tree, mechanism.joints, name="door", config=CONFIG.model)
     write_urdf(model, tmp_path)
     assert (tmp_path / "meshes/leaf.obj").read_text().count("f ") == 14

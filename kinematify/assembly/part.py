@@ -101,8 +101,6 @@ class Assembly:
     """Degenerate input, by name and reason; nothing disappears silently."""
     original_names: Mapping[str, str] = field(default_factory=dict)
     """Part name -> name in the input."""
-    original_parts: Mapping[str, Part] = field(default_factory=dict)
-    """Part name -> mesh as given, for the parts that were simplified for inference; output uses these."""
     warnings: tuple[str, ...] = ()
     """What the user should know about the input, one sentence each."""
     originals: Mapping[str, Part] = field(default_factory=dict)
@@ -111,7 +109,6 @@ class Assembly:
     def __post_init__(self) -> None:
         object.__setattr__(self, "original_names", MappingProxyType(dict(self.original_names)))
         object.__setattr__(self, "originals", MappingProxyType(dict(self.originals)))
-        object.__setattr__(self, "original_parts", MappingProxyType(dict(self.original_parts)))
 
     @property
     def names(self) -> tuple[str, ...]:

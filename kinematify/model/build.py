@@ -69,7 +69,7 @@ def build_model(
 
 def _link(assembly: Assembly, index: int, origin: FloatArray, *, thickness: float, config: ModelConfig) -> Link:
     part = assembly.parts[index]
-    original = assembly.original_parts.get(part.name)
+    original = assembly.originals.get(part.name)
     T_world_link = np.eye(4)
     T_world_link[:3, 3] = origin
     return Link(
