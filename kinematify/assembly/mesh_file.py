@@ -45,8 +45,8 @@ class RawMesh:
 def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
     """Read a mesh file: one mesh per node of a scene, group of an OBJ, or object of a 3MF, transforms applied.
 
-    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is ignored, as URDF
-    tools do (Assimp under RViz, Pinocchio and Gazebo). Unreferenced vertices may remain.
+    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is ignored: so does RViz,
+    in which robots are checked by eye (Pinocchio and yourdfpy ignore the unit too). Unreferenced vertices may remain.
 
     Args:
         path: A file with one of `MESH_SUFFIXES`.

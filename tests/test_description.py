@@ -1,0 +1,327 @@
+"""Reading URDF: geometry in the link frame, forward kinematics as other engines have it, clear errors."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from kinematify.assembly.description import (
+    forward_kinematics,
+    joint_values,
+    read_description,
+    rest_configuration,
+    rigid_groups,
+)
+from kinematify.assembly.joint_type import JointType
+from kinematify.errors import DescriptionError
+
+BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
+ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
+needs_bench = pytest.mark.skipif(not BENCH.is_dir(), reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
+
+BOX = '<visual><geometry><box size="1 2 4"/></geometry></visual>'
+
+
+def link(name: str, inside: str = "") -> str:
+    return f'<link name="{name}">{inside}</link>'
+
+
+def joint(name: str, kind: str, parent: str, child: str, inside: str = "") -> str:
+    return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>{inside}</joint>'
+
+
+def limit(lower: float, upper: float) -> str:
+    return f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/>'
+
+
+def urdf(folder: Path, *elements: str) -> Path:
+    path = folder / "robot.urdf"
+    path.write_text(f'<robot name="r">{"".join(elements)}</robot>', encoding="utf-8")
+    return path
+
+
+def visual(shape: str, origin: str = "", scale: str = "") -> str:
+    return f"<visual>{origin}<geometry>{shape}</geometry></visual>"
+
+
+def bounds(path: Path) -> np.ndarray:
+    mesh = read_description(path).links[0].meshes[0]
+    return np.stack([mesh.vertices.min(0), mesh.vertices.max(0)])
+
+
+@pytest.mark.parametrize(
+    ("shape", "half"),
+    [
+        ('<box size="1 2 4"/>', (0.5, 1.0, 2.0)),
+        ('<sphere radius="0.5"/>', (0.5, 0.5, 0.5)),
+        ('<cylinder radius="0.5" length="3"/>', (0.5, 0.5, 1.5)),
+        ('<capsule radius="0.5" length="3"/>', (0.5, 0.5, 2.0)),
+    ],
+)
+def test_primitives_are_centred_with_their_axis_along_z(
+    tmp_path: Path, shape: str, half: tuple[float, float, float]
+) -> None:
+    found = bounds(urdf(tmp_path, link("a", visual(shape))))
+    np.testing.assert_allclose(found, [np.negative(half), half], atol=2e-3)
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "dae", "off"])
+def test_meshes_of_every_format_are_scaled_then_placed(tmp_path: Path, suffix: str) -> None:
+    trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]]).export(tmp_path / f"m.{suffix}")
+    origin = f'<origin xyz="10 0 0" rpy="0 0 {math.pi / 2}"/>'
+    shape = f'<mesh filename="m.{suffix}" scale="2 1 1"/>'
+    np.testing.assert_allclose(
+        bounds(urdf(tmp_path, link("a", visual(shape, origin)))), [[8, 0, 0], [10, 2, 3]], atol=1e-6
+    )
+
+
+def test_mirroring_scale_keeps_the_outside_outside(tmp_path: Path) -> None:
+    trimesh.creation.box().export(tmp_path / "m.stl")
+    mesh = read_description(urdf(tmp_path, link("a", visual('<mesh filename="m.stl" scale="1 -1 1"/>'))))
+    read = mesh.links[0].meshes[0]
+    assert trimesh.Trimesh(read.vertices, read.faces).volume == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP"])
+@pytest.mark.parametrize("unit", [1.0, 0.0254])
+def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit: float) -> None:
+    text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]]).export(file_type="dae").decode()
+    asset = f'<unit name="u" meter="{unit}"/><up_axis>{up}</up_axis>'
+    (tmp_path / "m.dae").write_text(text.replace("<up_axis>Y_UP</up_axis>", asset))
+    found = bounds(urdf(tmp_path, link("a", visual('<mesh filename="m.dae"/>'))))
+    np.testing.assert_allclose(found, np.multiply(unit, [[0, 0, 0], [1, 2, 3]]), atol=1e-6)
+
+
+def test_collada_axes_agree_with_pinocchio(tmp_path: Path) -> None:
+    pin = pytest.importorskip("pinocchio")
+    text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]]).export(file_type="dae").decode()
+    (tmp_path / "m.dae").write_text(text)
+    path = urdf(tmp_path, link("a", visual('<mesh filename="m.dae"/>')))
+    model = pin.buildModelFromUrdf(str(path))
+    shown = pin.buildGeomFromUrdf(model, str(path), pin.GeometryType.VISUAL, package_dirs=[str(tmp_path)])
+    vertices = np.array(shown.geometryObjects[0].geometry.vertices()).reshape(-1, 3)
+    np.testing.assert_allclose(bounds(path), [vertices.min(0), vertices.max(0)], atol=1e-6)
+
+
+def test_collision_geometry_stands_in_for_a_missing_visual(tmp_path: Path) -> None:
+    description = read_description(
+        urdf(
+            tmp_path,
+            link("a", BOX.replace("visual", "collision")),
+            link("b", BOX + BOX.replace("visual", "collision")),
+            joint("j", "fixed", "a", "b"),
+        )
+    )
+    assert [item.from_collision for item in description.links] == [True, False]
+    assert [len(item.meshes) for item in description.links] == [1, 1]
+
+
+@pytest.mark.parametrize("how", ["beside", "above", "package-dir parent", "package-dir itself"])
+def test_package_addresses_are_found(tmp_path: Path, how: str) -> None:
+    package = tmp_path / "deep" / "my_robot"
+    (package / "meshes").mkdir(parents=True)
+    (package / "urdf").mkdir()
+    trimesh.creation.box().export(package / "meshes" / "m.stl")
+    inside = {"beside": package, "above": package / "urdf"}.get(how, tmp_path)
+    dirs = {"package-dir parent": [package.parent], "package-dir itself": [package]}.get(how, [])
+    path = urdf(inside, link("a", visual('<mesh filename="package://my_robot/meshes/m.stl"/>')))
+    assert read_description(path, package_dirs=dirs).links[0].has_geometry
+
+
+def test_missing_mesh_names_link_file_and_option(tmp_path: Path) -> None:
+    path = urdf(tmp_path, link("arm", visual('<mesh filename="package://nowhere/m.stl"/>')))
+    with pytest.raises(DescriptionError, match=r"package://nowhere/m\.stl.*link arm.*--package-dir"):
+        read_description(path)
+
+
+def test_broken_mesh_names_its_link(tmp_path: Path) -> None:
+    (tmp_path / "m.stl").write_bytes(b"nonsense" * 50)
+    with pytest.raises(DescriptionError, match=r"link arm.*m\.stl"):
+        read_description(urdf(tmp_path, link("arm", visual('<mesh filename="m.stl"/>'))))
+
+
+def two(kind: str, inside: str = "") -> tuple[str, ...]:
+    return link("a", BOX), link("b", BOX), joint("j", kind, "a", "b", inside)
+
+
+@pytest.mark.parametrize(
+    ("elements", "message"),
+    [
+        ((), "no link"),
+        ((link("a"), link("a")), "2 links named 'a'"),
+        ((*two("fixed"), link("c"), joint("j", "fixed", "a", "c")), "2 joints named 'j'"),
+        ((link("a"), link("b")), "2 root links: a, b"),
+        ((*two("fixed"), joint("k", "fixed", "b", "a")), "cycle"),
+        ((link("r"), *two("fixed"), joint("k", "fixed", "b", "a")), "cycle"),
+        ((link("a"), joint("j", "fixed", "a", "a")), "cycle"),
+        ((*two("fixed"), link("c"), joint("k", "fixed", "a", "c"), joint("l", "fixed", "b", "c")), "hangs on two"),
+        ((link("a"), joint("j", "fixed", "a", "ghost")), "'ghost'"),
+        (two("hinge"), "type 'hinge'"),
+        (two("prismatic"), "no <limit>"),
+        (two("revolute", limit(1, -1)), "lower limit 1.0 above"),
+        (two("revolute", limit(math.nan, 1)), "lower='nan'"),
+        (two("continuous", '<axis xyz="0 0 0"/>'), "zero length"),
+        (two("continuous", '<axis xyz="0 1"/>'), "three finite numbers"),
+        (two("continuous", '<origin xyz="0 inf 0"/>'), "three finite numbers"),
+        (two("continuous", '<mimic joint="ghost"/>'), "mimics 'ghost'"),
+        (two("continuous", '<mimic joint="j"/>'), "circle"),
+        (two("floating"), "freely"),
+        (two("planar"), "freely"),
+        ((link("a", visual('<box size="1 -2 1"/>')),), "above zero"),
+        ((link("a", visual('<cone size="1"/>')),), "<cone>"),
+        ((link("a", "<visual/>"),), "no geometry element"),
+        (('<link name=""/>',), "no name"),
+    ],
+)
+def test_mistakes_are_named(tmp_path: Path, elements: tuple[str, ...], message: str) -> None:
+    with pytest.raises(DescriptionError, match=message):
+        read_description(urdf(tmp_path, *elements))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<robot><link", "not well-formed"),
+        ("", "not well-formed"),
+        ("<mujoco/>", "begins with <mujoco>"),
+        ('<!DOCTYPE robot [<!ENTITY a "b">]><robot>&a;</robot>', "DOCTYPE"),
+        ('<!DOCTYPE robot SYSTEM "http://localhost/x.dtd"><robot/>', "DOCTYPE"),
+        ("<a>" * 3000, "not well-formed"),
+    ],
+)
+def test_files_that_are_no_urdf(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "robot.urdf"
+    path.write_text(text)
+    with pytest.raises(DescriptionError, match=message):
+        read_description(path)
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(DescriptionError, match="No such file"):
+        read_description(tmp_path / "robot.urdf")
+
+
+def test_free_root_joint_is_fixed_and_noted(tmp_path: Path) -> None:
+    path = urdf(
+        tmp_path, link("world"), link("mid"), *two("continuous"), joint("f", "planar", "world", "mid"),
+        joint("g", "floating", "mid", "a"),
+    )  # fmt: skip
+    description = read_description(path)
+    assert [group.links for group in rigid_groups(description)] == [("world", "mid", "a"), ("b",)]
+    assert len(description.notes) == 2
+
+
+def test_revolute_without_limits_is_continuous_and_noted(tmp_path: Path) -> None:
+    description = read_description(urdf(tmp_path, *two("revolute")))
+    assert description.joints[0].kind is JointType.CONTINUOUS
+    assert description.joints[0].upper == math.inf
+    assert "j" in description.notes[0]
+
+
+def test_axis_is_normalised_and_defaults_to_x(tmp_path: Path) -> None:
+    np.testing.assert_allclose(
+        read_description(urdf(tmp_path, *two("continuous", '<axis xyz="0 3 4"/>'))).joints[0].axis, [0, 0.6, 0.8]
+    )
+    np.testing.assert_allclose(read_description(urdf(tmp_path, *two("continuous"))).joints[0].axis, [1, 0, 0])
+
+
+def test_mimic_chains_follow_their_leader(tmp_path: Path) -> None:
+    description = read_description(
+        urdf(
+            tmp_path,
+            link("a"),
+            link("b"),
+            link("c"),
+            link("d"),
+            joint("third", "continuous", "c", "d", '<mimic joint="second" multiplier="2" offset="0.5"/>'),
+            joint("first", "continuous", "a", "b"),
+            joint("second", "continuous", "b", "c", '<mimic joint="first" multiplier="-1"/>'),
+        )
+    )
+    assert joint_values(description, {"first": 1.0, "second": 9.0}) == {"third": -1.5, "first": 1.0, "second": -1.0}
+
+
+def test_rest_is_zero_or_mid_limits(tmp_path: Path) -> None:
+    follower = '<mimic joint="j" multiplier="2"/>' + limit(-9, 9)
+    elements = (*two("prismatic", limit(1, 2)), link("c"), joint("k", "revolute", "b", "c", follower))
+    assert rest_configuration(read_description(urdf(tmp_path, *elements))) == {"j": 1.5, "k": 3.0}
+    assert rest_configuration(read_description(urdf(tmp_path, *two("prismatic", limit(-1, 3))))) == {"j": 0.0}
+
+
+def test_unknown_joint_in_a_configuration(tmp_path: Path) -> None:
+    with pytest.raises(DescriptionError, match="no joint knee"):
+        forward_kinematics(read_description(urdf(tmp_path, *two("continuous"))), {"knee": 1.0})
+
+
+def random_configuration(description, seed: int) -> dict[str, float]:  # type: ignore[no-untyped-def]
+    random = np.random.default_rng(seed)
+    leaders = [j for j in description.joints if j.mimic is None and j.kind is not JointType.FIXED]
+    return {j.name: float(random.uniform(max(j.lower, -3.0), min(j.upper, 3.0))) for j in leaders}
+
+
+@needs_bench
+@pytest.mark.parametrize("name", ROBOTS)
+def test_forward_kinematics_agrees_with_pinocchio(name: str) -> None:
+    pin = pytest.importorskip("pinocchio")
+    path = BENCH / "robots" / name / "model.urdf"
+    description = read_description(path)
+    model = pin.buildModelFromUrdf(str(path))
+    data = model.createData()
+    values = joint_values(description, random_configuration(description, seed=3))
+    q = pin.neutral(model)
+    for joint_name, value in values.items():
+        if model.existJointName(joint_name):
+            item = model.joints[model.getJointId(joint_name)]
+            q[item.idx_q : item.idx_q + item.nq] = (math.cos(value), math.sin(value)) if item.nq == 2 else value
+    pin.framesForwardKinematics(model, data, q)
+    poses = forward_kinematics(description, values)
+    for link_name, pose in poses.items():
+        frame = model.getFrameId(link_name, pin.FrameType.BODY)
+        np.testing.assert_allclose(pose, data.oMf[frame].homogeneous, atol=1e-9)
+
+
+@needs_bench
+@pytest.mark.parametrize("name", ["panda", "fetch"])
+def test_poses_and_meshes_agree_with_yourdfpy(name: str) -> None:
+    yourdfpy = pytest.importorskip("yourdfpy")
+    path = BENCH / "robots" / name / "model.urdf"
+    description = read_description(path)
+    other = yourdfpy.URDF.load(str(path))
+    q = random_configuration(description, seed=4)
+    other.update_cfg(q)
+    poses = forward_kinematics(description, q)
+    for item in description.links:
+        np.testing.assert_allclose(poses[item.name], other.get_transform(item.name), atol=1e-6)
+    ours = np.concatenate(
+        [
+            mesh.vertices[mesh.faces].reshape(-1, 3) @ poses[item.name][:3, :3].T + poses[item.name][:3, 3]
+            for item in description.links
+            for mesh in item.meshes
+        ]
+    )
+    np.testing.assert_allclose([ours.min(0), ours.max(0)], other.scene.bounds, atol=1e-6)
+
+
+@needs_bench
+def test_every_benchmark_model_has_the_parts_that_its_record_states() -> None:
+    wrong = []
+    for path in sorted(BENCH.glob("*/*/model.urdf")):
+        if path.parent.name in ("h1", "fetch"):  # seconds each; the erase tests read all robots
+            continue
+        facts = json.loads((path.parent / "source.json").read_text())
+        description = read_description(path)
+        groups = rigid_groups(description)
+        counts = (len(groups), sum(group.has_geometry for group in groups))
+        rest = {k: v for k, v in rest_configuration(description).items() if v != 0.0}
+        leaders = {name: value for name, value in rest.items() if description.joint_by_name[name].mimic is None}
+        if counts != (facts["rigid_parts"], facts["rigid_parts_with_geometry"]) or leaders != pytest.approx(
+            facts["rest"]
+        ):
+            wrong.append(path.parent.name)
+    assert wrong == []
