@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import igl
@@ -15,11 +16,15 @@ from scipy import ndimage
 if TYPE_CHECKING:
     from torch import Tensor
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import FloatArray, IntArray, Part
     from kinematify.config import SdfConfig
 
 # Queries are cut into pieces of this many points: 10 MB of results at a time, and no loss of speed.
 _CHUNK_POINTS = 200_000
+# Longest edge for winding numbers, fraction of the part's extent: between 1/4 and 1/16 they are quickest.
+_WINDING_EDGE = 0.125
+# No more triangles than this after bisection: 100 MB of search structure.
+_WINDING_FACES = 500_000
 
 BoolArray = NDArray[np.bool_]
 
@@ -66,10 +71,39 @@ class _Surface:
     def winding(self, points: FloatArray) -> FloatArray:
         """Generalised winding number, 1 inside and 0 outside a closed mesh, (n,)."""
         numbers = np.empty(len(points))
+        vertices, faces = self._compact
         for piece in _pieces(len(points)):
             local = np.ascontiguousarray(points[piece] - self._origin, dtype=np.float64)
-            numbers[piece] = igl.fast_winding_number(self._vertices, self._faces, local)
+            numbers[piece] = igl.fast_winding_number(vertices, faces, local)
         return numbers
+
+    @cached_property
+    def _compact(self) -> tuple[FloatArray, IntArray]:
+        """The same surface in triangles without long edges.
+
+        Winding numbers are quick because far clusters of triangles are summed up; a fan of needles, as on the cap of
+        a cylinder, is never far, and would be 20 times as slow.
+        """
+        longest = _WINDING_EDGE * float(np.ptp(self._vertices[self._faces].reshape(-1, 3), axis=0).max())
+        triangles = _bisected(self._vertices[self._faces], longest)
+        return triangles.reshape(-1, 3), np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
+
+
+def _bisected(triangles: FloatArray, longest: float) -> FloatArray:
+    """Halve triangles at their longest edge while that is above `longest` and the number permits, (F, 3, 3)."""
+    kept: list[FloatArray] = []
+    count, rest = 0, triangles
+    while len(rest):
+        lengths = np.linalg.norm(rest - rest[:, [1, 2, 0]], axis=2)
+        final = (lengths.max(axis=1) <= longest) | (count + len(rest) > _WINDING_FACES)
+        kept.append(rest[final])
+        count += int(final.sum())
+        turned = (lengths[~final].argmax(axis=1)[:, None] + np.arange(3)) % 3
+        rest = np.take_along_axis(rest[~final], turned[:, :, None], axis=1)
+        middle = 0.5 * (rest[:, 0] + rest[:, 1])
+        halves = [np.stack([rest[:, 0], middle, rest[:, 2]], 1), np.stack([middle, rest[:, 1], rest[:, 2]], 1)]
+        rest = np.concatenate(halves)
+    return np.ascontiguousarray(np.concatenate(kept))
 
 
 def _pieces(count: int) -> list[slice]:
@@ -111,7 +145,7 @@ class SignedDistanceGrid:
         sampled = torch.nn.functional.grid_sample(
             self._values, unit.flip(-1).reshape(1, 1, 1, -1, 3), padding_mode="border", align_corners=True
         )
-        return sampled.reshape(exact.shape[:-1]) + torch.linalg.vector_norm(exact - inside, dim=-1)
+        return sampled.reshape(exact.shape[:-1]) + _length(exact - inside)
 
     def value_and_gradient(self, points: Tensor) -> tuple[Tensor, Tensor]:
         """Signed distance [m], shape (...), and its gradient in the world frame, shape (..., 3), both detached."""
@@ -120,6 +154,14 @@ class SignedDistanceGrid:
             values = self.value(leaf)
             (gradient,) = torch.autograd.grad(values.sum(), leaf)
         return values.detach(), gradient
+
+
+def _length(vectors: Tensor) -> Tensor:
+    """Norm over the last dimension with gradient 0 at 0, (..., 3) -> (...); four times as quick as vector_norm."""
+    x, y, z = vectors.unbind(-1)
+    squares = x * x + y * y + z * z
+    zero = squares == 0.0
+    return torch.sqrt(squares.masked_fill(zero, 1.0)).masked_fill(zero, 0.0)
 
 
 @dataclass(frozen=True)
@@ -136,7 +178,7 @@ class _Lattice:
 
 
 def _lattice(part: Part, config: SdfConfig) -> _Lattice:
-    """Cubic cells around the part; an even number of them along each axis, so that every second node reaches the end."""
+    """Cubic cells around the part, an even number along each axis, so that every second node reaches the end."""
     margin = config.margin * part.diagonal
     extent = part.bounds[1] - part.bounds[0] + 2.0 * margin
     spacing = float(extent.max()) / config.resolution
@@ -149,24 +191,33 @@ def _grid_values(part: Part, lattice: _Lattice, band_cells: float) -> FloatArray
     """Signed distance at every node [m], shape of the lattice.
 
     Exact within `band_cells` cells of the surface. Further out a node takes the surface point of the nearest node of
-    the band (at most half a cell too far, and ten times as quick), and the winding number of every second node.
+    the band (about half a cell too far at worst, and ten times as quick), and the winding number of every second node.
     """
     surface = _Surface(part)
-    band, values, nearest = _exact_band(surface, lattice, band_cells)
-    nodes, far = lattice.nodes(), ~band
-    source = ndimage.distance_transform_edt(far, return_distances=False, return_indices=True)
+    measured, values, nearest = _exact_band(surface, lattice, band_cells)
+    nodes, far = lattice.nodes(), ~measured
+    # Of what was measured only an even layer may hand on its surface points; outliers would hand on bad ones.
+    close = measured & (values <= band_cells * lattice.spacing)
+    source = ndimage.distance_transform_edt(~close, return_distances=False, return_indices=True)
     values[far] = np.linalg.norm(nodes[far] - nearest[tuple(axis[far] for axis in source)], axis=1)
+    return np.where(np.abs(_winding(surface, lattice, close)) > 0.5, -values, values)
+
+
+def _winding(surface: _Surface, lattice: _Lattice, close: BoolArray) -> FloatArray:
+    """Winding numbers of all nodes: asked for at `close` ones and every second one, smooth between those."""
     coarse = lattice.nodes(2)
-    winding = _refined(surface.winding(coarse.reshape(-1, 3)).reshape(coarse.shape[:3]))
-    winding[band] = surface.winding(nodes[band])
-    return np.where(np.abs(winding) > 0.5, -values, values)
+    # One call, for it is the search structure that takes the time.
+    asked = surface.winding(np.concatenate([coarse.reshape(-1, 3), lattice.nodes()[close]]))
+    winding = _refined(asked[: coarse[..., 0].size].reshape(coarse.shape[:3]))
+    winding[close] = asked[coarse[..., 0].size :]
+    return winding
 
 
 def _exact_band(surface: _Surface, lattice: _Lattice, band_cells: float) -> tuple[BoolArray, FloatArray, FloatArray]:
     """Nodes that may be near the surface, from coarse to fine; the others are certainly beyond the band.
 
     Returns:
-        Mask of the measured nodes, their distances [m] (elsewhere a lower bound), and their nearest surface points.
+        Mask of the measured nodes, their distances [m] (a lower bound elsewhere), and their nearest surface points.
     """
     bound = np.zeros([-(-count // 8) for count in lattice.counts])
     for stride in (4, 2, 1):

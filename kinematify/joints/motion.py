@@ -14,12 +14,13 @@ if TYPE_CHECKING:
 
 
 def unit_axis(free: Tensor) -> Tensor:
-    """u = a / |a| for an unconstrained a, shape (..., 3); torch derives the paper's Jacobian from it."""
-    return free / torch.linalg.vector_norm(free, dim=-1, keepdim=True)
+    """Unit axis u = a / |a| for an unconstrained a, shape (..., 3); torch derives the paper's Jacobian from it."""
+    unit: Tensor = free / torch.linalg.vector_norm(free, dim=-1, keepdim=True)
+    return unit
 
 
 def cross_matrix(axes: Tensor) -> Tensor:
-    """[u]_x with [u]_x v = u x v, shape (..., 3) -> (..., 3, 3)."""
+    """Cross-product matrix: [u]_x with [u]_x v = u x v, shape (..., 3) -> (..., 3, 3)."""
     x, y, z = axes.unbind(-1)
     zero = torch.zeros_like(x)
     rows = [torch.stack(row, -1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))]
