@@ -202,7 +202,6 @@ def _true_joints(
 def _true_joint(step: _Step, value: float, T_world_link: Mapping[str, FloatArray]) -> TrueJoint:
     """The joint in the world frame, ends still open; walked against its direction, its axis points the other way."""
     joint, sign = step.joint, 1.0 if step.downward else -1.0
-    lower, upper = sorted((sign * (joint.lower - value), sign * (joint.upper - value)))
     # The child's frame moves about or along the axis, so that its origin and the axis in it stay on the line.
     T_world_child = T_world_link[joint.child]
     return TrueJoint(
@@ -213,9 +212,9 @@ def _true_joint(step: _Step, value: float, T_world_link: Mapping[str, FloatArray
         child=-1,
         axis=sign * (T_world_child[:3, :3] @ joint.axis),
         pivot=T_world_child[:3, 3],
-        lower=lower,
-        upper=upper,
-        value=sign * value,
+        lower=joint.lower - value,
+        upper=joint.upper - value,
+        value=value,
         mimic=joint.mimic,
     )
 

@@ -1,0 +1,303 @@
+"""Erasing kinematics: the protocol's parts, the truth about every joint, and the laws that both obey."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kinematify.assembly.description import read_description
+from kinematify.assembly.erase import GroundTruth, erase, truth_path, write_erased
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.load import load_assembly
+from kinematify.assembly.robot import (
+    DescribedJoint,
+    DescribedLink,
+    LinkMesh,
+    Mimic,
+    RobotDescription,
+    rotation_about,
+)
+from kinematify.config import load_config
+from kinematify.errors import DescriptionError, InputError, OutputError
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.truth import TrueJoint
+
+BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
+MODELS = sorted(BENCH.glob("*/*/model.urdf"))
+needs_bench = pytest.mark.skipif(not MODELS, reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
+
+
+def wedge(name: str, size: float) -> DescribedLink:
+    """A link whose shape no rotation maps to itself, so that its pose can be read off its vertices."""
+    vertices = size * np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3.0]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    return DescribedLink(name=name, meshes=(LinkMesh(vertices=vertices, faces=faces),))
+
+
+def joint(name: str, parent: str, child: str, kind: str = "revolute", **changes: object) -> DescribedJoint:
+    pose = np.eye(4)
+    pose[:3, :3] = rotation_about(np.array([0.6, 0.0, 0.8]), 0.7)
+    pose[:3, 3] = [0.3, -0.2, 0.5]
+    unlimited = kind == "continuous"
+    base = DescribedJoint(
+        name=name, kind=JointType(kind), parent=parent, child=child, T_parent_child=pose, axis=np.array([0, 0.6, 0.8]),
+        lower=-math.inf if unlimited else -1.0, upper=math.inf if unlimited else 2.0,
+    )  # fmt: skip
+    return replace(base, **changes)  # type: ignore[arg-type]
+
+
+def robot(links: list[DescribedLink], *joints: DescribedJoint) -> RobotDescription:
+    return RobotDescription(name="r", links=tuple(links), joints=joints)
+
+
+def chain() -> RobotDescription:
+    """Base, arm, slide and a mimicking finger; the tip is fixed to the arm."""
+    return robot(
+        [wedge(name, 1.0 + 0.1 * k) for k, name in enumerate("abcdt")],
+        joint("turn", "a", "b"),
+        joint("tip", "b", "t", "fixed", lower=0.0, upper=0.0),
+        joint("slide", "b", "c", "prismatic"),
+        joint("finger", "c", "d", mimic=Mimic(joint="turn", multiplier=-0.5, offset=0.1)),
+    )
+
+
+def empty(name: str) -> DescribedLink:
+    return DescribedLink(name=name)
+
+
+def screwed(true: TrueJoint, value: float, points: FloatArray) -> FloatArray:
+    if true.kind is JointType.PRISMATIC:
+        return points + value * true.axis
+    return (points - true.pivot) @ rotation_about(true.axis, value).T + true.pivot
+
+
+def test_links_on_fixed_joints_are_one_part() -> None:
+    erased = erase(chain(), shuffle=False)
+    assert erased.truth.part_links == (("a",), ("b", "t"), ("c",), ("d",))
+    assert [len(part.faces) for part in erased.parts] == [4, 8, 4, 4]
+    assert erased.truth.parents == (-1, 0, 1, 2)
+    assert erased.truth.root == 0
+
+
+def test_names_are_anonymous_and_order_is_shuffled() -> None:
+    plain, erased = erase(chain(), shuffle=False), erase(chain(), seed=1)
+    assert erased.truth.part_names == ("part_000", "part_001", "part_002", "part_003")
+    assert [part.name for part in erased.parts] == list(erased.truth.part_names)
+    assert erased.truth.part_links != plain.truth.part_links
+    assert sorted(erased.truth.part_links) == sorted(plain.truth.part_links)
+
+
+def test_same_seed_same_result() -> None:
+    one, other = (erase(chain(), pose="random", seed=5) for _ in range(2))
+    assert [part.mesh_hash for part in one.parts] == [part.mesh_hash for part in other.parts]
+    assert one.truth.to_json() == other.truth.to_json()
+    assert erase(chain(), pose="random", seed=6).truth.to_json() != one.truth.to_json()
+
+
+def test_shuffling_keeps_every_surface() -> None:
+    plain, erased = erase(chain(), shuffle=False), erase(chain(), seed=2)
+    for part, links in zip(erased.parts, erased.truth.part_links, strict=True):
+        twin = plain.parts[plain.truth.part_links.index(links)]
+        assert part.mesh_hash != twin.mesh_hash
+        assert corner_sets(part.vertices[part.faces]) == corner_sets(twin.vertices[twin.faces])
+        np.testing.assert_allclose(part.centroid, twin.centroid)
+        np.testing.assert_allclose(enclosed_volume(part), enclosed_volume(twin))
+
+
+def corner_sets(triangles: FloatArray) -> set[frozenset[tuple[float, ...]]]:
+    return {frozenset(tuple(corner) for corner in triangle) for triangle in triangles.tolist()}
+
+
+def enclosed_volume(part: object) -> float:
+    a, b, c = (part.vertices[part.faces[:, k]] for k in range(3))  # type: ignore[attr-defined]
+    return float(np.einsum("fi,fi->", a, np.cross(b, c)) / 6.0)
+
+
+@given(seed=st.integers(0, 10_000))
+def test_random_pose_stays_within_the_protocol(seed: int) -> None:
+    truth = erase(chain(), pose="random", seed=seed).truth
+    q = truth.configuration
+    assert abs(q["turn"]) <= 0.3 * 1.5
+    assert abs(q["slide"]) <= 0.3 * 1.5
+    assert q["finger"] == pytest.approx(-0.5 * q["turn"] + 0.1)
+    for true in truth.joints:
+        assert true.lower + true.value == pytest.approx(-1.0)
+        assert true.upper + true.value == pytest.approx(2.0)
+        assert true.value == q[true.name]
+
+
+def test_random_pose_moves_a_continuous_joint_by_up_to_54_degrees() -> None:
+    described = robot([wedge("a", 1), wedge("b", 1)], joint("j", "a", "b", "continuous"))
+    values = [erase(described, pose="random", seed=seed).truth.configuration["j"] for seed in range(100)]
+    assert 0.25 * math.pi < np.abs(values).max() <= 0.3 * math.pi
+
+
+def test_random_pose_keeps_to_limits_near_rest() -> None:
+    described = robot([wedge("a", 1), wedge("b", 1)], joint("j", "a", "b", "prismatic", lower=0.0, upper=1.0))
+    values = [erase(described, pose="random", seed=seed).truth.configuration["j"] for seed in range(40)]
+    assert min(values) == 0.0
+    assert 0.1 < max(values) <= 0.15
+
+
+@given(seed=st.integers(0, 10_000), yaw=st.floats(-180, 180))
+def test_moving_along_the_true_joints_undoes_the_random_pose(seed: int, yaw: float) -> None:
+    """The truth's axes, pivots and values carry every part back to where it stands at rest."""
+    rest, moved = (
+        erase(chain(), yaw_deg=yaw, shuffle=False),
+        erase(chain(), pose="random", seed=seed, yaw_deg=yaw, shuffle=False),
+    )
+    below = {0: {1, 2, 3}, 1: {2, 3}, 2: {3}}
+    shapes = [part.vertices for part in moved.parts]
+    for true in reversed(moved.truth.joints):  # from the leaves, so that no earlier axis has moved yet
+        back = rest.truth.configuration[true.name] - moved.truth.configuration[true.name]
+        carried = {true.child} | below.get(true.child, set())
+        shapes = [screwed(true, back, shape) if k in carried else shape for k, shape in enumerate(shapes)]
+    for shape, part in zip(shapes, rest.parts, strict=True):
+        np.testing.assert_allclose(shape, part.vertices, atol=1e-12)
+
+
+@given(seed=st.integers(0, 10_000), yaw=st.floats(-360, 360))
+def test_yaw_turns_parts_and_truth_alike(seed: int, yaw: float) -> None:
+    plain, turned = (erase(chain(), pose="random", seed=seed, yaw_deg=angle) for angle in (0.0, yaw))
+    turn = rotation_about(np.array([0.0, 0.0, 1.0]), math.radians(yaw))
+    for one, other in zip(plain.parts, turned.parts, strict=True):
+        np.testing.assert_allclose(one.vertices @ turn.T, other.vertices, atol=1e-12)
+        np.testing.assert_array_equal(one.faces, other.faces)
+    for one, other in zip(plain.truth.joints, turned.truth.joints, strict=True):
+        np.testing.assert_allclose(turn @ one.axis, other.axis, atol=1e-12)
+        np.testing.assert_allclose(turn @ one.pivot, other.pivot, atol=1e-12)
+        assert (one.parent, one.child, one.lower, one.upper) == (other.parent, other.child, other.lower, other.upper)
+
+
+def test_links_without_geometry_make_chains() -> None:
+    described = robot(
+        [wedge("a", 1), empty("cross"), wedge("b", 1)], joint("pitch", "a", "cross"), joint("roll", "cross", "b")
+    )
+    truth = erase(described, shuffle=False).truth
+    assert [(j.name, j.parent, j.child, j.serial, j.chain_length) for j in truth.joints] == [
+        ("pitch", 0, 1, 0, 2),
+        ("roll", 0, 1, 1, 2),
+    ]
+    assert truth.dropped == ()
+
+
+def test_joints_above_the_first_geometry_and_of_bare_frames_are_dropped() -> None:
+    described = robot(
+        [empty("world"), wedge("a", 1), wedge("b", 1), empty("frame")],
+        joint("lift", "world", "a"), joint("turn", "a", "b"), joint("camera", "b", "frame"),
+    )  # fmt: skip
+    truth = erase(described, shuffle=False).truth
+    assert [j.name for j in truth.joints] == ["turn"]
+    assert truth.dropped == ("lift", "camera")
+
+
+def test_parts_that_meet_only_in_empty_links_hang_on_the_first() -> None:
+    described = robot(
+        [empty("world"), wedge("a", 1), wedge("b", 1), wedge("c", 1)],
+        joint("ja", "world", "a"), joint("jb", "world", "b"), joint("jc", "world", "c"),
+    )  # fmt: skip
+    rest, moved = erase(described, shuffle=False), erase(described, pose="random", seed=3, shuffle=False)
+    assert [(j.name, j.source, j.parent, j.child) for j in rest.truth.joints] == [
+        ("ja", "ja", 0, 1), ("jb", "jb", 0, 1), ("ja#2", "ja", 0, 2), ("jc", "jc", 0, 2),
+    ]  # fmt: skip
+    # Moving both joints of the chain back leaves the part as it stands at rest, seen from the root part.
+    climb, descent = moved.truth.joints[:2]
+    shape = screwed(descent, -descent.value, moved.parts[1].vertices)
+    shape = screwed(climb, -climb.value, shape)
+    turn, shift = rigid_between(moved.parts[0].vertices, rest.parts[0].vertices)
+    np.testing.assert_allclose(shape @ turn.T + shift, rest.parts[1].vertices, atol=1e-9)
+    assert climb.lower + climb.value == pytest.approx(-1.0)
+    assert abs(climb.value) > 0.01
+
+
+def rigid_between(source: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
+    turn = np.linalg.solve(source[1:] - source[0], target[1:] - target[0]).T
+    return turn, target[0] - turn @ source[0]
+
+
+def test_nothing_to_erase() -> None:
+    with pytest.raises(DescriptionError, match="No link of r has geometry"):
+        erase(robot([empty("a")]))
+    with pytest.raises(DescriptionError, match=r"'open' is unknown.*rest, random"):
+        erase(chain(), pose="open")
+
+
+@given(seed=st.integers(0, 1000))
+def test_truth_survives_json(seed: int) -> None:
+    described = robot(
+        [wedge("a", 1), wedge("b", 1), wedge("c", 1)],
+        joint("j", "a", "b", "continuous"),
+        joint("k", "b", "c", mimic=Mimic(joint="j", multiplier=2.0, offset=0.0)),
+    )
+    truth = erase(described, pose="random", seed=seed, yaw_deg=12.5).truth
+    again = GroundTruth.from_json(truth.to_json())
+    assert again.to_json() == truth.to_json()
+    assert again.joints[0].upper == math.inf
+    assert again.joints[1].mimic == truth.joints[1].mimic
+    np.testing.assert_array_equal(again.joints[0].axis, truth.joints[0].axis)
+    assert "Infinity" not in truth.to_json()
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"schema": 99}', '{"schema": 1, "joints": []}'])
+def test_other_text_is_no_truth(text: str) -> None:
+    with pytest.raises(InputError, match="not a ground truth of schema 1"):
+        GroundTruth.from_json(text)
+
+
+def test_written_parts_are_read_back_exactly(tmp_path: Path) -> None:
+    erased = erase(chain(), pose="random", seed=4, yaw_deg=37.0)
+    truth_file = write_erased(erased, tmp_path / "deep" / "parts")
+    assert truth_file == truth_path(tmp_path / "deep" / "parts") == tmp_path / "deep" / "parts.truth.json"
+    assert sorted(file.name for file in (tmp_path / "deep").iterdir()) == ["parts", "parts.truth.json"]
+    assert GroundTruth.from_json(truth_file.read_text()).to_json() == erased.truth.to_json()
+    loaded = load_assembly(tmp_path / "deep" / "parts", config=load_config().assembly)
+    for part, twin in zip(loaded.parts, erased.parts, strict=True):
+        assert part.name == twin.name
+        assert corner_sets(part.vertices[part.faces]) == corner_sets(twin.vertices[twin.faces])
+
+
+def test_nothing_is_overwritten(tmp_path: Path) -> None:
+    erased = erase(chain())
+    write_erased(erased, tmp_path / "parts")
+    with pytest.raises(OutputError, match="exists already"):
+        write_erased(erased, tmp_path / "parts")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="exists already"):
+        write_erased(erased, tmp_path / "file")
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_erased(erased, tmp_path / "file" / "parts")
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+@needs_bench
+@pytest.mark.parametrize("kind", ["robots", "everyday"])
+def test_benchmark_models_have_the_parts_and_joints_that_their_records_state(kind: str) -> None:
+    wrong = []
+    for path in (path for path in MODELS if path.parent.parent.name == kind):
+        facts = json.loads((path.parent / "source.json").read_text())
+        erased = erase(read_description(path), pose="random", seed=1)
+        found = (len(erased.parts), len(erased.truth.joints), erased.truth.parents.count(-1), erased.truth.dropped)
+        if found != (facts["rigid_parts_with_geometry"], facts["dof"], 1, ()):
+            wrong.append((path.parent.name, found))
+    assert wrong == []
+
+
+@needs_bench
+def test_the_screw_cap_is_a_chain_of_two_joints() -> None:
+    truth = erase(read_description(BENCH / "everyday" / "bottle_3763" / "model.urdf")).truth
+    assert [(j.name, j.kind, j.serial, j.chain_length) for j in truth.joints] == [
+        ("joint_2", "prismatic", 0, 2),
+        ("joint_0", "continuous", 1, 2),
+    ]
+    np.testing.assert_allclose(truth.joints[0].axis, truth.joints[1].axis)
