@@ -206,7 +206,10 @@ def _thinned(parts: Sequence[Part], config: AssemblyConfig) -> tuple[list[Part],
 
 
 def _simplified(part: Part, config: AssemblyConfig) -> Part:
-    vertices, faces = fast_simplification.simplify(part.vertices, part.faces, target_count=config.max_part_faces)
+    # Its binding refuses read-only arrays.
+    vertices, faces = fast_simplification.simplify(
+        part.vertices.copy(), part.faces.copy(), target_count=config.max_part_faces
+    )
     vertices, faces = welded(np.asarray(vertices, dtype=np.float64), faces.astype(np.int64), config.weld)
     return Part(name=part.name, vertices=vertices, faces=faces)
 

@@ -20,13 +20,16 @@ _WELD = 1e-9
 
 
 def baked(description: RobotDescription, group: RigidGroup, T_world_link: Mapping[str, FloatArray]) -> RawMesh:
-    """Return all meshes of a group that has geometry as one, in the world frame [m], named after its top link.
+    """Return all meshes of a group that has geometry as one, in the world frame [m].
+
+    It is named after the group's first link with geometry: those above it are frames such as ``world``.
 
     Args:
         description: The robot.
         group: One of its rigid groups.
         T_world_link: Pose of every link, shape (4, 4).
     """
+    name = next(link for link in group.links if description.link_by_name[link].has_geometry)
     vertices, faces, count = [], [], 0
     for link in group.links:
         transform = T_world_link[link]
@@ -36,4 +39,4 @@ def baked(description: RobotDescription, group: RigidGroup, T_world_link: Mappin
             vertices.append(points @ transform[:3, :3].T + transform[:3, 3])
             faces.append(triangles + count)
             count += len(points)
-    return RawMesh(name=group.top, vertices=np.concatenate(vertices), faces=np.concatenate(faces))
+    return RawMesh(name=name, vertices=np.concatenate(vertices), faces=np.concatenate(faces))

@@ -5,12 +5,13 @@ from __future__ import annotations
 import logging
 import warnings
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
 from trimesh.scene import Scene
 
+from kinematify.assembly.gltf_file import read_gltf
 from kinematify.assembly.obj_file import read_obj
 from kinematify.errors import AssemblyError
 
@@ -63,7 +64,7 @@ def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
         )
     if not path.is_file():
         raise AssemblyError(f"There is no mesh file {path}. Check the path.")
-    meshes = _guarded(path, _read_obj if path.suffix.lower() == ".obj" else _read_scene)
+    meshes = _guarded(path, _READERS.get(path.suffix.lower(), _read_scene))
     if not empty_ok and not any(len(mesh.faces) for mesh in meshes):
         raise AssemblyError(
             f"The file {path} holds no triangle (it may be empty, a point cloud, or a drawing). Give a file with a "
@@ -122,11 +123,17 @@ def _read_obj(path: Path) -> tuple[RawMesh, ...]:
     return tuple(compacted(mesh) for mesh in meshes) if len(meshes) > 1 else meshes
 
 
+def _read_gltf(path: Path) -> tuple[RawMesh, ...]:
+    return tuple(
+        _placed(RawMesh(name=node.name, vertices=node.vertices, faces=node.faces), node.T_world_node)
+        for node in read_gltf(path)
+    )
+
+
 def _read_scene(path: Path) -> tuple[RawMesh, ...]:
     suffix = path.suffix.lower()
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
-    options: dict[str, Any] = {"merge_primitives": True} if suffix in GLTF_SUFFIXES else {}
-    scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True, **options)
+    scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True)
     meshes = tuple(_scene_meshes(scene, path))
     if suffix == ".stl" and not meshes and not _is_empty_stl(path):
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
@@ -148,14 +155,16 @@ def _scene_meshes(scene: Scene, path: Path) -> Iterator[RawMesh]:
         if not isinstance(geometry, trimesh.Trimesh):
             continue
         vertices = np.asarray(geometry.vertices, dtype=np.float64)
-        # A mirrored instance turns its triangles inside out.
-        order = [0, 2, 1] if np.linalg.det(transform[:3, :3]) < 0 else [0, 1, 2]
-        yield RawMesh(
-            name=str(node),
-            vertices=unit * (vertices @ transform[:3, :3].T + transform[:3, 3]),
-            faces=np.asarray(geometry.faces, dtype=np.int64)[:, order],
-            unit=str(geometry.metadata.get("units", "")) if suffix == ".3mf" else "",
-        )
+        faces = np.asarray(geometry.faces, dtype=np.int64)
+        stated = str(geometry.metadata.get("units", "")) if suffix == ".3mf" else ""
+        yield _placed(RawMesh(name=str(node), vertices=vertices, faces=faces, unit=stated), transform, unit)
+
+
+def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
+    """Apply the transform of a node, shape (4, 4), then a change of unit; mirroring would turn a mesh inside out."""
+    order = [0, 2, 1] if np.linalg.det(transform[:3, :3]) < 0 else [0, 1, 2]
+    vertices = unit * (mesh.vertices @ transform[:3, :3].T + transform[:3, 3])
+    return replace(mesh, vertices=vertices, faces=mesh.faces[:, order])
 
 
 def _collada_unit(path: Path) -> float:
@@ -166,3 +175,7 @@ def _collada_unit(path: Path) -> float:
         document = Collada(file, ignore=[DaeError])
     unit = document.assetInfo.unitmeter
     return 1.0 if unit is None else float(unit)
+
+
+_READERS = {".obj": _read_obj, ".glb": _read_gltf, ".gltf": _read_gltf}
+"""Formats whose groups, names or exact numbers the general reader would lose."""

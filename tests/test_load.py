@@ -1,0 +1,577 @@
+"""Every form of input, every complaint about it, and what is set aside instead of lost."""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import stat
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kinematify.assembly.load import load_assembly
+from kinematify.assembly.names import natural_key, part_names
+from kinematify.assembly.weld import welded
+from kinematify.config import load_config
+from kinematify.errors import AssemblyError, InputError
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import AssemblyConfig
+
+CONFIG = load_config().assembly
+
+
+def changed(**values: object) -> AssemblyConfig:
+    return CONFIG.model_copy(update=values)
+
+
+def box(x: float = 0.0, size: float = 1.0) -> trimesh.Trimesh:
+    """A box of 1 x 2 x 3 `size`, which tells the axes apart, with its corner at (x, 0, 0)."""
+    return trimesh.creation.box(bounds=[[x, 0, 0], [x + size, 2 * size, 3 * size]])
+
+
+def scene(names: tuple[str, ...] = ("body", "door")) -> trimesh.Scene:
+    """Instances of one box, each 2 m further along x by its node's transform."""
+    made = trimesh.Scene()
+    for k, name in enumerate(names):
+        made.add_geometry(
+            box(),
+            node_name=name,
+            geom_name="shape",
+            transform=trimesh.transformations.translation_matrix([2.0 * k, 0, 0]),
+        )
+    return made
+
+
+def folder_of(path: Path, **meshes: trimesh.Trimesh) -> Path:
+    path.mkdir(exist_ok=True)
+    for name, mesh in meshes.items():
+        mesh.export(path / f"{name}.obj")
+    return path
+
+
+def zipped(path: Path, files: dict[str, bytes]) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return path
+
+
+def obj(mesh: trimesh.Trimesh) -> bytes:
+    return str(mesh.export(file_type="obj")).encode()
+
+
+def load(path: Path, config: AssemblyConfig = CONFIG, **options: object) -> Assembly:
+    return load_assembly(path, config=config, **options)  # type: ignore[arg-type]
+
+
+# ---- forms of input -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", ["glb", "gltf"])
+def test_gltf_nodes_are_parts_with_their_transforms_and_z_up(tmp_path: Path, suffix: str) -> None:
+    if suffix == "glb":
+        scene().export(tmp_path / "a.glb")
+    else:
+        for name, content in scene().export(file_type="gltf").items():
+            (tmp_path / name).write_bytes(content)
+    loaded = load(next(tmp_path.glob("*.gl*f" if suffix == "gltf" else "*.glb")))
+    assert loaded.names == ("body", "door")
+    np.testing.assert_allclose(loaded.parts[0].bounds, [[0, -3, 0], [1, 0, 2]], atol=1e-6)
+    np.testing.assert_allclose(loaded.parts[1].bounds, [[2, -3, 0], [3, 0, 2]], atol=1e-6)
+
+
+def test_up_axis_and_scale_can_be_given(tmp_path: Path) -> None:
+    scene().export(tmp_path / "a.glb")
+    upright = load(tmp_path / "a.glb", up="z", scale=0.1)
+    np.testing.assert_allclose(upright.parts[0].bounds, [[0, 0, 0], [0.1, 0.2, 0.3]], atol=1e-6)
+    folder = folder_of(tmp_path / "parts", a=box(), b=box(2))
+    np.testing.assert_allclose(load(folder, up="y").parts[0].bounds, [[0, -3, 0], [1, 0, 2]], atol=1e-6)
+    np.testing.assert_allclose(load(folder).parts[0].bounds, [[0, 0, 0], [1, 2, 3]], atol=1e-6)
+
+
+def test_turning_upright_keeps_handedness(tmp_path: Path) -> None:
+    scene().export(tmp_path / "a.glb")
+    part = load(tmp_path / "a.glb").parts[0]
+    assert trimesh.Trimesh(part.vertices, part.faces).volume == pytest.approx(6.0)
+
+
+def test_gltf_node_with_two_materials_is_one_part(tmp_path: Path) -> None:
+    """Two primitives of one mesh, as every modelling program writes them for two materials."""
+    tree = json.loads(scene().export(file_type="gltf")["model.gltf"])
+    files = scene().export(file_type="gltf")
+    tree["meshes"][0]["primitives"] = tree["meshes"][0]["primitives"] * 2
+    files["model.gltf"] = json.dumps(tree).encode()
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    assert load(tmp_path / "model.gltf").names == ("body", "door")
+
+
+@pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "off"])
+def test_folder_gives_one_part_per_file(tmp_path: Path, suffix: str) -> None:
+    for k in (10, 9, 1):
+        both = trimesh.util.concatenate([box(3.0 * k), box(3.0 * k + 1.5)])  # pieces of one file stay together
+        both.export(tmp_path / f"part_{k}.{suffix}")
+    loaded = load(tmp_path)
+    assert loaded.names == ("part_1", "part_9", "part_10")
+    np.testing.assert_allclose(loaded.parts[0].bounds, [[3, 0, 0], [5.5, 2, 3]], atol=1e-6)
+    assert all(len(part.faces) == 24 for part in loaded.parts)
+
+
+def test_folder_of_glb_files_is_turned_file_by_file(tmp_path: Path) -> None:
+    scene().export(tmp_path / "a.glb")
+    box(5).export(tmp_path / "b.stl")
+    loaded = load(tmp_path)
+    np.testing.assert_allclose(loaded.parts[0].bounds, [[0, -3, 0], [3, 0, 2]], atol=1e-6)
+    np.testing.assert_allclose(loaded.parts[1].bounds, [[5, 0, 0], [6, 2, 3]], atol=1e-6)
+
+
+@pytest.mark.parametrize("word", ["o", "g"])
+def test_obj_objects_and_groups_are_parts(tmp_path: Path, word: str) -> None:
+    text = io.StringIO()
+    for k, name in enumerate(("body", "left door")):
+        mesh = box(2.0 * k)
+        text.write(f"{word} {name}\nusemtl m\n")
+        text.writelines(f"v {x} {y} {z} 0.5 0.5 0.5\nvn 0 0 1\n" for x, y, z in mesh.vertices)
+        text.writelines(f"f {a}/1/1 {b}//2 {c}\n" for a, b, c in mesh.faces + 1 + 8 * k)
+    (tmp_path / "a.obj").write_text(text.getvalue())
+    loaded = load(tmp_path / "a.obj")
+    assert loaded.names == ("body", "left_door")
+    assert loaded.original_names["left_door"] == "left door"
+    np.testing.assert_allclose(loaded.parts[1].bounds, [[2, 0, 0], [3, 2, 3]])
+
+
+def test_obj_polygons_and_indices_that_count_back(tmp_path: Path) -> None:
+    square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n"
+    raised = square.replace("0\n", "5\n")
+    (tmp_path / "a.obj").write_text(f"g one\n{square}g two\n{raised}")
+    loaded = load(tmp_path / "a.obj")
+    assert [part.area for part in loaded.parts] == [1.0, 1.0]
+    assert [part.bounds[0, 2] for part in loaded.parts] == [0.0, 5.0]
+
+
+def test_3mf_objects_are_parts_and_the_unit_is_pointed_out(tmp_path: Path) -> None:
+    scene().export(tmp_path / "a.3mf")
+    loaded = load(tmp_path / "a.3mf")
+    assert loaded.names == ("body", "door")
+    assert "--scale 0.001" in loaded.warnings[0]
+    assert load(tmp_path / "a.3mf", scale=0.001).warnings == ()
+
+
+def test_one_mesh_without_labels_falls_into_its_pieces(tmp_path: Path) -> None:
+    trimesh.util.concatenate([box(9), box(0), box(3)]).export(tmp_path / "a.stl")
+    loaded = load(tmp_path / "a.stl")
+    assert loaded.names == ("piece_000", "piece_001", "piece_002")
+    assert [part.bounds[0, 0] for part in loaded.parts] == [9.0, 0.0, 3.0]
+    assert all(len(part.vertices) == 8 for part in loaded.parts)
+
+
+@pytest.mark.parametrize("form", ["npy", "list", "dict", "texts"])
+def test_labels_cut_one_mesh(tmp_path: Path, form: str) -> None:
+    trimesh.util.concatenate([box(0), box(1), box(2)]).export(tmp_path / "a.ply")
+    values = [7] * 12 + [10] * 12 + [7] * 12
+    labels = tmp_path / ("l.npy" if form == "npy" else "l.json")
+    if form == "npy":
+        np.save(labels, np.array(values, dtype=np.uint8))
+    elif form == "texts":
+        labels.write_text(json.dumps(["hand le" if value == 7 else "body" for value in values]))
+    else:
+        labels.write_text(json.dumps(values if form == "list" else {"labels": values}))
+    loaded = load(tmp_path / "a.ply", labels=labels)
+    assert loaded.names == (("body", "hand_le") if form == "texts" else ("part_7", "part_10"))
+    assert sorted(len(part.faces) for part in loaded.parts) == [12, 24]
+
+
+def test_urdf_gives_rigid_groups_at_rest(tmp_path: Path) -> None:
+    box().export(tmp_path / "m.stl")
+    shape = '<visual><geometry><mesh filename="m.stl"/></geometry></visual>'
+    (tmp_path / "r.urdf").write_text(
+        f'<robot name="r"><link name="world"/><link name="base">{shape}</link><link name="lid">{shape}</link>'
+        '<joint name="f" type="fixed"><parent link="world"/><child link="base"/></joint>'
+        '<joint name="j" type="prismatic"><parent link="base"/><child link="lid"/><axis xyz="1 0 0"/>'
+        '<limit lower="2" upper="4" effort="1" velocity="1"/></joint></robot>'
+    )
+    loaded = load(tmp_path / "r.urdf")
+    assert loaded.names == ("base", "lid")
+    np.testing.assert_allclose(loaded.parts[1].bounds, [[3, 0, 0], [4, 2, 3]])
+    (tmp_path / "m.stl").unlink()
+    refused(tmp_path, r"give the description .*r\.urdf")
+
+
+@pytest.mark.parametrize("form", ["folder", "file", "urdf"])
+def test_zip_of_every_form(tmp_path: Path, form: str) -> None:
+    if form == "folder":
+        files = {"x/a.obj": obj(box()), "x/b.obj": obj(box(3)), "x/notes.txt": b"", "__MACOSX/x/._a.obj": b"junk"}
+    elif form == "file":
+        files = {"all.glb": scene().export(file_type="glb")}
+    else:
+        mesh = '<visual><geometry><mesh filename="package://pkg/m/{}.obj"/></geometry></visual>'
+        text = (
+            f'<robot name="r"><link name="a">{mesh.format("a")}</link><link name="b">{mesh.format("b")}</link>'
+            '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>'
+        )
+        files = {"pkg/urdf/r.urdf": text.encode(), "pkg/m/a.obj": obj(box()), "pkg/m/b.obj": obj(box(3))}
+    loaded = load(zipped(tmp_path / "a.zip", files))
+    assert loaded.names == (("body", "door") if form == "file" else ("a", "b"))
+    assert loaded.source == str(tmp_path / "a.zip")
+
+
+def test_truth_is_never_opened(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path / "parts", a=box(), b=box(3))
+    for truth in (tmp_path / "parts.truth.json", folder / "a.truth.json"):
+        truth.write_text("not even JSON")
+        truth.chmod(0)
+    assert load(folder).names == ("a", "b")
+    with pytest.raises(AssemblyError, match="no labels file"):
+        load(folder / "a.obj", labels=folder / "a.truth.json")
+
+
+def test_other_files_are_named_in_a_warning(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, a=box(), b=box(3))
+    for name in ("c.fbx", "a.mtl", "wood.png", ".hidden"):
+        (folder / name).write_text("")
+    (folder / "more").mkdir()
+    assert load(folder).warnings == ("Not read, because they are no mesh files: c.fbx, more.",)
+
+
+def test_gltf_matrix_rotation_scale_and_mirror(tmp_path: Path) -> None:
+    """Every way to state a transform, two levels deep, against the product of the matrices."""
+    files = scene(("one", "two", "three")).export(file_type="gltf")
+    tree = json.loads(files["model.gltf"])
+    mesh = next(node["mesh"] for node in tree["nodes"] if "mesh" in node)
+    half = 0.5**0.5
+    tree["nodes"] = [
+        {"name": "up", "rotation": [half, 0, 0, half], "translation": [0, 0, 5], "children": [1, 2]},
+        {"name": "one", "mesh": mesh, "scale": [-1, 1, 2]},
+        {"name": "two", "mesh": mesh, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 0, 0, 1], "camera": 0},
+    ]
+    tree["scenes"], tree["scene"] = [{"nodes": [0]}], 0
+    files["model.gltf"] = json.dumps(tree).encode()
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    loaded = load(tmp_path / "model.gltf", up="z")
+    np.testing.assert_allclose(loaded.parts[0].bounds, [[-1, -6, 5], [0, 0, 7]], atol=1e-6)
+    np.testing.assert_allclose(loaded.parts[1].bounds, [[7, -3, 5], [8, 0, 7]], atol=1e-6)
+    volumes = [trimesh.Trimesh(part.vertices, part.faces).volume for part in loaded.parts]
+    assert volumes == pytest.approx([12.0, 6.0])
+
+
+@pytest.mark.parametrize(("mode", "corners"), [(5, [0, 1, 2, 3]), (6, [0, 1, 3, 2])])
+def test_gltf_strips_and_fans(tmp_path: Path, mode: int, corners: list[int]) -> None:
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], dtype="<f4")
+    data = points.tobytes() + np.array(corners, dtype="<u2").tobytes()
+    views = [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 8}]
+    accessors = [
+        {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+        {"bufferView": 1, "componentType": 5123, "count": 4, "type": "SCALAR"},
+    ]
+    primitive = {"attributes": {"POSITION": 0}, "indices": 1, "mode": mode}
+    document = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 56, "uri": "data:;base64," + base64.b64encode(data).decode()}],
+        "bufferViews": views,
+        "accessors": accessors,
+        "meshes": [{"name": "sheet", "primitives": [primitive]}],
+        "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 1]}],
+    }
+    (tmp_path / "a.gltf").write_text(json.dumps(document))
+    loaded = load(tmp_path / "a.gltf", up="z")
+    assert loaded.names == ("sheet", "sheet_2")
+    for part in loaded.parts:
+        a, b, c = (part.vertices[part.faces[:, k]] for k in range(3))
+        np.testing.assert_allclose(np.cross(b - a, c - a), [[0, 0, 1], [0, 0, 1]])  # no triangle is turned over
+
+
+def test_gltf_that_would_be_misread_is_refused(tmp_path: Path) -> None:
+    files = scene().export(file_type="gltf")
+    tree = json.loads(files["model.gltf"])
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    for change, message in (
+        ({"extensionsRequired": ["KHR_draco_mesh_compression"]}, "KHR_draco.*without compression"),
+        ({"buffers": [{"uri": "../secret.bin", "byteLength": 9}] * len(tree["buffers"])}, "outside of its folder"),
+        ({"nodes": [{"children": [0], "mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0}, "no tree"),
+        ({"accessors": [{**item, "count": 10**9} for item in tree["accessors"]]}, "cannot be read"),
+    ):
+        (tmp_path / "model.gltf").write_text(json.dumps({**tree, **change}))
+        refused(tmp_path / "model.gltf", message)
+
+
+# ---- names ----------------------------------------------------------------------------------------------------------
+
+
+def test_names_are_made_safe_and_recorded(tmp_path: Path) -> None:
+    names = ("körper/links 1", "körper links_1", "门", "WORLD", "a" * 300)
+    scene(names).export(tmp_path / "a.glb")
+    loaded = load(tmp_path / "a.glb")
+    assert loaded.names == ("WORLD_part", "a" * 64, "korper_links_1", "korper_links_1_2", "part")
+    assert loaded.original_names["part"] == "门"
+    assert sorted(loaded.original_names.values()) == sorted(names)
+
+
+@given(st.lists(st.text(), min_size=1, max_size=8))
+def test_any_names_become_unique_and_plain(originals: list[str]) -> None:
+    names = part_names(originals)
+    assert len({name.casefold() for name in names}) == len(originals)
+    assert all(name.strip("_.-") == name and name.isascii() and len(name) <= 70 for name in names)
+    assert all(character.isalnum() or character in "_.-" for name in names for character in name)
+    assert part_names(names) == names
+
+
+def test_natural_order() -> None:
+    assert sorted(["p10", "p9", "q", "10", "9", "p"], key=natural_key) == ["9", "10", "p", "p9", "p10", "q"]
+
+
+# ---- what is set aside ----------------------------------------------------------------------------------------------
+
+EMPTY = "v 0 0 0\n"
+LINE = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3\nf 2 3 4\n"
+POINT = "v 8 1 1\nv 8 1 1\nv 8 1 1\nf 1 2 3\n"
+TRIANGLE = "v 8 0 0\nv 8 1 0\nv 8 0 1\nf 1 2 3\n"
+SHEET = "v 8 0 0\nv 8 1 0\nv 8 1 1\nv 8 0 1\nf 1 2 3\nf 1 3 4\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "reason", "nearest"),
+    [
+        (EMPTY, "no triangle", "z_large"),
+        (LINE, "no area", "a"),
+        (POINT, "no area", "b"),
+        (TRIANGLE, "3 distinct vertices", "b"),
+        (obj(box(4.5, 1e-6)).decode(), "largest extent", "b"),
+    ],
+)
+def test_degenerate_parts_are_set_aside_by_name(tmp_path: Path, content: str, reason: str, nearest: str) -> None:
+    folder = folder_of(tmp_path, a=box(), b=box(6), z_large=box(100, 10))
+    (folder / "odd one.obj").write_text(content)
+    loaded = load(folder)
+    assert loaded.names == ("a", "b", "z_large")
+    (item,) = loaded.set_aside
+    assert reason in item.reason
+    assert item.nearest == nearest
+    assert item.part.name == "odd_one"
+    assert loaded.original_names["odd_one"] == "odd one"
+
+
+def test_a_sheet_is_a_part(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, a=box())
+    (folder / "sheet.obj").write_text(SHEET)
+    assert load(folder).names == ("a", "sheet")
+
+
+def test_the_same_part_twice_is_used_once(tmp_path: Path) -> None:
+    again = box()
+    again.vertices = again.vertices[::-1] + 1e-9
+    again.faces = 7 - again.faces[::-1]
+    loaded = load(folder_of(tmp_path, a=box(), b=box(3), c=again))
+    assert loaded.names == ("a", "b")
+    assert loaded.set_aside[0].nearest == "a"
+    assert "the same mesh" in loaded.set_aside[0].reason
+    assert loaded.warnings == ("The part c is a once more; only a is used.",)
+
+
+def test_other_shapes_in_the_same_box_are_other_parts(tmp_path: Path) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    cube = trimesh.creation.box(bounds=ball.bounds)
+    assert load(folder_of(tmp_path, a=ball, b=cube)).set_aside == ()
+
+
+def test_heavy_parts_are_thinned_and_kept_in_full(tmp_path: Path) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=4)
+    ball.apply_translation([9, 0, 0])
+    loaded = load(folder_of(tmp_path, a=box(), ball=ball), changed(max_part_faces=1000))
+    thin = loaded.parts[1]
+    assert 500 < len(thin.faces) <= 1000
+    assert thin.area == pytest.approx(ball.area, rel=0.02)
+    assert set(loaded.originals) == {"ball"}
+    assert len(loaded.originals["ball"].faces) == 5120
+    assert "5120 triangles" in loaded.warnings[0]
+
+
+def test_welding_joins_only_what_is_near() -> None:
+    vertices = np.array(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 5e-8, 0], [0, 1 + 5e-8, 0], [1, 1, 0], [7, 7, 7], [1e-5, 0, 0]]
+    )
+    faces = np.array([[0, 1, 2], [3, 5, 4], [0, 7, 2], [1, 3, 2], [0, 0, 1]])
+    points, triangles = welded(vertices, faces, 1e-7)
+    np.testing.assert_array_equal(points, vertices[[0, 1, 2, 5, 7]])
+    np.testing.assert_array_equal(triangles, [[0, 1, 2], [1, 3, 2], [0, 4, 2]])
+
+
+@given(st.integers(0, 1000))
+def test_welding_a_clean_mesh_changes_nothing(seed: int) -> None:
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    vertices = np.random.default_rng(seed).uniform(0.9, 1.1, (42, 1)) * ball.vertices
+    points, triangles = welded(vertices, np.asarray(ball.faces), 1e-7)
+    np.testing.assert_array_equal(points, vertices)
+    np.testing.assert_array_equal(triangles, ball.faces)
+
+
+# ---- complaints -----------------------------------------------------------------------------------------------------
+
+
+def refused(path: Path, message: str, config: AssemblyConfig = CONFIG, **options: object) -> None:
+    with pytest.raises(AssemblyError, match=message) as caught:
+        load(path, config, **options)
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_and_empty(tmp_path: Path) -> None:
+    refused(tmp_path / "none.obj", r"There is no file or folder .*none\.obj")
+    refused(tmp_path, "holds no mesh file")
+    (tmp_path / "a.step").write_text("")
+    refused(tmp_path / "a.step", r"a\.step is not an input.*\.glb")
+    for suffix in ("obj", "stl", "ply", "off", "glb", "gltf", "3mf"):
+        (tmp_path / f"a.{suffix}").write_bytes(b"")
+        refused(tmp_path / f"a.{suffix}", rf"a\.{suffix} cannot be read as a \.{suffix} mesh")
+
+
+def test_one_part_only(tmp_path: Path) -> None:
+    refused(folder_of(tmp_path, only=box()), "1 usable part.*--labels")
+    refused(tmp_path / "only.obj", "1 usable part")
+    folder_of(tmp_path, twin=box())
+    refused(tmp_path, "1 usable part.*twin: It is the same mesh")
+    (tmp_path / "only.obj").write_text(LINE)
+    (tmp_path / "twin.obj").write_text(EMPTY)
+    refused(tmp_path, "No part .* with area")
+
+
+@pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "off", "glb", "gltf", "3mf"])
+def test_nonsense_is_no_mesh(tmp_path: Path, suffix: str) -> None:
+    folder = folder_of(tmp_path, good=box(), fine=box(3))
+    (folder / f"bad.{suffix}").write_bytes(b"This is a letter, not a mesh.\n" * 40)
+    refused(folder, rf"bad\.{suffix} cannot be read")
+
+
+@pytest.mark.parametrize("suffix", ["glb", "stl", "ply", "3mf"])
+@pytest.mark.parametrize("share", [0.001, 0.1, 0.5, 0.99])
+def test_truncated_files(tmp_path: Path, suffix: str, share: float, capfd: pytest.CaptureFixture[str]) -> None:
+    content = scene().export(file_type="glb") if suffix in ("glb", "3mf") else box().export(file_type=suffix)
+    if suffix == "3mf":
+        content = scene().export(file_type="3mf")
+    (tmp_path / f"a.{suffix}").write_bytes(content[: int(share * len(content))])
+    refused(tmp_path / f"a.{suffix}", rf"a\.{suffix} .*truncated")
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("number", ["nan", "inf"])
+def test_coordinates_that_are_not_finite(tmp_path: Path, number: str) -> None:
+    folder = folder_of(tmp_path, good=box())
+    (folder / "bad.obj").write_text(SHEET.replace("v 8 0 0", f"v 8 {number} 0"))
+    refused(folder, "part 'bad' of .* 1 vertices .*not finite")
+    refused(folder / "bad.obj", r"of .*bad\.obj .*not finite")
+
+
+def test_unused_vertices_may_be_anything(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, good=box())
+    (folder / "fine.obj").write_text(SHEET + "v nan nan nan\n")
+    assert load(folder).names == ("fine", "good")
+
+
+def test_impossible_indices(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path, good=box())
+    for line in ("f 1 2 99", "f 0 1 2", "f -99 1 2", "f 1 2", "f 1 2 x", "v 1 2", "v 1 2 x"):
+        (folder / "bad.obj").write_text(f"{SHEET}{line}\n")
+        refused(folder, r"bad\.obj cannot be read")
+
+
+def test_too_much(tmp_path: Path) -> None:
+    many = trimesh.util.concatenate([box(2.0 * k) for k in range(6)])
+    many.export(tmp_path / "many.stl")
+    refused(tmp_path / "many.stl", "6 parts; at most 5", changed(max_parts=5))
+    refused(tmp_path / "many.stl", "72 triangles; at most 70", changed(max_faces=70))
+    refused(tmp_path / "many.stl", "3684 bytes; at most 1000", changed(max_archive_bytes=1000))
+    refused(
+        folder_of(tmp_path / "f", **{f"p{k}": box(2.0 * k) for k in range(6)}), "6 mesh files", changed(max_parts=5)
+    )
+
+
+def test_ten_thousand_pieces_are_refused_quickly(tmp_path: Path) -> None:
+    square = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    vertices = (square + 2.0 * np.arange(10_000)[:, None, None]).reshape(-1, 3)
+    trimesh.Trimesh(vertices, np.arange(30_000).reshape(-1, 3), process=False).export(tmp_path / "a.stl")
+    refused(tmp_path / "a.stl", "10000 parts; at most 2000.*--labels")
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("l.json", "[1, 2]", "one label per triangle"),
+        ("l.json", "{}", "cannot be read"),
+        ("l.json", "[1", "cannot be read"),
+        ("l.json", '[1, "a"]', "cannot be read"),
+        ("l.json", "[0.5, 0.5]", "must be integers"),
+        ("l.npy", "nonsense", "cannot be read"),
+        ("l.txt", "", "no labels file"),
+    ],
+)
+def test_bad_labels(tmp_path: Path, name: str, content: str, message: str) -> None:
+    box().export(tmp_path / "a.stl")
+    (tmp_path / name).write_text(content)
+    refused(tmp_path / "a.stl", message, labels=tmp_path / name)
+
+
+def test_labels_for_several_parts(tmp_path: Path) -> None:
+    refused(folder_of(tmp_path, a=box(), b=box(3)), "Leave --labels out", labels=tmp_path / "l.npy")
+
+
+def test_pickled_labels_are_not_executed(tmp_path: Path) -> None:
+    box().export(tmp_path / "a.stl")
+    np.save(tmp_path / "l.npy", np.array([{}] * 12, dtype=object), allow_pickle=True)
+    refused(tmp_path / "a.stl", "cannot be read", labels=tmp_path / "l.npy")
+
+
+@pytest.mark.parametrize("options", [{"up": "x"}, {"scale": 0.0}, {"scale": -1.0}, {"scale": float("nan")}])
+def test_bad_arguments(tmp_path: Path, options: dict[str, object]) -> None:
+    with pytest.raises(InputError, match=r"Choose|Give"):
+        load(tmp_path, **options)
+
+
+# ---- archives -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["../evil.obj", "x/../../evil.obj", "/evil.obj", "..\\evil.obj", "C:\\evil.obj"])
+def test_archive_cannot_write_outside(tmp_path: Path, name: str) -> None:
+    path = zipped(tmp_path / "a.zip", {"a.obj": obj(box()), name: obj(box(3))})
+    refused(path, r"a\.zip holds .*evil\.obj.*outside")
+    assert list(tmp_path.rglob("evil*")) == []
+
+
+def test_archive_with_a_link(tmp_path: Path) -> None:
+    entry = zipfile.ZipInfo("a.obj")
+    entry.external_attr = (stat.S_IFLNK | 0o777) << 16
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr(entry, "/etc/passwd")
+    refused(tmp_path / "a.zip", "outside")
+
+
+@pytest.mark.parametrize("suffix", ["zip", "3mf"])
+def test_decompression_bomb(tmp_path: Path, suffix: str) -> None:
+    path = zipped(tmp_path / f"a.{suffix}", {"a.obj": bytes(5_000_000), "b.obj": obj(box())})
+    assert path.stat().st_size < 20_000
+    refused(path, "more than 1000000 bytes", changed(max_archive_bytes=1_000_000))
+
+
+def test_archive_that_lies_about_its_sizes(tmp_path: Path) -> None:
+    path = zipped(tmp_path / "a.zip", {"a.obj": bytes(3_000_000), "b.obj": obj(box())})
+    content = path.read_bytes()
+    lie = content.replace((3_000_000).to_bytes(4, "little"), (100).to_bytes(4, "little"))
+    assert lie != content
+    path.write_bytes(lie)
+    refused(path, "cannot be unpacked")
+
+
+def test_unusable_archives(tmp_path: Path) -> None:
+    (tmp_path / "a.zip").write_bytes(b"not a zip")
+    refused(tmp_path / "a.zip", "cannot be unpacked")
+    refused(zipped(tmp_path / "b.zip", {}), "holds mesh files in 0 folders")
+    refused(zipped(tmp_path / "c.zip", {"x/a.obj": obj(box()), "y/b.obj": obj(box(3))}), "2 folders")
+    refused(zipped(tmp_path / "d.zip", {"a.obj": b"junk", "b.obj": obj(box(3))}), r"d\.zip: The file a\.obj cannot")
