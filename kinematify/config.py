@@ -129,6 +129,19 @@ class BearingConfig(StageConfig):
         return math.sin(math.radians(self.circle_tolerance))
 
 
+class QualityConfig(StageConfig):
+    """Weight of a contact edge in the tree search."""
+
+    half_score: float
+    """Bearing score at which half of the full quality is reached."""
+    contact_weight: float
+    """Largest quality of an edge without any bearing."""
+    strength_power: float
+    """Exponent of the contact strength; small values compress its range."""
+    bridge_share: float
+    """What an edge between parts that do not touch keeps of it."""
+
+
 class ModelConfig(StageConfig):
     """Mass properties, limits and names of the model that is written."""
 
@@ -537,6 +550,7 @@ class Config(StageConfig):
     surface: SurfaceConfig
     contact: ContactConfig
     bearing: BearingConfig
+    quality: QualityConfig
     model: ModelConfig
     preview: PreviewConfig
     joints: JointsConfig

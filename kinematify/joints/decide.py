@@ -53,7 +53,7 @@ def estimate_joints(
     """
     cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
     frames = part_frames(cache, tree, config)
-    return tuple(_estimate(cache, tree, frames, edge, bearings, config) for edge in tree.edges())
+    return tuple(_estimate(cache, tree, frames, edge, bearings, config=config) for edge in tree.edges())
 
 
 def _estimate(
@@ -62,13 +62,15 @@ def _estimate(
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearings: Mapping[tuple[int, int], EdgeBearing],
+    *,
     config: JointsConfig,
 ) -> JointEstimate:
-    scene = joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config)
+    scene = joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
     twins = leaf_twins(cache.graph, tree, edge)
     siblings = describe_twins(scene, tree, frames, twins)
     turns = rank_turns(scene, config)
-    slides = rank_slides(scene, _twin_directions(scene, frames, twins), config)
+    grips = _twin_directions(scene, frames, twins) if siblings.gripping else np.empty((0, 3))
+    slides = rank_slides(scene, grips, config)
     decision = decide_kind(scene, siblings, turns, slides, config)
     axis, pivot = _chosen_line(scene, decision.kind, turns, slides)
     found = find_range(scene, decision.kind, axis, pivot, config)
@@ -130,12 +132,13 @@ def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
 
 
 def _overlapping(scene: JointScene, twin: BoxFrame) -> bool:
-    """Parallel thin panels next to each other whose planes differ by about their own thickness."""
-    if not (scene.panel and scene.upright):
-        return False
+    """Parallel thin panels whose planes differ by about their own thickness, handles included: they can pass."""
     frame = scene.frame
+    parallel = np.abs(twin.axes @ frame.axes[frame.thin]).max() > np.cos(np.radians(3.0))
+    if not (scene.panel and scene.upright and parallel):
+        return False
     shift = (twin.centre - scene.centre) @ frame.axes.T
-    thickness = float(frame.extents[frame.thin])
+    thickness = float((frame.upper - frame.lower)[frame.thin])
     depth = abs(float(shift[frame.thin])) / max(thickness, 1e-12)
     return bool(0.6 < depth < 4.0)
 

@@ -15,9 +15,13 @@ from scipy.spatial import ConvexHull, QhullError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import FloatArray
     from kinematify.config import FramesConfig
     from kinematify.geometry.sampling import SurfaceSamples
+
+    BoolArray = NDArray[np.bool_]
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -48,6 +52,11 @@ class BoxFrame:
         return int(np.argmin(self.extents))
 
     @property
+    def diagonal(self) -> float:
+        """Diagonal of the whole box [m]."""
+        return float(np.linalg.norm(self.upper - self.lower))
+
+    @property
     def centre(self) -> FloatArray:
         """Centre of the slab in the world frame [m], shape (3,)."""
         return np.asarray(0.5 * (self.slab_lower + self.slab_upper) @ self.axes)
@@ -57,19 +66,23 @@ class BoxFrame:
         return points @ self.axes.T
 
 
-def body_axes(samples: SurfaceSamples) -> FloatArray:
+def body_axes(normals: FloatArray, areas: FloatArray) -> FloatArray:
     """Upright axes turned about z by the dominant horizontal normals, so that a turned object changes nothing.
 
     The angle is that of the area-weighted mean of exp(4 i theta), over 4: walls a quarter turn apart agree.
 
+    Args:
+        normals: Unit normals of surface samples, shape (n, 3).
+        areas: Area of each sample [m^2], shape (n,).
+
     Returns:
         Unit axes, one per row, the last one up, shape (3, 3).
     """
-    horizontal = np.hypot(samples.normals[:, 0], samples.normals[:, 1])
-    theta = np.arctan2(samples.normals[:, 1], samples.normals[:, 0])
-    weight = samples.areas * np.where(horizontal > np.cos(np.radians(20.0)), 1.0, 0.0)
+    horizontal = np.hypot(normals[:, 0], normals[:, 1])
+    theta = np.arctan2(normals[:, 1], normals[:, 0])
+    weight = areas * np.where(horizontal > np.cos(np.radians(20.0)), 1.0, 0.0)
     mean = np.sum(weight * np.exp(4j * theta))
-    angle = float(np.angle(mean)) / 4.0 if abs(mean) > 1e-9 * samples.areas.sum() else 0.0
+    angle = float(np.angle(mean)) / 4.0 if abs(mean) > 1e-9 * areas.sum() else 0.0
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
@@ -183,7 +196,13 @@ def _dense_span(
     share = np.cumsum(samples.areas[facing][order]) / samples.areas[facing].sum()
     low = float(height[order][np.searchsorted(share, config.handle_share)])
     high = float(height[order][min(np.searchsorted(share, 1.0 - config.handle_share), len(order) - 1)])
-    thickness = max(high - low, 1e-12)
-    cut_low = low if low - lower > config.handle_gap * thickness else float(lower)
-    cut_high = high if upper - high > config.handle_gap * thickness else float(upper)
+    least = config.handle_gap * max(high - low, 0.02 * float(upper - lower))
+    coordinate = samples.points @ axis
+    margin = 0.1 * least
+
+    def sparse(outside: BoolArray) -> bool:
+        return bool(samples.areas[outside].sum() <= config.handle_share * samples.areas.sum())
+
+    cut_low = low if low - lower > least and sparse(coordinate < low - margin) else float(lower)
+    cut_high = high if upper - high > least and sparse(coordinate > high + margin) else float(upper)
     return cut_low, cut_high

@@ -58,7 +58,7 @@ def decide_kind(
         slides: Ranked directions.
         config: Weights; positive ones speak for sliding.
     """
-    cues = {**_room_cues(scene, turns, slides), **_shape_cues(scene), **_twin_cues(scene, siblings)}
+    cues = {**_room_cues(scene, turns, slides), **_shape_cues(scene, turns), **_twin_cues(scene, siblings)}
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
     if _stuck(scene, turns, slides, config):
@@ -74,14 +74,25 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> d
     level = float(1.0 - abs(float(slides.axes[0] @ UP)))
     box = float(_is_box(scene))
     large = 1.0 - scene.smallness
+    furniture = large * (1.0 - scene.mechanism)
     one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
+    channel = float(travel.max() > 0.3) * _channel(scene, slides)
     turn_room = float(turns.free[0].max()) / np.radians(30.0)
     blocked = float(np.clip(1.0 - turn_room, 0.0, 1.0)) * float(travel.max() > 0.3)
     return {
-        "drawer": large * box * level * scene.inside * one_way,
-        "box_inside": large * box * scene.inside,
+        "drawer": furniture * box * level * scene.inside * max(one_way, channel),
+        "box_pulled": furniture * box * level * float(not scene.plate and not scene.gated and travel.max() > 0.5),
+        "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
     }
+
+
+def _channel(scene: JointScene, slides: RankedSlides) -> float:
+    """1 where the part is blocked at once across its best direction in three of four ways, or more; 0 if in fewer."""
+    across = np.abs(slides.axes @ slides.axes[0]) < 0.1
+    sides = np.abs(slides.axes[across] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
+    blocked = slides.free_parent[across] < 0.1 * sides[:, None]
+    return float(blocked.mean() > 0.7) if blocked.size else 0.0
 
 
 def _is_box(scene: JointScene) -> bool:
@@ -91,45 +102,39 @@ def _is_box(scene: JointScene) -> bool:
     return bool(facing.mean(axis=0).min() > 0.06)
 
 
-def _shape_cues(scene: JointScene) -> dict[str, float]:
+def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
     large = 1.0 - scene.smallness
     frame = scene.frame
     across = np.delete(frame.extents, frame.thin)
     squat = float(frame.extents[frame.thin] / max(float(across.min()), 1e-12))
-    round_part = _round_about_thin(scene)
-    tray = scene.panel and scene.flat and scene.enclosed > 0.8 and round_part < 0.5
-    top = _on_top(scene)
+    box = float(_is_box(scene))
+    edge = float(scene.plate and turns.cues["ajar_contact"].max() > 0.0)
+    tray = scene.panel and scene.flat and scene.covered and scene.enclosed > 0.6 and scene.disc < 0.5
+    top = scene.on_top
     return {
-        "panel": large * float(scene.panel and not tray and not (top and round_part > 0.5)),
+        "panel": large
+        * (1.0 - box * scene.inside)
+        * float(scene.panel and not tray and not (top and scene.disc > 0.5)),
         "tray": float(tray),
-        "turntable": float(scene.panel and scene.flat and round_part > 0.5 and not top),
+        "turntable": float(scene.panel and scene.flat and scene.disc > 0.5 and not top),
         "bearing": large * float(scene.gated and not top),
         "mechanism": scene.mechanism * large,
-        "button": scene.smallness * float(not scene.gated) * (1.0 - scene.compact),
-        "round_small": scene.smallness * round_part * float(squat > 0.3),
-        "flat_cap": scene.smallness * float(squat < 0.3),
-        "round_lid": large * float(top and scene.flat and round_part > 0.5),
+        "button": scene.smallness * float(not scene.gated) * (1.0 - scene.compact) * (1.0 - edge),
+        "edge_contact": edge,
+        "wheel": float(_is_wheel(scene)),
+        "round_small": scene.smallness * scene.disc * float(squat > 0.3),
+        "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
+        "round_lid": large * float(top and scene.flat and scene.disc > 0.5),
         "on_moving_part": float(scene.parent_moves) * scene.smallness,
     }
 
 
-def _round_about_thin(scene: JointScene) -> float:
-    """How round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
-    frame = scene.frame
-    plane = np.delete(np.arange(3), frame.thin)
-    flat = frame.local(scene.cache.samples(scene.child).points)[:, plane] - (frame.centre @ frame.axes.T)[plane]
-    angles = np.arctan2(flat[:, 1], flat[:, 0])
-    sector = np.floor((angles + np.pi) / (2 * np.pi) * 16).astype(np.int64) % 16
-    radius = np.zeros(16)
-    np.maximum.at(radius, sector, np.linalg.norm(flat, axis=1))
-    ratio = float(radius.min() / max(float(radius.max()), 1e-12))
-    return float(np.clip((ratio - 0.75) / 0.15, 0.0, 1.0))
-
-
-def _on_top(scene: JointScene) -> bool:
-    """The part lies above most of its parent."""
-    bounds = scene.cache.assembly.parts[scene.parent].bounds[:, 2]
-    return bool(scene.centre[2] > bounds[0] + 0.75 * (bounds[1] - bounds[0]))
+def _is_wheel(scene: JointScene) -> bool:
+    """A disc standing on the floor on which the whole object stands."""
+    cache = scene.cache
+    level = abs(float(scene.frame.axes[scene.frame.thin] @ UP)) < 0.1
+    lowest = cache.assembly.parts[scene.child].bounds[0, 2] - cache.assembly.bounds[0, 2]
+    return bool(scene.disc > 0.5 and level and lowest < 0.01 * scene.diagonal)
 
 
 def _twin_cues(scene: JointScene, siblings: Siblings) -> dict[str, float]:

@@ -110,7 +110,8 @@ def _turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Flo
 
 def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
     points = moving_points(scene.cache, scene.child, config.sweep)
-    obstacles = (scene.parent, *scene.others)
+    # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
+    obstacles = (scene.parent, *scene.others) if scene.mechanism > 0.5 else (scene.parent,)
     limit = scene.diagonal
     sweep = sweep_slides(scene.cache, points, axis[None], obstacles, limit=limit, config=config.sweep)
     free = sweep.free(config.sweep.share)[0]

@@ -16,9 +16,9 @@ from kinematify.joints.frames import UP
 from kinematify.joints.sweep import moving_points, sweep_turns
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
     from kinematify.joints.scene import JointScene
     from kinematify.joints.sweep import Sweep
@@ -71,7 +71,7 @@ def rank_turns(scene: JointScene, config: JointsConfig) -> RankedTurns:
     everything = with_parent.joined(with_others)
     outward = _outwardness(scene, lines)
     cues = {
-        **_motion_cues(scene, lines, with_parent, everything, outward, config),
+        **_motion_cues(scene, lines, with_parent, everything, outward, config=config),
         **_contact_cues(scene, lines, config),
         **_handle_cues(scene, lines, config),
         **_margin_cues(scene, lines, config),
@@ -96,7 +96,7 @@ def rank_turns(scene: JointScene, config: JointsConfig) -> RankedTurns:
     )
 
 
-def _reorder(lines: Lines, order: Sequence[int] | FloatArray) -> Lines:
+def _reorder(lines: Lines, order: IntArray) -> Lines:
     return Lines(
         axes=lines.axes[order],
         pivots=lines.pivots[order],
@@ -195,7 +195,7 @@ def _radii(points: FloatArray, lines: Lines) -> FloatArray:
     """Distance of points (n, 3) from each line [m], shape (c, n)."""
     offset = points[None] - lines.pivots[:, None]
     along = np.einsum("cnk,ck->cn", offset, lines.axes)
-    return np.sqrt(np.maximum(np.einsum("cnk,cnk->cn", offset, offset) - along**2, 0.0))
+    return np.asarray(np.sqrt(np.maximum(np.einsum("cnk,cnk->cn", offset, offset) - along**2, 0.0)))
 
 
 def _arms(point: FloatArray, lines: Lines) -> FloatArray:
@@ -207,7 +207,7 @@ def _arms(point: FloatArray, lines: Lines) -> FloatArray:
 def _reach(scene: JointScene, lines: Lines) -> FloatArray:
     """Largest distance of the child from each line [m], shape (c,)."""
     points = scene.cache.samples(scene.child).points
-    return np.maximum(_radii(points, lines).max(axis=1), 1e-12)
+    return np.asarray(np.maximum(_radii(points, lines).max(axis=1), 1e-12))
 
 
 def _outwardness(scene: JointScene, lines: Lines) -> FloatArray:
@@ -228,6 +228,7 @@ def _motion_cues(
     with_parent: Sweep,
     everything: Sweep,
     outward: FloatArray,
+    *,
     config: JointsConfig,
 ) -> dict[str, FloatArray]:
     """Free turn, share that crosses, gap that opens behind the hinge, and whether the free way leads outwards."""
@@ -294,7 +295,7 @@ def _contact_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict
 def is_ajar(scene: JointScene, lines: Lines, share: FloatArray, config: JointsConfig) -> bool:
     """A panel that touches its parent along one edge only stands open; then contact tells the hinge by itself."""
     corners = np.array([place == CORNER for place in lines.places])
-    return bool(scene.panel and corners.any() and share[corners].max() > config.panels.ajar_share)
+    return bool(scene.plate and corners.any() and share[corners].max() > config.panels.ajar_share)
 
 
 def _handle_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
@@ -330,7 +331,7 @@ def _margin_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[
     difference = np.clip(2.0 * (opposite - here), -config.panels.margin_cap, config.panels.margin_cap)
     # A handle says directly where the free side is; then the margins are only a hint.
     factor = config.panels.weak_margin if scene.flat or _handle_off_centre(scene) else 1.0
-    return {"margin_difference": factor * difference, "margin_here": np.maximum(here, 0.0)}
+    return {"margin_difference": factor * difference, "margin_here": factor * np.maximum(here, 0.0)}
 
 
 def _handle_off_centre(scene: JointScene) -> bool:
@@ -394,6 +395,7 @@ def _shape_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[s
     along = np.abs(lines.axes @ frame.axes.T) @ frame.extents / max(float(frame.extents.max()), 1e-12)
     place = np.array(lines.places)
     source = np.array(lines.sources)
+    turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
     clusters = (source == "contact_clusters") & (not (scene.panel and (scene.upright or scene.flat)))
     normal = np.zeros(len(thin))
     if len(scene.contact.points):
@@ -401,7 +403,7 @@ def _shape_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[s
         values, vectors = np.linalg.eigh(tensor)
         normal = np.abs(lines.axes @ vectors[:, 2]) * float(values[2])
     return {
-        "thin_along": thin,
+        "thin_along": thin * (1.0 - turned),
         "length_along": along,
         "half_way": (place == HALF_WAY).astype(np.float64),
         "centre_line": (place == CENTRE).astype(np.float64),
@@ -410,7 +412,7 @@ def _shape_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[s
         "weak_bearing": (1.0 - scene.mechanism) * (source == "weak_bearing"),
         "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _first_bearing(lines),
         "small_normal": max(scene.smallness, scene.compact) * normal * ((place == CENTRE) | (source == "contact_axis")),
-        "round": _roundness(scene, lines),
+        "round": turned,
     }
 
 

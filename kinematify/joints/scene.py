@@ -12,6 +12,8 @@ from kinematify.joints.frames import UP, body_axes, box_frame
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
     from kinematify.joints.bearing import BearingLine, EdgeBearing
@@ -53,6 +55,10 @@ class JointScene:
     """1 for a part that is small beside its parent, 0 for a large one."""
     panel: bool
     """The slab is thin, and the part is not small."""
+    plate: bool
+    """The slab is thin, whatever its size."""
+    disc: float
+    """How round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
     upright: bool
     """The thin direction lies flat, as in a closed door."""
     flat: bool
@@ -64,10 +70,14 @@ class JointScene:
     """1 where the contact is a small patch of the child, as in a machine's joint; 0 where it is spread out."""
     mechanism: float
     """1 in a linkage (compact contact, or a tree of several joints in series), 0 for furniture."""
+    on_top: bool
+    """The child lies above most of its parent."""
     parent_moves: bool
     """The parent is itself moved by a joint."""
     enclosed: float
     """Share of the six directions from the child's centre in which the parent stands in the way."""
+    covered: bool
+    """The parent stands above the child's centre as well as below it."""
     inside: float
     """Share of the child's surface that lies inside the parent's box."""
 
@@ -84,7 +94,8 @@ class JointScene:
 
 def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
     """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
-    body = body_axes(cache.samples(tree.root))
+    root = cache.samples(tree.root)
+    body = body_axes(root.normals, root.areas)
     frames: dict[int, BoxFrame] = {}
     for part, above in [(tree.root, -1), *((child, parent) for parent, child in tree.edges())]:
         preferred = [body] if above < 0 else [frames[above].axes, body]
@@ -99,6 +110,7 @@ def joint_scene(
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearing: EdgeBearing | None,
+    *,
     config: JointsConfig,
 ) -> JointScene:
     """Gather what the cues need for the tree edge (parent, child)."""
@@ -107,9 +119,11 @@ def joint_scene(
     local = frame.local(cache.assembly.parts[parent].vertices[np.unique(cache.assembly.parts[parent].faces)])
     body_box = np.stack([local.min(axis=0), local.max(axis=0)])
     outward = _outward(frame, body_box)
-    smallness = _smallness(cache, parent, child, config)
+    smallness = _smallness(frames[parent], frame, config)
     contact = cache.contact(parent, child, config.contact_band * cache.diagonal)
-    compact = _compactness(cache, child, contact, config)
+    compact = _compactness(frame, contact, config)
+    walls = _walls(cache, parent, frame)
+    low, high = cache.assembly.parts[parent].bounds[:, 2]
     serial = max(tree.depths) >= config.serial_depth
     sides = np.sort(frame.extents)
     up = abs(float(frame.axes[frame.thin] @ UP))
@@ -127,14 +141,18 @@ def joint_scene(
         handle=_handle(cache, tree, child, frame, outward),
         smallness=smallness,
         panel=bool(sides[0] < config.panel_thinness * sides[1] and smallness < 1.0),
+        plate=bool(sides[0] < config.panel_thinness * sides[1]),
+        disc=_disc(cache, child, frame),
         upright=up < config.upright_cosine,
         flat=up > config.flat_cosine,
         bearing=bearing,
         gated=bearing is not None and passes_gate(bearing, contact, config),
         compact=compact,
         mechanism=1.0 if serial else compact,
+        on_top=bool(frame.centre[2] > low + 0.75 * (high - low)),
         parent_moves=parent != tree.root,
-        enclosed=_enclosure(cache, parent, frame),
+        enclosed=float(walls.mean()),
+        covered=bool(walls[np.abs(np.concatenate([frame.axes, -frame.axes]) @ UP) > config.flat_cosine].all()),
         inside=_inside(cache, child, frame, body_box),
     )
 
@@ -171,18 +189,31 @@ def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray
     return float(2.0 * np.linalg.eigvalsh((across * fit[:, None]).T @ across)[1] / max(float(weights.sum()), 1e-300))
 
 
-def _compactness(cache: PartCache, child: int, contact: ContactView, config: JointsConfig) -> float:
+def _compactness(frame: BoxFrame, contact: ContactView, config: JointsConfig) -> float:
     if len(contact.points) == 0:
         return 0.0
     spread = np.sqrt(contact.weights @ np.sum((contact.points - contact.centroid) ** 2, axis=1))
-    ratio = spread / (0.5 * cache.assembly.parts[child].diagonal)
+    ratio = spread / (0.5 * frame.diagonal)
     return float(np.clip((config.spread_none - ratio) / (config.spread_none - config.spread_full), 0.0, 1.0))
 
 
-def _enclosure(cache: PartCache, parent: int, frame: BoxFrame) -> float:
+def _disc(cache: PartCache, part: int, frame: BoxFrame) -> float:
+    """How round the part is seen along its thin direction, 0 for a square, 1 for a disc."""
+    plane = np.delete(np.arange(3), frame.thin)
+    flat = frame.local(cache.samples(part).points)[:, plane] - (frame.centre @ frame.axes.T)[plane]
+    angles = np.arctan2(flat[:, 1], flat[:, 0])
+    sector = np.floor((angles + np.pi) / (2 * np.pi) * 16).astype(np.int64) % 16
+    radius = np.zeros(16)
+    np.maximum.at(radius, sector, np.linalg.norm(flat, axis=1))
+    ratio = float(radius.min() / max(float(radius.max()), 1e-12))
+    return float(np.clip((ratio - 0.75) / 0.15, 0.0, 1.0))
+
+
+def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> NDArray[np.bool_]:
+    """Whether the parent stands in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame, (6,)."""
     steps = cache.diagonal * np.concatenate([frame.axes, -frame.axes])
     hits = cache.first_hits(parent, np.tile(frame.centre, (6, 1)), steps)
-    return float(np.isfinite(hits).mean())
+    return np.isfinite(hits)
 
 
 def _inside(cache: PartCache, child: int, frame: BoxFrame, body_box: FloatArray) -> float:
@@ -199,8 +230,8 @@ def _subtree(tree: KinematicTree, part: int) -> set[int]:
     return found
 
 
-def _smallness(cache: PartCache, parent: int, child: int, config: JointsConfig) -> float:
-    ratio = cache.assembly.parts[child].diagonal / max(cache.assembly.parts[parent].diagonal, 1e-12)
+def _smallness(parent: BoxFrame, child: BoxFrame, config: JointsConfig) -> float:
+    ratio = child.diagonal / max(parent.diagonal, 1e-12)
     return float(np.clip((config.small_none - ratio) / (config.small_none - config.small_full), 0.0, 1.0))
 
 

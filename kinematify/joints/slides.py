@@ -1,4 +1,4 @@
-"""Sliding joints: candidate directions and the cues that rank them (drawers, trays, buttons, sliders, lift-off lids)."""
+"""Sliding joints: candidate directions and the cues that rank them (drawers, trays, buttons, lift-off lids)."""
 
 from __future__ import annotations
 
@@ -52,7 +52,10 @@ def rank_slides(scene: JointScene, twins: FloatArray, config: JointsConfig) -> R
     everything = with_parent.joined(
         sweep_slides(scene.cache, points, axes, scene.others, limit=limit, config=config.sweep)
     )
-    cues = {**_motion_cues(scene, axes, with_parent, everything, config), **_shape_cues(scene, axes, sources)}
+    cues = {
+        **_motion_cues(scene, axes, with_parent, everything, config),
+        **_shape_cues(scene, axes, sources, with_parent, config),
+    }
     weights = config.slides.weights
     scores = sum(
         (np.clip(weights[name] * value, -config.slides.cap, config.slides.cap) for name, value in cues.items()),
@@ -74,8 +77,8 @@ def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> t
     found: list[tuple[FloatArray, str]] = []
     if scene.bearing is not None and scene.bearing.lines and scene.gated:
         found.append((scene.bearing.lines[0].axis, "bearing"))
-    found += [(axis, "box") for axis in scene.frame.axes]
     found += [(axis, "twin") for axis in twins]
+    found += [(axis, "box") for axis in scene.frame.axes]
     found += [(axis, "parent_box") for axis in scene.parent_frame.axes]
     normal = contact_normal(scene)
     if normal is not None:
@@ -114,15 +117,31 @@ def _motion_cues(
         "travel_parent": large * longest,
         "travel_all": large * np.minimum(1.0, free.max(axis=1) / useful),
         "one_way": large * (longest - shortest),
+        "flush": large * _flush(scene, axes, parent),
         "crossed": crossed,
     }
 
 
-def _shape_cues(scene: JointScene, axes: FloatArray, sources: tuple[str, ...]) -> dict[str, FloatArray]:
+def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
+    """How close the leading face is to the outside of the body, in lengths of the part, for the free way out."""
+    samples = scene.cache.samples(scene.child).points @ axes.T
+    body = scene.cache.samples(scene.parent).points @ axes.T
+    length = np.maximum(np.ptp(samples, axis=0), 1e-12)
+    ahead = np.maximum(body.max(axis=0) - samples.max(axis=0), 0.0) / length
+    behind = np.maximum(samples.min(axis=0) - body.min(axis=0), 0.0) / length
+    closeness = np.clip(1.0 - np.stack([ahead, behind], axis=1) / 0.25, 0.0, 1.0)
+    return np.asarray((closeness * (free > 0.1)).max(axis=1))
+
+
+def _shape_cues(
+    scene: JointScene, axes: FloatArray, sources: tuple[str, ...], with_parent: Sweep, config: JointsConfig
+) -> dict[str, FloatArray]:
     large = 1.0 - scene.smallness
     thin = np.abs(axes @ scene.frame.axes[scene.frame.thin])
     normal = contact_normal(scene)
     pressed = np.abs(axes @ normal) if normal is not None else np.zeros(len(axes))
+    free = with_parent.free(config.sweep.share)
+    rising = np.where(axes[:, 2] >= 0, free[:, 0], free[:, 1]) > 0.1 * scene.diagonal
     bearing = np.zeros(len(axes))
     if scene.bearing is not None and scene.gated:
         bearing = np.abs(axes @ scene.bearing.lines[0].axis)
@@ -133,4 +152,5 @@ def _shape_cues(scene: JointScene, axes: FloatArray, sources: tuple[str, ...]) -
         "thin_small": scene.smallness * thin,
         "normal_small": scene.smallness * pressed,
         "twin": np.array([float(source == "twin") for source in sources]),
+        "lift_off": large * float(scene.panel and scene.flat and scene.on_top) * np.abs(axes @ UP) * rising,
     }

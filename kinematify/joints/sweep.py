@@ -52,11 +52,11 @@ class Sweep:
 
 
 def moving_points(cache: PartCache, part: int, config: SweepConfig) -> FloatArray:
-    """Points that stand for a part in a sweep: its samples, drawn towards the middle of its box by `config.shrink`."""
+    """Points that stand for a part in a sweep: its samples, drawn towards their mean by `config.shrink`."""
     points = cache.samples(part).points
     stride = max(1, len(points) // config.points)
     chosen = points[::stride]
-    centre = cache.assembly.parts[part].bounds.mean(axis=0)
+    centre = points.mean(axis=0)
     return np.asarray(centre + (1.0 - config.shrink) * (chosen - centre))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import igl
@@ -11,6 +12,7 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
 from kinematify.geometry.sampling import sample_surface
+from kinematify.joints.frames import body_axes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,14 +63,27 @@ class PartCache:
         self._seed = seed
         self._store: dict[tuple[str, int], Any] = {}
 
-    @property
+    @cached_property
     def diagonal(self) -> float:
-        """Diagonal of the assembly [m]; the unit of most tolerances."""
-        return self.assembly.diagonal
+        """Diagonal of the assembly's upright box [m], turned with the object; the unit of most tolerances.
+
+        Unlike `Assembly.diagonal` it does not change when the object is turned about z.
+        """
+        indices = range(len(self.assembly.parts))
+        axes = body_axes(
+            np.concatenate([self.samples(part).normals for part in indices]),
+            np.concatenate([self.samples(part).areas for part in indices]),
+        )
+        local = [self.assembly.parts[part].vertices[self.assembly.parts[part].faces] @ axes.T for part in indices]
+        spans = np.array([[part.min(axis=(0, 1)), part.max(axis=(0, 1))] for part in local])
+        return float(np.linalg.norm(spans[:, 1].max(axis=0) - spans[:, 0].min(axis=0)))
 
     def samples(self, part: int) -> SurfaceSamples:
         """Area-uniform surface samples of a part."""
-        return self._once("samples", part, lambda: sample_surface(self.assembly.parts[part], self._samples, self._seed))
+        found: SurfaceSamples = self._once(
+            "samples", part, lambda: sample_surface(self.assembly.parts[part], self._samples, self._seed)
+        )
+        return found
 
     def first_hits(self, part: int, origins: FloatArray, steps: FloatArray) -> FloatArray:
         """Cast segments at a part.
@@ -103,7 +118,7 @@ class PartCache:
         """Exact unsigned distance [m] from points (n, 3) in the world frame to the surface of a part, shape (n,)."""
         tree, vertices, faces = self._tree(part)
         squared = tree.squared_distance(vertices, faces, np.ascontiguousarray(points))[0]
-        return np.sqrt(np.maximum(squared, 0.0))
+        return np.asarray(np.sqrt(np.maximum(squared, 0.0)))
 
     def contact(self, parent: int, child: int, band: float) -> ContactView:
         """Contact samples of a pair that lie within `band` [m] beyond its gap."""
@@ -141,7 +156,8 @@ class PartCache:
             tree.init(mesh.vertices, mesh.faces)
             return tree, mesh.vertices, mesh.faces
 
-        return self._once("tree", part, build)
+        found: tuple[igl.AABB, FloatArray, IntArray] = self._once("tree", part, build)
+        return found
 
     def _once(self, kind: str, part: int, build: Callable[[], Any]) -> Any:
         key = (kind, part)
