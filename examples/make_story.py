@@ -1,0 +1,27 @@
+"""Write the picture on the first screen of the README: the bundled cabinet, inferred.
+
+.venv/bin/python examples/make_story.py [FILE]
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from kinematify import infer, load_assembly, load_config
+from kinematify.model.preview import render_story
+
+HERE = Path(__file__).resolve().parent
+
+
+def write_story(path: Path) -> None:
+    """Infer the cabinet and draw its parts, the joints that were found, and the mechanism moved."""
+    config = load_config()
+    assembly = load_assembly(HERE / "cabinet", config=config.assembly)
+    render_story(infer(assembly, config=config).model, path, config.preview)
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE.parent / "docs" / "story.png"
+    write_story(target)
+    print(f"Wrote {target}.")

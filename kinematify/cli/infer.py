@@ -1,0 +1,188 @@
+"""`kinematify infer`: segmented meshes in, a model folder out."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.progress import progress_reporter
+from kinematify.cli.table import format_table
+
+if TYPE_CHECKING:
+    from kinematify.model.kinematic_model import Joint
+    from kinematify.pipeline import Inference
+
+DOUBTFUL = 0.5
+"""Joints of less confidence are named as those to look at first."""
+
+
+@click.command(
+    "infer",
+    short_help="Segmented meshes -> URDF with joints, axes, limits and masses.",
+    epilog=examples(
+        "kinematify infer examples/cabinet -o out/cabinet",
+        "kinematify infer robot.glb -o out/robot --up z --base torso",
+        "kinematify infer scan.ply --labels labels.npy -o out/scan --scale 0.001",
+        "kinematify infer parts.zip -o out/parts --config paper --seed 7",
+        "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
+    ),
+)
+@click.argument("assembly", type=click.Path(path_type=Path))
+@click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder to make for the model.")
+@click.option(
+    "--up",
+    type=click.Choice(["auto", "z", "y"]),
+    default="auto",
+    show_default=True,
+    help="Axis of the input that points up; auto: y for glTF, z for all else.",
+)
+@click.option("--scale", type=float, default=1.0, show_default=True, help="Metres per unit of the input.")
+@click.option(
+    "--labels",
+    type=click.Path(path_type=Path),
+    help="NPY or JSON file with the part of every face, if ASSEMBLY is one mesh.",
+)
+@click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
+@click.option(
+    "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
+)
+@click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
+@click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
+@click.option("--no-preview", is_flag=True, help="Write no picture.")
+@json_option
+def command(
+    *,
+    assembly: Path,
+    out: Path,
+    up: str,
+    scale: float,
+    labels: Path | None,
+    base: str | None,
+    config: str,
+    seed: int | None,
+    force: bool,
+    no_preview: bool,
+    json_to: str | None,
+) -> None:
+    """Infer the mechanism of ASSEMBLY and write it to OUT as a URDF with everything that belongs to it.
+
+    ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF),
+    a GLB or glTF with a node per part, an OBJ with groups, a 3MF, a ZIP of these, one mesh with --labels, one mesh
+    of several pieces, or a URDF, whose joints are then not looked at.
+
+    OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
+    """
+    from kinematify.assembly.load import load_assembly
+    from kinematify.config import load_config
+    from kinematify.model.output import check_output
+    from kinematify.pipeline import infer, write_inference
+
+    check_output(out, overwrite=force)
+    settings = load_config(config) if seed is None else load_config(config, seed=seed)
+    with progress_reporter() as progress:
+        progress("reading the parts", 0.0)
+        given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
+        inference = infer(given, config=settings, base=base, progress=progress)
+        progress("writing the model", 1.0)
+        write_inference(inference, out, overwrite=force, preview=not no_preview)
+    if json_to:
+        write_answer(_as_answer(inference, out), json_to)
+    if json_to != "-":
+        click.echo(_describe(inference, out))
+
+
+def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
+    return {
+        "schema": 1,
+        "out": str(out),
+        "files": sorted(path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()),
+        "base": inference.model.root,
+        "joints": [_joint_answer(inference, joint) for joint in inference.model.joints],
+        "set_aside": [{"name": item.part.name, "reason": item.reason} for item in inference.assembly.set_aside],
+        "warnings": list(inference.assembly.warnings),
+        "seconds": dict(inference.timings),
+    }
+
+
+def _joint_answer(inference: Inference, joint: Joint) -> dict[str, Any]:
+    return {
+        "name": joint.name,
+        "type": joint.kind.value,
+        "parent": joint.parent,
+        "child": joint.child,
+        "axis": joint.axis.tolist(),
+        "lower": joint.lower if math.isfinite(joint.lower) else None,
+        "upper": joint.upper if math.isfinite(joint.upper) else None,
+        "confidence": _confidences(inference)[joint.child],
+    }
+
+
+def _confidences(inference: Inference) -> dict[str, float]:
+    """Confidence of the joint above every part, by the part's name."""
+    names = inference.assembly.names
+    return {names[estimate.child]: estimate.confidence for estimate in inference.joints}
+
+
+def _describe(inference: Inference, out: Path) -> str:
+    confidences = _confidences(inference)
+    rows = [_describe_joint(joint, confidences[joint.child]) for joint in inference.model.joints]
+    lines = [
+        f"Base: {inference.model.root}",
+        "",
+        format_table(("joint", "type", "parent -> child", "range", "confidence"), rows),
+        "",
+        *_describe_doubts(inference),
+        *_describe_files(out),
+    ]
+    return "\n".join(lines)
+
+
+def _describe_joint(joint: Joint, confidence: float) -> tuple[str, ...]:
+    return (
+        joint.name,
+        joint.kind.value,
+        f"{joint.parent} -> {joint.child}",
+        _describe_range(joint),
+        f"{confidence:.0%}",
+    )
+
+
+def _describe_range(joint: Joint) -> str:
+    if joint.kind is JointType.FIXED:
+        return "-"
+    if not math.isfinite(joint.upper - joint.lower):
+        return "unlimited"
+    if joint.kind.turns:
+        return f"{math.degrees(joint.lower):.0f} to {math.degrees(joint.upper):.0f} deg"
+    return f"{joint.lower * 1000:.0f} to {joint.upper * 1000:.0f} mm"
+
+
+def _describe_doubts(inference: Inference) -> list[str]:
+    """What the user should look at, one line each, and an empty line if there is any."""
+    confidences = _confidences(inference)
+    doubtful = sorted(
+        (joint for joint in inference.model.joints if confidences[joint.child] < DOUBTFUL),
+        key=lambda joint: confidences[joint.child],
+    )
+    lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]
+    lines += [f"Note: {warning}" for warning in inference.assembly.warnings]
+    if doubtful:
+        names = ", ".join(joint.name for joint in doubtful)
+        lines.append(f"Look first at the joints that the geometry says least about: {names}.")
+    return [*lines, ""] if lines else []
+
+
+def _describe_files(out: Path) -> list[str]:
+    purposes = {
+        "model.urdf": "what a simulator loads, with meshes/ beside it",
+        "inference.json": "every alternative with its evidence, seed and timings",
+        "preview.png": "the object as given, and with every joint moved",
+    }
+    present = [name for name in purposes if (out / name).is_file()]
+    return [f"{out / name}: {purposes[name]}" for name in present]
