@@ -7,6 +7,7 @@ tessellation's own asymmetry; a 3 deg tolerance then works from 16 segments up.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray, Part
+    from kinematify.assembly.part import Assembly, FloatArray, IntArray, Part
+    from kinematify.config import SurfaceConfig
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -244,6 +246,12 @@ class PartSurface:
         """Welded mesh as igl wants it: float64 and int64, contiguous."""
         vertices, faces = self.welded
         return read_only(vertices, np.float64), read_only(faces, np.int64)
+
+
+def part_surfaces(assembly: Assembly, *, config: SurfaceConfig) -> tuple[PartSurface, ...]:
+    """Wrap every part of an assembly, in order; nothing is computed yet."""
+    crease = math.radians(config.crease_angle)
+    return tuple(PartSurface(part, crease_angle=crease) for part in assembly.parts)
 
 
 def _corner_angles(vertices: FloatArray, faces: IntArray) -> FloatArray:

@@ -1,0 +1,6 @@
+"""The whole inference, and the folder that it writes."""
+
+from kinematify.pipeline.infer import Inference, infer
+from kinematify.pipeline.record import write_inference
+
+__all__ = ["Inference", "infer", "write_inference"]

@@ -1,0 +1,166 @@
+"""infer(): segmented meshes become ranked kinematic trees with joints (paper, Algorithm 1)."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from kinematify.contact.build import build_contact_graph
+from kinematify.errors import InputError
+from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearing import fit_bearings
+from kinematify.joints.decide import estimate_joints
+from kinematify.joints.quality import edge_quality
+from kinematify.model.build import build_model
+from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.search import search_trees
+from kinematify.topology.stats import assembly_stats
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.candidate import JointEstimate
+    from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.topology.evidence import Pair
+    from kinematify.topology.tree import KinematicTree
+
+    Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Inference:
+    """Everything that was inferred, with every alternative that was kept."""
+
+    assembly: Assembly
+    config: Config
+    graph: ContactGraph
+    bearings: Mapping[Pair, EdgeBearing]
+    """Bearing lines of every contact edge, keyed (a, b) with a < b."""
+    trees: tuple[KinematicTree, ...]
+    """Best first; `joints` belong to the first."""
+    joints: tuple[JointEstimate, ...]
+    """One per edge of `trees[0]`, in the order of `trees[0].edges()`."""
+    timings: Mapping[str, float]
+    """Wall time of every stage [s]."""
+    peak_mb: float
+    """Peak resident memory of the process so far [MB]."""
+    warnings: tuple[str, ...] = field(default=())
+    """What the user should know, one sentence each; those of the assembly included."""
+
+    @cached_property
+    def model(self) -> KinematicModel:
+        """The kinematic model of the best tree."""
+        return build_model(
+            self.assembly, self.trees[0], self.joints, name=_model_name(self.assembly.source), config=self.config.model
+        )
+
+
+def infer(
+    assembly: Assembly, *, config: Config, base: str | None = None, progress: Progress | None = None
+) -> Inference:
+    """Infer the kinematic tree and all joints of an assembly (paper, Algorithm 1).
+
+    Args:
+        assembly: Rigid parts in one configuration, world frame, z up, metres.
+        config: All stages; `config.seed` makes the answer reproducible.
+        base: Name of the part that is the base link, where it is known.
+        progress: Called with the name of each stage and the share of the work done before it, in [0, 1].
+
+    Raises:
+        InputError: `base` is no part of the assembly.
+    """
+    clock = _StageClock(progress or (lambda stage, share: None))
+    root = _base_index(assembly, base)
+    with clock.stage("contacts", 0.0):
+        surfaces = part_surfaces(assembly, config=config.surface)
+        graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
+    with clock.stage("bearings", 0.2):
+        bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
+    with clock.stage("tree", 0.6):
+        evidence = gather_evidence(graph, bearings, config)
+        trees = search_trees(
+            graph, assembly_stats(assembly), evidence, config.topology, seed=config.seed, base=root
+        )
+    with clock.stage("joints", 0.7):
+        joints = estimate_joints(assembly, graph, trees[0], bearings, config=config.joints, seed=config.seed)
+    clock.progress("done", 1.0)
+    return Inference(
+        assembly=assembly,
+        config=config,
+        graph=graph,
+        bearings=MappingProxyType(bearings),
+        trees=trees,
+        joints=joints,
+        timings=MappingProxyType(clock.seconds),
+        peak_mb=_peak_mb(),
+        warnings=(*assembly.warnings, *_floating_parts(assembly, graph, trees[0])),
+    )
+
+
+def gather_evidence(
+    graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+) -> dict[Pair, EdgeEvidence]:
+    """What the tree search needs to know of each contact edge: quality and direction of its best joint."""
+    evidence = {}
+    for pair, edge in graph.by_pair.items():
+        bearing = bearings.get(pair)
+        axis = bearing.lines[0].axis if bearing is not None and bearing.lines else None
+        evidence[pair] = EdgeEvidence(quality=edge_quality(edge, bearing, config.quality), axis=axis)
+    return evidence
+
+
+class _StageClock:
+    """Times the stages and tells who waits."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.progress = progress
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str, share: float) -> Iterator[None]:
+        self.progress(name, share)
+        start = time.perf_counter()
+        yield
+        self.seconds[name] = time.perf_counter() - start
+
+
+def _base_index(assembly: Assembly, base: str | None) -> int | None:
+    if base is None:
+        return None
+    if base not in assembly.names:
+        raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
+    return assembly.names.index(base)
+
+
+def _floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:
+    """Warn of tree edges between parts that do not touch."""
+    warnings = []
+    for parent, child in tree.edges():
+        pair = (min(parent, child), max(parent, child))
+        edge = graph.by_pair.get(pair)
+        if edge is None or edge.bridge:
+            gap = "" if edge is None else f" ({edge.gap / assembly.diagonal:.2%} of the object's diagonal apart)"
+            warnings.append(
+                f"{assembly.names[child]} touches nothing; it hangs on {assembly.names[parent]}, the nearest part{gap}."
+            )
+    return warnings
+
+
+def _model_name(source: str) -> str:
+    stem = source.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1].split(".")[0]
+    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in stem) or "model"
+
+
+def _peak_mb() -> float:
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (1024 * 1024 if sys.platform == "darwin" else 1024)

@@ -1,0 +1,167 @@
+"""inference.json: the whole result as data, with versions, seed and configuration."""
+
+from __future__ import annotations
+
+import json
+import math
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+import kinematify
+from kinematify.model.output import RECORD_FILE, write_model_folder
+from kinematify.model.preview import render_preview
+from kinematify.model.urdf import write_urdf
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from kinematify.contact.graph import ContactEdge
+    from kinematify.joints.bearing import BearingLine
+    from kinematify.joints.candidate import JointCandidate, JointEstimate
+    from kinematify.pipeline.infer import Inference
+    from kinematify.topology.tree import KinematicTree
+
+SCHEMA = 1
+_PACKAGES = ("numpy", "scipy", "torch", "trimesh", "libigl", "python-fcl", "embreex")
+
+
+def write_inference(inference: Inference, out: Path, *, overwrite: bool = False, preview: bool = True) -> None:
+    """Write the model folder: ``model.urdf``, ``meshes/``, ``inference.json`` and ``preview.png``.
+
+    Args:
+        inference: What `infer` returned.
+        out: Folder to make; it appears whole or not at all.
+        overwrite: Replace an earlier model folder.
+        preview: Draw the picture.
+
+    Raises:
+        OutputError: `out` exists and must not be replaced, or cannot be written.
+    """
+
+    def write(folder: Path) -> None:
+        write_urdf(inference.model, folder)
+        text = json.dumps(inference_record(inference), indent=1, allow_nan=False)
+        (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
+        if preview:
+            render_preview(inference.model, folder / "preview.png", inference.config.preview)
+
+    write_model_folder(out, write, overwrite=overwrite)
+
+
+def inference_record(inference: Inference) -> dict[str, Any]:
+    """The result as JSON values; numbers that are not finite become null."""
+    assembly = inference.assembly
+    record = {
+        "schema": SCHEMA,
+        "kinematify": kinematify.__version__,
+        "versions": {"python": platform.python_version(), **_versions()},
+        "seed": inference.config.seed,
+        "source": assembly.source,
+        "parts": [
+            {
+                "name": part.name,
+                "original_name": assembly.original_names.get(part.name, part.name),
+                "faces": len(part.faces),
+                "mesh_hash": part.mesh_hash,
+            }
+            for part in assembly.parts
+        ],
+        "set_aside": [
+            {"name": item.part.name, "reason": item.reason, "nearest": item.nearest} for item in assembly.set_aside
+        ],
+        "warnings": list(inference.warnings),
+        "clusters": [[assembly.names[part] for part in cluster] for cluster in inference.graph.clusters],
+        "contacts": [_contact(inference, edge) for edge in inference.graph.edges],
+        "trees": [_tree(tree, assembly.names) for tree in inference.trees],
+        "joints": [_joint(joint, assembly.names) for joint in inference.joints],
+        "seconds": dict(inference.timings),
+        "peak_mb": inference.peak_mb,
+        "configuration": inference.config.model_dump(mode="json"),
+    }
+    return {key: _finite(value) for key, value in record.items()}
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for package in _PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "missing"
+    return found
+
+
+def _contact(inference: Inference, edge: ContactEdge) -> dict[str, Any]:
+    names = inference.assembly.names
+    bearing = inference.bearings.get((edge.a, edge.b))
+    return {
+        "a": names[edge.a],
+        "b": names[edge.b],
+        "gap": edge.gap,
+        "strength": edge.strength,
+        "bridge": edge.bridge,
+        "bearings": [_bearing(line) for line in bearing.lines] if bearing is not None else [],
+    }
+
+
+def _bearing(line: BearingLine) -> dict[str, Any]:
+    return {
+        "axis": line.axis.tolist(),
+        "pivot": line.pivot.tolist(),
+        "score": line.score,
+        "surface": [line.surface_a, line.surface_b],
+        "circles": [line.circles_a, line.circles_b],
+    }
+
+
+def _tree(tree: KinematicTree, names: tuple[str, ...]) -> dict[str, Any]:
+    return {
+        "root": names[tree.root],
+        "parents": {names[child]: names[parent] for parent, child in tree.edges()},
+        "broken": sorted([names[a], names[b]] for a, b in tree.broken),
+        "virtual": sorted([names[a], names[b]] for a, b in tree.virtual),
+        "reward": tree.reward,
+        "terms": dict(tree.terms),
+    }
+
+
+def _joint(joint: JointEstimate, names: tuple[str, ...]) -> dict[str, Any]:
+    return {
+        "parent": names[joint.parent],
+        "child": names[joint.child],
+        "type": joint.kind.value,
+        "axis": joint.axis.tolist(),
+        "pivot": joint.pivot.tolist(),
+        "lower": joint.lower,
+        "upper": joint.upper,
+        "confidence": joint.confidence,
+        "evidence": _plain(joint.evidence),
+        "candidates": [_candidate(candidate) for candidate in joint.alternatives],
+    }
+
+
+def _candidate(candidate: JointCandidate) -> dict[str, Any]:
+    return {
+        "type": candidate.kind.value,
+        "axis": candidate.axis.tolist(),
+        "pivot": candidate.pivot.tolist(),
+        "score": candidate.score,
+        "source": candidate.source,
+        "evidence": _plain(candidate.evidence),
+    }
+
+
+def _plain(values: Mapping[str, float]) -> dict[str, float]:
+    return {key: float(value) for key, value in values.items()}
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_finite(item) for item in value]
+    return value
