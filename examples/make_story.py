@@ -8,10 +8,13 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from PIL import Image
+
 from kinematify import infer, load_assembly, load_config
 from kinematify.model.preview import render_story
 
 HERE = Path(__file__).resolve().parent
+WIDTH = 1600  # twice what the README shows [pixels]
 
 
 def write_story(path: Path) -> None:
@@ -19,6 +22,10 @@ def write_story(path: Path) -> None:
     config = load_config()
     assembly = load_assembly(HERE / "cabinet", config=config.assembly)
     render_story(infer(assembly, config=config).model, path, config.preview)
+    picture = Image.open(path).convert("RGB")
+    picture.resize((WIDTH, round(WIDTH * picture.height / picture.width)), Image.Resampling.LANCZOS).save(
+        path, optimize=True
+    )
 
 
 if __name__ == "__main__":

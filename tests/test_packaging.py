@@ -96,6 +96,11 @@ def requirement_name(line: str) -> str:
     return re.split(r"[\[<>=!~ ]", line, maxsplit=1)[0]
 
 
+def normalised(name: str) -> str:
+    """Spelling of a distribution name under which it can be compared."""
+    return name.lower().replace("_", "-")
+
+
 def declared(extra: str | None = None) -> set[str]:
     """Names of the distributions that pyproject.toml asks for."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
@@ -108,9 +113,9 @@ def test_the_doctor_knows_every_declared_package() -> None:
 
 
 def test_every_import_of_the_package_is_declared() -> None:
-    providers = {module: {name.lower() for name in names} for module, names in packages_distributions().items()}
+    providers = {module: {normalised(name) for name in names} for module, names in packages_distributions().items()}
     providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
-    allowed = {name.lower() for name in declared() | declared("bench")}
+    allowed = {normalised(name) for name in declared() | declared("bench")}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):
         for path in (Path(folder, file) for file in files if file.endswith(".py")):

@@ -105,7 +105,7 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "base": inference.model.root,
         "joints": [_joint_answer(inference, joint) for joint in inference.model.joints],
         "set_aside": [{"name": item.part.name, "reason": item.reason} for item in inference.assembly.set_aside],
-        "warnings": list(inference.assembly.warnings),
+        "warnings": list(inference.warnings),
         "seconds": dict(inference.timings),
     }
 
@@ -171,7 +171,7 @@ def _describe_doubts(inference: Inference) -> list[str]:
         key=lambda joint: confidences[joint.child],
     )
     lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]
-    lines += [f"Note: {warning}" for warning in inference.assembly.warnings]
+    lines += [f"Note: {warning}" for warning in inference.warnings]
     if doubtful:
         names = ", ".join(joint.name for joint in doubtful)
         lines.append(f"Look first at the joints that the geometry says least about: {names}.")
