@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinematify.assembly.names import part_names
-from kinematify.assembly.part import Assembly, Part, SetAside
+from kinematify.assembly.part import Assembly, Part, SetAside, used_vertices
 from kinematify.assembly.weld import welded
 from kinematify.errors import AssemblyError
 
@@ -89,7 +89,7 @@ def check_finite(mesh: RawMesh, source: str) -> None:
     Raises:
         AssemblyError: There is one; the message names the mesh.
     """
-    used = mesh.vertices[np.unique(mesh.faces)]
+    used = mesh.vertices[used_vertices(mesh.faces, len(mesh.vertices))]
     bad = int((~np.isfinite(used).all(axis=1)).sum())
     if bad:
         raise AssemblyError(
@@ -122,7 +122,7 @@ def _degenerate_reason(part: Part, diagonal: float, config: AssemblyConfig) -> s
         return "It holds no triangle."
     if part.area == 0.0:
         return "Its surface has no area."
-    distinct = len(np.unique(part.faces))
+    distinct = int(used_vertices(part.faces, len(part.vertices)).sum())
     if distinct < config.min_vertices:
         return f"It has {distinct} distinct vertices; {config.min_vertices} are needed."
     extent = float(np.ptp(part.bounds, axis=0).max())

@@ -13,6 +13,7 @@ from trimesh.scene import Scene
 
 from kinematify.assembly.gltf_file import read_gltf
 from kinematify.assembly.obj_file import read_obj
+from kinematify.assembly.weld import without_unused
 from kinematify.errors import AssemblyError
 
 if TYPE_CHECKING:
@@ -75,8 +76,8 @@ def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
 
 def compacted(mesh: RawMesh) -> RawMesh:
     """Return the mesh without vertices that no face uses."""
-    used, corners = np.unique(mesh.faces, return_inverse=True)
-    return replace(mesh, vertices=mesh.vertices[used], faces=corners.reshape(-1, 3).astype(np.int64))
+    vertices, faces = without_unused(mesh.vertices, mesh.faces)
+    return replace(mesh, vertices=vertices, faces=faces)
 
 
 def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:

@@ -26,6 +26,13 @@ def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     return copy
 
 
+def used_vertices(faces: IntArray, n_vertices: int) -> NDArray[np.bool_]:
+    """Return which vertices a face uses, shape (V,); far quicker on millions of faces than sorting them."""
+    used = np.zeros(n_vertices, dtype=np.bool_)
+    used[faces.reshape(-1)] = True
+    return used
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Part:
     """One rigid part: a triangle mesh in world coordinates (paper III-A, ``M_i``)."""
@@ -51,7 +58,7 @@ class Part:
     @cached_property
     def bounds(self) -> FloatArray:
         """Axis-aligned bounds in the world frame [m], shape (2, 3): lower corner, upper corner."""
-        used = self.vertices[np.unique(self.faces)]
+        used = self.vertices[used_vertices(self.faces, len(self.vertices))]
         return read_only(np.stack([used.min(0), used.max(0)]), np.float64)
 
     @property

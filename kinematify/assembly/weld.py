@@ -9,6 +9,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from kinematify.assembly.part import used_vertices
+
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
 
@@ -27,13 +29,17 @@ def welded(vertices: FloatArray, faces: IntArray, tolerance: float) -> tuple[Flo
     Returns:
         New vertices and faces; both may be empty.
     """
-    used, corners = np.unique(faces, return_inverse=True)
-    points = vertices[used]
+    points, triangles = without_unused(vertices, faces)
     first, merged = _merged(points, tolerance * _diagonal(points))
-    triangles = first[merged[corners.reshape(-1, 3)]]
-    triangles = triangles[_has_area(points, triangles)]
-    kept, triangles = np.unique(triangles, return_inverse=True)
-    return points[kept], triangles.reshape(-1, 3).astype(np.int64)
+    triangles = first[merged[triangles]]
+    return without_unused(points, triangles[_has_area(points, triangles)])
+
+
+def without_unused(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """Return the mesh without vertices that no face uses, the others in their order."""
+    used = used_vertices(faces, len(vertices))
+    place = np.cumsum(used) - 1
+    return vertices[used], place[faces]
 
 
 def _diagonal(points: FloatArray) -> float:
@@ -45,16 +51,36 @@ def _merged(points: FloatArray, distance: float) -> tuple[IntArray, IntArray]:
     if not len(points):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
     # Equal vertices are most of the work in files without sharing (STL): out of the way before the search for near
-    # ones. Adding zero makes -0.0 equal to 0.0.
-    _, first, same = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
+    # ones.
+    first, same = _equal_rows(points)
     distinct = points[first]
     pairs = cKDTree(distinct).query_pairs(distance, output_type="ndarray") if distance > 0 else np.empty((0, 2), int)
     links = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(distinct),) * 2)
     count, group = connected_components(links, directed=False)
-    groups = group[same.reshape(-1)]
+    groups = group[same]
     earliest = np.full(count, len(points), dtype=np.int64)
     np.minimum.at(earliest, groups, np.arange(len(points)))
     return earliest, groups.astype(np.int64)
+
+
+def _equal_rows(points: FloatArray) -> tuple[IntArray, IntArray]:
+    """Index of the first of every set of equal rows, and the set of every row.
+
+    Sorting one hash per row instead of the rows is ten times faster on millions of them; a collision, should there
+    ever be one, only leaves equal rows for the search for near ones to find.
+    """
+    words = (points + 0.0).view(np.uint64)  # adding zero makes -0.0 equal to 0.0
+    hashes = np.zeros(len(points), dtype=np.uint64)
+    for k in range(3):
+        hashes = (hashes ^ words[:, k]) * _ODD
+        hashes ^= hashes >> np.uint64(32)
+    _, first, same = np.unique(hashes, return_index=True, return_inverse=True)
+    collided = (points[first[same]] != points).any(axis=1)
+    if collided.any():
+        alone = np.flatnonzero(collided)
+        same[alone] = len(first) + np.arange(len(alone))
+        first = np.concatenate([first, alone])
+    return first, same
 
 
 def _has_area(points: FloatArray, triangles: IntArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -67,5 +93,7 @@ def _has_area(points: FloatArray, triangles: IntArray) -> np.ndarray[tuple[int],
     return answer
 
 
+_ODD = np.uint64(0x9E3779B97F4A7C15)
+"""An odd number with well mixed bits."""
 _FLATTEST = 1e-12
 """Height over longest side of a triangle, below which its normal is noise of float64."""
