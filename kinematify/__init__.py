@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.errors import KinematifyError
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline import Inference, infer
+    from kinematify.pipeline.infer import Inference, infer
     from kinematify.topology.tree import KinematicTree
 
 __version__ = "0.1.0"

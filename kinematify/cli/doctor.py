@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import os
 import platform
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -103,15 +101,19 @@ def command(json_to: str | None) -> int:
 
 def examine_packages() -> tuple[Finding, ...]:
     """Compare what is installed with what this version of Kinematify declares, and try every import."""
+    from concurrent.futures import ThreadPoolExecutor
+
     requirements = _declared_requirements()
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
         return tuple(pool.map(_examine, requirements))
 
 
 def _declared_requirements() -> list[Requirement]:
+    from importlib.metadata import requires
+
     from packaging.requirements import Requirement
 
-    declared = [Requirement(line) for line in importlib.metadata.requires("kinematify") or ()]
+    declared = [Requirement(line) for line in requires("kinematify") or ()]
     return [requirement for requirement in declared if requirement.name in MODULES]
 
 
@@ -139,9 +141,11 @@ def _judge(requirement: Requirement, installed: str | None, problem: str | None)
 
 
 def _installed_version(package: str) -> str | None:
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
-        return importlib.metadata.version(package)
-    except importlib.metadata.PackageNotFoundError:
+        return version(package)
+    except PackageNotFoundError:
         return None
 
 
