@@ -74,7 +74,7 @@ def load_assembly(
     _check_arguments(up, scale)
     given = _given(path, _Reading(up=up, labels=labels, config=config))
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
-    scaled = [replace(mesh, vertices=mesh.vertices * scale) for mesh in meshes]
+    scaled = meshes if scale == 1.0 else [replace(mesh, vertices=mesh.vertices * scale) for mesh in meshes]
     warnings = (*given.warnings, *(_unit_warnings(given.meshes) if scale == 1.0 else ()))
     return assemble(scaled, source=str(path), config=config, warnings=warnings)
 

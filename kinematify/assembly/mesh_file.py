@@ -163,6 +163,8 @@ def _scene_meshes(scene: Scene, path: Path) -> Iterator[RawMesh]:
 
 def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
     """Apply the transform of a node, shape (4, 4), then a change of unit; mirroring would turn a mesh inside out."""
+    if unit == 1.0 and np.array_equal(transform, np.eye(4)):
+        return mesh  # formats without nodes can hold millions of vertices: no copy
     order = [0, 2, 1] if np.linalg.det(transform[:3, :3]) < 0 else [0, 1, 2]
     vertices = unit * (mesh.vertices @ transform[:3, :3].T + transform[:3, 3])
     return replace(mesh, vertices=vertices, faces=mesh.faces[:, order])
