@@ -92,6 +92,8 @@ class BearingConfig(StageConfig):
     """The same in the last round of refinement [deg]."""
     refine_steps: int
     """Rounds of refinement."""
+    refine_samples: int
+    """Samples per side in all rounds but the last two."""
     flange_weight: float
     """Weight of area perpendicular to the axis against area around it."""
     circle_tolerance: float

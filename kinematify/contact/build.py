@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import fcl
-import igl
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -166,11 +165,10 @@ def _samples_near(surface: PartSurface, other: PartSurface, band: float, count: 
 def _within(samples: Samples, other: PartSurface, band: float) -> tuple[Samples, FloatArray]:
     lower, upper = other.part.bounds
     boxed = np.all((samples.points >= lower - band) & (samples.points <= upper + band), axis=1)
-    points = np.ascontiguousarray(samples.points[boxed])
+    points = samples.points[boxed]
     if len(points) == 0:
         return samples.subset(boxed), np.empty(0)
-    squared, _, _ = igl.point_mesh_squared_distance(points, *other.distance_mesh)
-    distances = np.sqrt(squared)
+    distances = other.distance(points)
     near = distances <= band
     index = np.flatnonzero(boxed)[near]
     return samples.subset(index), distances[near]

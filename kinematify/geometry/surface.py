@@ -156,8 +156,19 @@ class PartSurface:
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Exact unsigned distance from `points` (n, 3) to the surface [m], shape (n,)."""
-        squared, _, _ = igl.point_mesh_squared_distance(np.ascontiguousarray(points), *self.distance_mesh)
-        return np.sqrt(squared)
+        tree, origin, vertices, faces = self._distance_tree
+        squared, _, _ = tree.squared_distance(vertices, faces, np.ascontiguousarray(points - origin))
+        return np.asarray(np.sqrt(np.maximum(squared, 0.0)))
+
+    @cached_property
+    def _distance_tree(self) -> tuple[igl.AABB, FloatArray, FloatArray, IntArray]:
+        """Tree over the triangles, centred: far from the origin, squares would eat the digits."""
+        vertices, faces = self.welded
+        origin = self.part.bounds.mean(axis=0)
+        centred, faces = np.ascontiguousarray(vertices - origin), np.ascontiguousarray(faces)
+        tree = igl.AABB()
+        tree.init(centred, faces)
+        return tree, origin, centred, faces
 
     @cached_property
     def corner_normals(self) -> FloatArray:
@@ -240,12 +251,6 @@ class PartSurface:
         model.addSubModel(vertices, faces)
         model.endModel()
         return fcl.CollisionObject(model, fcl.Transform())
-
-    @cached_property
-    def distance_mesh(self) -> tuple[FloatArray, IntArray]:
-        """Welded mesh as igl wants it: float64 and int64, contiguous."""
-        vertices, faces = self.welded
-        return read_only(vertices, np.float64), read_only(faces, np.int64)
 
 
 def part_surfaces(assembly: Assembly, *, config: SurfaceConfig) -> tuple[PartSurface, ...]:

@@ -164,7 +164,8 @@ def _turned_lines(
         if len(axes) == 0:
             continue
         best = int(np.argmax(_surface_support(side, axes, points, config)))
-        axis, point = _refine(side, side, axes[best], points[best], config)
+        tolerances = np.geomspace(config.normal_tolerance_sine, config.fine_tolerance_sine, config.refine_steps)
+        axis, point = _refine(side, side, axes[best], points[best], tolerances, config)
         support = float(_surface_support(side, axis[None], point[None], config)[0])
         arm = side.points - point
         height = float(np.ptp(arm @ axis))
@@ -306,33 +307,45 @@ def _rank(
     coarse = np.sqrt(coarse * _surface_support(_thin(side_b, config.coarse_samples), axes, points, config))
     order = np.argsort(-coarse, kind="stable")
     chosen = _distinct(axes[order], points[order], config.shortlist, 4.0, 0.006 * diagonal)
-    axes, points = axes[order][chosen], points[order][chosen]
+    thin = _thin(side_a, config.refine_samples), _thin(side_b, config.refine_samples)
+    tolerances = np.geomspace(config.normal_tolerance_sine, config.fine_tolerance_sine, config.refine_steps)
     results = []
-    for axis, point in zip(axes, points, strict=True):
-        axis, point = _refine(side_a, side_b, axis, point, config)
-        point = point + axis * float((centroid - point) @ axis)
-        results.append(_line(side_a, side_b, axis, point, diagonal, config))
-    results.sort(key=lambda line: -line.score)
-    kept = _distinct(
-        np.array([line.axis for line in results]),
-        np.array([line.pivot for line in results]),
-        config.keep,
-        2.0,
-        0.003 * diagonal,
-    )
-    return [results[index] for index in kept]
+    for axis, point in zip(axes[order][chosen], points[order][chosen], strict=True):
+        axis, point = _refine(*thin, axis, point, tolerances, config)
+        results.append(_line(*thin, axis, point, centroid, diagonal, config))
+    results = _best_distinct(results, diagonal, config)
+    final = []
+    for line in results:
+        axis, point = _refine(side_a, side_b, line.axis, line.pivot, tolerances[-2:], config)
+        final.append(_line(side_a, side_b, axis, point, centroid, diagonal, config))
+    return _best_distinct(final, diagonal, config)
+
+
+def _best_distinct(lines: list[BearingLine], diagonal: float, config: BearingConfig) -> list[BearingLine]:
+    """The best lines, best first, without those that nearly repeat a better one."""
+    ordered = sorted(lines, key=lambda line: -line.score)
+    axes = np.array([line.axis for line in ordered])
+    pivots = np.array([line.pivot for line in ordered])
+    return [ordered[index] for index in _distinct(axes, pivots, config.keep, 2.0, 0.003 * diagonal)]
 
 
 def _line(
-    side_a: _Side, side_b: _Side, axis: FloatArray, point: FloatArray, diagonal: float, config: BearingConfig
+    side_a: _Side,
+    side_b: _Side,
+    axis: FloatArray,
+    point: FloatArray,
+    centroid: FloatArray,
+    diagonal: float,
+    config: BearingConfig,
 ) -> BearingLine:
+    """Score a line; its pivot is the foot of the contact centroid."""
     surface = [float(_surface_support(side, axis[None], point[None], config)[0]) for side in (side_a, side_b)]
     circles = [_circle_support(side, axis, point, diagonal, config) for side in (side_a, side_b)]
     support = np.sqrt(surface[0] * surface[1])
     score = float(support * (config.circle_floor + np.sqrt(circles[0] * circles[1])) / (config.circle_floor + 1))
     return BearingLine(
         axis=axis,
-        pivot=point,
+        pivot=point + axis * float((centroid - point) @ axis),
         score=score,
         surface_a=surface[0],
         surface_b=surface[1],
@@ -426,16 +439,21 @@ def _circle_support(
 
 
 def _refine(
-    side_a: _Side, side_b: _Side, axis: FloatArray, point: FloatArray, config: BearingConfig
+    side_a: _Side,
+    side_b: _Side,
+    axis: FloatArray,
+    point: FloatArray,
+    tolerances: FloatArray,
+    config: BearingConfig,
 ) -> tuple[FloatArray, FloatArray]:
     """Robust Gauss-Newton on the four parameters of the line; the tolerance shrinks from coarse to fine.
 
-    Each round linearises the angular residuals with frozen radii and weights them by exp(-(r / tolerance)^2). Both
-    parts weigh the same whatever their areas.
+    Each round linearises the angular residuals with frozen radii and weights them by exp(-(r / tolerance)^2), where
+    `tolerances` holds the sine of the tolerance of each round. Both parts weigh the same whatever their areas.
     """
     spread = _spread(side_a, side_b)
-    for tolerance in np.geomspace(config.normal_tolerance_sine, config.fine_tolerance_sine, config.refine_steps):
-        basis = np.concatenate(_across(axis[None]))
+    for tolerance in tolerances:
+        basis = _basis(axis)
         normal, gradient = np.zeros((4, 4)), np.zeros(4)
         for side in (side_a, side_b):
             for design, rest, weight in (
@@ -463,15 +481,29 @@ def _surface_rows(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Rows of n . (u x (x - p)) / radius = 0: the normal line meets the axis."""
     arm = side.points - point
-    around = np.cross(axis, arm)
-    radius = np.linalg.norm(around, axis=1) + 1e-12
-    rest = np.einsum("ij,ij->i", side.normals, around) / radius
-    turn = np.cross(arm, side.normals) / radius[:, None]
-    shift = -np.cross(side.normals, axis) / radius[:, None] * spread
-    design = np.concatenate([turn @ basis.T, shift @ basis.T], axis=1)
+    turned = arm @ _cross_matrix(axis).T
+    radius = np.sqrt((turned * turned).sum(axis=1)) + 1e-12
+    rest = (side.normals * turned).sum(axis=1) / radius
+    # n . (e x arm) for the tilts of the axis towards e, n . (e x u) for its shifts, both as products with e.
+    tilt = [(side.normals * (arm @ _cross_matrix(e).T)).sum(axis=1) / radius for e in basis]
+    shift = [side.normals @ (_cross_matrix(e) @ axis) / radius * spread for e in basis]
+    design = np.stack([*tilt, *shift], axis=1)
     across = 1 - (side.normals @ axis) ** 2
     total = max(float(side.weights.sum()), 1e-300)
     return design, rest, np.exp(-((rest / tolerance) ** 2)) * across * side.weights / total
+
+
+def _basis(axis: FloatArray) -> FloatArray:
+    """Two unit vectors across one axis, shape (2, 3)."""
+    first = _cross_matrix(axis) @ np.eye(3)[int(np.argmin(np.abs(axis)))]
+    first /= np.sqrt(first @ first)
+    return np.stack([first, _cross_matrix(axis) @ first])
+
+
+def _cross_matrix(vector: FloatArray) -> FloatArray:
+    """Matrix of v -> vector x v, shape (3, 3)."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _circle_rows(
@@ -485,9 +517,10 @@ def _circle_rows(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Rows of t . u = 0 and t . (m - p) / radius = 0: a piece of edge runs around the axis."""
     arm = side.middles - point
-    radius = np.linalg.norm(np.cross(axis, arm), axis=1) + 1e-12
+    radial = arm - (arm @ axis)[:, None] * axis
+    radius = np.sqrt((radial * radial).sum(axis=1)) + 1e-12
     level = side.tangents @ axis
-    outward = np.einsum("ij,ij->i", side.tangents, arm - (arm @ axis)[:, None] * axis) / radius
+    outward = (side.tangents * radial).sum(axis=1) / radius
     zeros = np.zeros((len(radius), 2))
     tilt = np.concatenate([side.tangents @ basis.T, zeros], axis=1)
     shift = np.concatenate([zeros, -(side.tangents @ basis.T) * (spread / radius)[:, None]], axis=1)

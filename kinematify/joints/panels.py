@@ -76,8 +76,8 @@ def rank_turns(scene: JointScene, config: JointsConfig) -> RankedTurns:
         **_handle_cues(scene, lines, config),
         **_margin_cues(scene, lines, config),
         **_gravity_cues(scene, lines, with_parent, outward),
-        **_shape_cues(scene, lines, config),
     }
+    cues |= _shape_cues(scene, lines, near=1.0 - cues["contact_radius"])
     weights = config.panels.weights
     scores = sum(
         (np.clip(weights[name] * value, -config.panels.cap, config.panels.cap) for name, value in cues.items()),
@@ -388,14 +388,18 @@ def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
     return np.asarray(side.mean(axis=0))
 
 
-def _shape_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
-    """Where on the box the line lies and how it runs; for small parts, the normal of the contact."""
+def _shape_cues(scene: JointScene, lines: Lines, near: FloatArray) -> dict[str, FloatArray]:
+    """Where on the box the line lies and how it runs; for small parts, the normal of the contact.
+
+    A round part that touches only far from its own axis (a porthole on its hinge) does not turn about that axis.
+    """
     frame = scene.frame
     thin = np.abs(lines.axes @ frame.axes[frame.thin])
     along = np.abs(lines.axes @ frame.axes.T) @ frame.extents / max(float(frame.extents.max()), 1e-12)
     place = np.array(lines.places)
     source = np.array(lines.sources)
     turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
+    turned *= 1.0 - scene.compact * (1.0 - near)
     clusters = (source == "contact_clusters") & (not (scene.panel and (scene.upright or scene.flat)))
     normal = np.zeros(len(thin))
     if len(scene.contact.points):
@@ -410,7 +414,7 @@ def _shape_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[s
         "contact_line": (source == "contact_line").astype(np.float64),
         "clusters": clusters.astype(np.float64),
         "weak_bearing": (1.0 - scene.mechanism) * (source == "weak_bearing"),
-        "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _first_bearing(lines),
+        "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _first_bearing(lines) * near,
         "small_normal": max(scene.smallness, scene.compact) * normal * ((place == CENTRE) | (source == "contact_axis")),
         "round": turned,
     }
