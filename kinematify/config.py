@@ -83,7 +83,9 @@ class BearingConfig(StageConfig):
     coarse_samples: int
     """Samples per side for the first scoring of all lines."""
     shortlist: int
-    """Distinct lines that are refined and scored on all samples."""
+    """Distinct lines, best by area, that are refined."""
+    shortlist_circles: int
+    """Distinct lines, best by circles, that are refined as well."""
     keep: int
     """Distinct lines kept per edge."""
     normal_tolerance: float

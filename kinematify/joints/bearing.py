@@ -112,7 +112,7 @@ def fit_edge(
     side_a = _make_side(surfaces[edge.a], edge.samples_a, surfaces[edge.b], edge.gap, scale, config)
     side_b = _make_side(surfaces[edge.b], edge.samples_b, surfaces[edge.a], edge.gap, scale, config)
     centroid = _centroid(side_a, side_b)
-    axes, points = _propose((side_a, side_b), centroid, config, rng)
+    axes, points = _propose((side_a, side_b), centroid, diagonal, config, rng)
     lines: list[BearingLine] = []
     if len(axes):
         lines = _rank(side_a, side_b, axes, points, centroid, diagonal, config)
@@ -249,17 +249,50 @@ def _distance_near(points: FloatArray, other: PartSurface, reach: float) -> Floa
 
 
 def _propose(
-    sides: tuple[_Side, _Side], centroid: FloatArray, config: BearingConfig, rng: np.random.Generator
+    sides: tuple[_Side, _Side], centroid: FloatArray, diagonal: float, config: BearingConfig, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
-    """Lines from pairs of normals (cylinders) and from circles; axes (L, 3) and points (L, 3)."""
-    axes, points = [], []
-    for side in sides:
-        for source in (_normal_pair_lines(side, config.pairs, rng), _circle_lines(side, config.circles, rng)):
-            axes.append(source[0])
-            points.append(source[1])
-    all_axes, all_points = np.concatenate(axes), np.concatenate(points)
-    slide = np.einsum("ij,ij->i", centroid - all_points, all_axes)
-    return all_axes, all_points + slide[:, None] * all_axes
+    """Promising distinct lines: the best by area among all, and the best by circles among those through circles.
+
+    Both lists are needed: a bearing that shows as two circles on boxy housings has little round area.
+
+    Returns:
+        Axes (L, 3) and points (L, 3); each point is the foot of the contact centroid.
+    """
+    by_pairs = [_normal_pair_lines(side, config.pairs, rng) for side in sides]
+    by_circles = [_circle_lines(side, config.circles, rng) for side in sides]
+    axes = np.concatenate([found[0] for found in (*by_circles, *by_pairs)])
+    points = np.concatenate([found[1] for found in (*by_circles, *by_pairs)])
+    if len(axes) == 0:
+        return axes, points
+    points = points + np.einsum("ij,ij->i", centroid - points, axes)[:, None] * axes
+    area = np.sqrt(
+        _surface_support(_thin(sides[0], config.coarse_samples), axes, points, config)
+        * _surface_support(_thin(sides[1], config.coarse_samples), axes, points, config)
+    )
+    votes = _circle_votes(axes, points, len(by_circles[0][0]), len(by_circles[1][0]), diagonal, config)
+    chosen: list[int] = []
+    for merit, count in ((area, config.shortlist), (votes, config.shortlist_circles)):
+        order = np.argsort(-merit, kind="stable")
+        order = order[merit[order] > 0]
+        picked = _distinct(axes[order], points[order], count, 4.0, 0.006 * diagonal)
+        chosen += order[picked].tolist()
+    return axes[chosen], points[chosen]
+
+
+def _circle_votes(
+    axes: FloatArray, points: FloatArray, count_a: int, count_b: int, diagonal: float, config: BearingConfig
+) -> FloatArray:
+    """For each line through a circle, how many circles of either side share it (geometric mean); else 0."""
+    votes = np.zeros(len(axes))
+    total = count_a + count_b
+    u, p = axes[:total], points[:total]
+    aligned = np.abs(u @ u.T) > np.cos(np.arcsin(config.circle_tolerance_sine))
+    offset = p[None] - p[:, None]
+    along = np.einsum("ijk,ik->ij", offset, u)
+    apart = np.sqrt(np.maximum(np.einsum("ijk,ijk->ij", offset, offset) - along**2, 0))
+    same = aligned & (apart < config.circle_cell * diagonal)
+    votes[:total] = np.sqrt(same[:, :count_a].sum(axis=1) * same[:, count_a:].sum(axis=1))
+    return votes
 
 
 def _normal_pair_lines(side: _Side, count: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
@@ -302,15 +335,11 @@ def _rank(
     diagonal: float,
     config: BearingConfig,
 ) -> list[BearingLine]:
-    """Score all lines coarsely, refine the best distinct ones, score them finely; best first."""
-    coarse = _surface_support(_thin(side_a, config.coarse_samples), axes, points, config)
-    coarse = np.sqrt(coarse * _surface_support(_thin(side_b, config.coarse_samples), axes, points, config))
-    order = np.argsort(-coarse, kind="stable")
-    chosen = _distinct(axes[order], points[order], config.shortlist, 4.0, 0.006 * diagonal)
+    """Refine lines on few samples, keep the best distinct ones, finish them on all samples; best first."""
     thin = _thin(side_a, config.refine_samples), _thin(side_b, config.refine_samples)
     tolerances = np.geomspace(config.normal_tolerance_sine, config.fine_tolerance_sine, config.refine_steps)
     results = []
-    for axis, point in zip(axes[order][chosen], points[order][chosen], strict=True):
+    for axis, point in zip(axes, points, strict=True):
         axis, point = _refine(*thin, axis, point, tolerances, config)
         results.append(_line(*thin, axis, point, centroid, diagonal, config))
     results = _best_distinct(results, diagonal, config)
