@@ -67,6 +67,31 @@ class ContactConfig(StageConfig):
     """Largest Chamfer distance of congruent parts, as a fraction of the part's diagonal."""
 
 
+class RailConfig(StageConfig):
+    """Fit of the direction along which a contact is extruded."""
+
+    pairs: int
+    """Random pairs of normals per side."""
+    tolerance: float
+    """Angle by which a normal may leave the plane across the direction [deg]."""
+    edge_tolerance: float
+    """Angle by which a guiding edge may leave the direction [deg]."""
+    edge_floor: float
+    """What a rail without guiding edges keeps of its score, against one with nothing but such edges."""
+    refine_steps: int
+    """Rounds of refinement."""
+
+    @property
+    def tolerance_sine(self) -> float:
+        """Sine of `tolerance`."""
+        return math.sin(math.radians(self.tolerance))
+
+    @property
+    def edge_tolerance_sine(self) -> float:
+        """Sine of `edge_tolerance`."""
+        return math.sin(math.radians(self.edge_tolerance))
+
+
 class BearingConfig(StageConfig):
     """Fit of bearing lines to a contact edge."""
 
@@ -116,6 +141,8 @@ class BearingConfig(StageConfig):
     """Score of a fully round part without any bearing on the other side."""
     turned_samples: int
     """Samples, and pairs of normals, for the axis of a whole part."""
+    rail: RailConfig
+    """The counterpart for sliding joints, fitted to the same samples."""
 
     @property
     def normal_tolerance_sine(self) -> float:
@@ -299,8 +326,12 @@ class SlidesConfig(StageConfig):
 
     sweep: float
     """Travel that is tested either way, fraction of the diagonal."""
-    useful_travel: float
-    """Free travel beyond which more is no better, fraction of the diagonal."""
+    useful_share: float
+    """Free travel beyond which more is no better, fraction of the part's length that way."""
+    useful_least: float
+    """The same as a fraction of the diagonal, for parts that are short that way."""
+    short_travel: float
+    """Travel on which crossings are counted, fraction of the diagonal."""
     distinct_deg: float
     """Directions closer than this are one [deg]."""
     cap: float

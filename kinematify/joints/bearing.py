@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import read_only
+from kinematify.joints.rail import Rail, fit_rail
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,13 +58,14 @@ class BearingLine:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeBearing:
-    """Bearing lines of one contact edge, best first; empty where nothing is round."""
+    """Bearing lines of one contact edge, best first, and its rail; empty where nothing is round or extruded."""
 
     a: int
     b: int
     centroid: FloatArray
     """Weighted contact centroid, world frame [m], shape (3,). Read-only."""
     lines: tuple[BearingLine, ...]
+    rail: Rail | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -119,7 +121,13 @@ def fit_edge(
     if not lines or lines[0].score < config.turned_score:
         turned = _turned_lines(surfaces, edge, centroid, config, rng)
         lines = sorted([*lines, *turned], key=lambda line: -line.score)
-    return EdgeBearing(a=edge.a, b=edge.b, centroid=read_only(centroid, np.float64), lines=tuple(lines))
+    return EdgeBearing(
+        a=edge.a,
+        b=edge.b,
+        centroid=read_only(centroid, np.float64),
+        lines=tuple(lines),
+        rail=fit_rail((side_a, side_b), config.rail, rng),
+    )
 
 
 def _contact_scale(
