@@ -377,6 +377,8 @@ class LimitsConfig(StageConfig):
 class JointsConfig(StageConfig):
     """Choice of each joint's type, axis, direction and limits."""
 
+    method: Literal["geometry", "cavl"]
+    """Bearings, panels and slides, or the paper's DW-CAVL alone."""
     samples: int
     """Surface samples per part."""
     alternatives: int

@@ -44,7 +44,7 @@ def run_jobs(jobs: Sequence[tuple[str, Job]], *, workers: int, timeout: float) -
         workers: Processes at a time, each with one thread.
         timeout: Wall time after which a job is stopped [s].
     """
-    context = _context()
+    context = _context(cavl=any(job.config.joints.method == "cavl" for _, job in jobs))
     waiting: deque[tuple[str, Job, Failure | None]] = deque((key, job, None) for key, job in jobs)
     active: dict[Connection, _Running] = {}
     try:
@@ -64,10 +64,11 @@ def run_jobs(jobs: Sequence[tuple[str, Job]], *, workers: int, timeout: float) -
             _stop(receiver, running)
 
 
-def _context() -> multiprocessing.context.ForkServerContext:
+def _context(*, cavl: bool) -> multiprocessing.context.ForkServerContext:
     """Start the server that workers are forked from: the heavy imports are paid once, one thread per library."""
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["kinematify.pipeline", "kinematify.benchmark.job"])
+    torch_too = ["kinematify.joints.paper"] if cavl else []
+    context.set_forkserver_preload(["kinematify.pipeline", "kinematify.benchmark.job", *torch_too])
     before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
     try:

@@ -15,6 +15,7 @@ from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 
 if TYPE_CHECKING:
+    from kinematify.config import Config
     from kinematify.model.kinematic_model import Joint
     from kinematify.pipeline import Inference
 
@@ -86,6 +87,7 @@ def command(
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
     with progress_reporter() as progress:
+        _use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
         inference = infer(given, config=settings, base=base, progress=progress)
@@ -95,6 +97,14 @@ def command(
         write_answer(_as_answer(inference, out), json_to)
     if json_to != "-":
         click.echo(_describe(inference, out))
+
+
+def _use_one_thread(config: Config) -> None:
+    """Keep torch to one thread: DW-CAVL's tensors are small, so that more threads cost time and change last digits."""
+    if config.joints.method == "cavl":
+        import torch
+
+        torch.set_num_threads(1)
 
 
 def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:

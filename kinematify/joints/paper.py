@@ -6,14 +6,87 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointCandidate, JointType
-from kinematify.joints.cavl import rank_candidates, refine, virtual_motions
+from kinematify.contact.graph import ContactEdge, ContactSamples
+from kinematify.geometry.sampling import sample_surface
+from kinematify.geometry.sdf_grid import SignedDistanceCache
+from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.cavl import cavl_scene, rank_candidates, refine, virtual_motions
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.config import CavlConfig
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import Assembly, FloatArray, Part
+    from kinematify.config import CavlConfig, Config
+    from kinematify.contact.graph import ContactGraph
     from kinematify.joints.cavl import CavlScene, VirtualMotions
     from kinematify.joints.contact_region import ContactRegion
+
+
+def estimate_paper_joints(
+    assembly: Assembly, graph: ContactGraph, edges: Sequence[tuple[int, int]], *, config: Config
+) -> tuple[JointEstimate, ...]:
+    """Choose the joint of every edge by DW-CAVL alone (paper III-D).
+
+    The paper leaves three things open. Sign: the axis has none, so neither direction counts as opening. Limits: a full
+    turn, half of it either way, or the child's own length along the axis either way. Confidence: the score of the
+    chosen joint over the sum of its score and that of the best joint of the other type.
+
+    Args:
+        assembly: The parts, world frame.
+        graph: Contact graph with samples.
+        edges: Parent and child of every edge of the tree.
+        config: `cavl`, `sdf`, `joints.samples` and `seed` are used.
+
+    Returns:
+        One estimate per edge, in the order given.
+    """
+    cache = SignedDistanceCache(config.sdf)
+    samples = [sample_surface(part, config.joints.samples, config.seed) for part in assembly.parts]
+    estimates = []
+    for parent, child in edges:
+        scene = cavl_scene(
+            _edge_between(graph, parent, child),
+            parent=parent,
+            child=child,
+            fields=lambda index: cache.field(assembly.parts[index]),
+            samples=samples,
+            diagonal=assembly.diagonal,
+            config=config.cavl,
+        )
+        ranked = estimate_paper_joint(scene, config.cavl, config.seed)
+        estimates.append(_estimate(ranked, parent, child, assembly.parts[child]))
+    return tuple(estimates)
+
+
+def _edge_between(graph: ContactGraph, parent: int, child: int) -> ContactEdge:
+    """The contact of a tree edge; a virtual edge has none, so that whole surfaces stand in for it."""
+    pair = (min(parent, child), max(parent, child))
+    if pair in graph.by_pair:
+        return graph.by_pair[pair]
+    nothing = ContactSamples(
+        points=np.empty((0, 3)), normals=np.empty((0, 3)), distances=np.empty(0), areas=np.empty(0)
+    )
+    return ContactEdge(
+        a=pair[0], b=pair[1], gap=np.inf, strength=0.0, samples_a=nothing, samples_b=nothing, bridge=True
+    )
+
+
+def _estimate(ranked: tuple[JointCandidate, ...], parent: int, child: int, moving: Part) -> JointEstimate:
+    best = ranked[0]
+    other = max(candidate.score for candidate in ranked if candidate.kind is not best.kind)
+    reach = float(np.pi) if best.kind.turns else float(np.ptp(moving.vertices @ best.axis))
+    return JointEstimate(
+        parent=parent,
+        child=child,
+        kind=best.kind,
+        axis=best.axis,
+        pivot=best.pivot,
+        lower=-reach,
+        upper=reach,
+        confidence=best.score / (best.score + other),
+        alternatives=ranked,
+        evidence=best.evidence,
+    )
 
 
 def estimate_paper_joint(scene: CavlScene, config: CavlConfig, seed: int) -> tuple[JointCandidate, ...]:

@@ -45,7 +45,7 @@ class Inference:
     config: Config
     graph: ContactGraph
     bearings: Mapping[Pair, EdgeBearing]
-    """Bearing lines of every contact edge, keyed (a, b) with a < b."""
+    """Bearing lines of every contact edge, keyed (a, b) with a < b; empty where the method fits none."""
     trees: tuple[KinematicTree, ...]
     """Best first; `joints` belong to the first."""
     joints: tuple[JointEstimate, ...]
@@ -84,15 +84,15 @@ def infer(
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
         graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
-    with clock.stage("bearings", 0.2):
-        bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
+    bearings: dict[Pair, EdgeBearing] = {}
+    if config.joints.method == "geometry":
+        with clock.stage("bearings", 0.2):
+            bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
     with clock.stage("tree", 0.6):
         evidence = gather_evidence(graph, bearings, config)
-        trees = search_trees(
-            graph, assembly_stats(assembly), evidence, config.topology, seed=config.seed, base=root
-        )
+        trees = search_trees(graph, assembly_stats(assembly), evidence, config.topology, seed=config.seed, base=root)
     with clock.stage("joints", 0.7):
-        joints = estimate_joints(assembly, graph, trees[0], bearings, config=config.joints, seed=config.seed)
+        joints = choose_joints(assembly, graph, trees[0], bearings, config)
     clock.progress("done", 1.0)
     return Inference(
         assembly=assembly,
@@ -117,6 +117,22 @@ def gather_evidence(
         axis = bearing.lines[0].axis if bearing is not None and bearing.lines else None
         evidence[pair] = EdgeEvidence(quality=edge_quality(edge, bearing, config.quality), axis=axis)
     return evidence
+
+
+def choose_joints(
+    assembly: Assembly,
+    graph: ContactGraph,
+    tree: KinematicTree,
+    bearings: Mapping[Pair, EdgeBearing],
+    config: Config,
+) -> tuple[JointEstimate, ...]:
+    """The joint of every edge of a tree, in the order of `tree.edges()`, by the method of the configuration."""
+    if config.joints.method == "geometry":
+        return estimate_joints(assembly, graph, tree, bearings, config=config.joints, seed=config.seed)
+    # torch takes seconds to import, and only this branch needs it.
+    from kinematify.joints.paper import estimate_paper_joints  # noqa: PLC0415
+
+    return estimate_paper_joints(assembly, graph, tuple(tree.edges()), config=config)
 
 
 class _StageClock:
