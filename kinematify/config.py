@@ -165,6 +165,8 @@ class QualityConfig(StageConfig):
 
     half_score: float
     """Bearing score at which half of the full quality is reached."""
+    rail_weight: float
+    """Worth of a rail's score against a bearing's."""
     contact_weight: float
     """Largest quality of an edge without any bearing."""
     strength_power: float
