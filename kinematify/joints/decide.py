@@ -124,9 +124,18 @@ def describe_twins(
 
 
 def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
-    """Fingers: at the end of a chain, no bearing, standing out of the parent and apart from each other."""
-    chain_end = tree.depths[scene.child] >= 2
-    stands_out = scene.inside < 0.5
+    """Fingers: no bearing, no panel, standing out of the parent and apart from each other.
+
+    At the end of a chain that is enough. On a base, where doors, legs and wheels are twins too, the pair must also be
+    parallel and thin along the line between them.
+    """
+    apart_line = twin.centre - scene.centre
+    apart_line = apart_line / max(float(np.linalg.norm(apart_line)), 1e-12)
+    closing = abs(float(apart_line @ scene.frame.axes[scene.frame.thin]))
+    parallel = abs(float(apart_line @ twin.axes[twin.thin]))
+    facing = min(closing, parallel) > np.cos(np.radians(3.0)) and not scene.plate and scene.smallness < 1.0
+    chain_end = tree.depths[scene.child] >= 2 or facing
+    stands_out = scene.inside < 0.8
     apart = float(np.linalg.norm(twin.centre - scene.centre)) < 2.0 * float(scene.parent_frame.extents.max())
     return bool(chain_end and stands_out and apart and not scene.gated)
 

@@ -59,6 +59,7 @@ def decide_kind(
         config: Weights; positive ones speak for sliding.
     """
     cues = {**_room_cues(scene, turns, slides), **_shape_cues(scene, turns), **_twin_cues(scene, siblings)}
+    cues["panel"] *= 1.0 - cues["blocked_turn"]  # a plate that cannot turn is no door
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
     if _stuck(scene, turns, slides, config):
@@ -77,13 +78,14 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> d
     furniture = large * (1.0 - scene.mechanism)
     one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
     channel = float(travel.max() > 0.3) * _channel(scene, slides)
-    turn_room = float(turns.free[0].max()) / np.radians(30.0)
+    turn_room = float(turns.free_parent[:3].max()) / np.radians(30.0)
     blocked = float(np.clip(1.0 - turn_room, 0.0, 1.0)) * float(travel.max() > 0.3)
     return {
         "drawer": furniture * box * level * scene.inside * max(one_way, channel),
         "box_pulled": furniture * box * level * float(not scene.plate and not scene.gated and travel.max() > 0.5),
         "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
+        "guided": large * float(scene.gated) * _guided(scene, slides),
     }
 
 
@@ -93,6 +95,23 @@ def _channel(scene: JointScene, slides: RankedSlides) -> float:
     sides = np.abs(slides.axes[across] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     blocked = slides.free_parent[across] < 0.1 * sides[:, None]
     return float(blocked.mean() > 0.7) if blocked.size else 0.0
+
+
+def _guided(scene: JointScene, slides: RankedSlides) -> float:
+    """1 where the part can slide by half its length and still touches its parent all round, as on a column or rail.
+
+    A wheel or knob leaves its shaft instead; a link of an arm runs into its neighbour.
+    """
+    axis, free = slides.axes[0], slides.free_parent[0]
+    points = scene.cache.samples(scene.child).points
+    length = float(np.ptp(points @ axis))
+    along = scene.bearing is not None and abs(float(axis @ scene.bearing.lines[0].axis)) > 0.99
+    if not along or free.max() * scene.diagonal < 0.5 * length:
+        return 0.0
+    way = axis if free[0] >= free[1] else -axis
+    before = scene.cache.distances(scene.parent, scene.contact.points)
+    after = scene.cache.distances(scene.parent, scene.contact.points + 0.5 * length * way)
+    return float(np.mean(after < before + 0.002 * scene.diagonal) > 0.6)
 
 
 def _is_box(scene: JointScene) -> bool:
@@ -124,7 +143,7 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         "wheel": float(_is_wheel(scene)),
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
-        "round_lid": large * float(top and scene.flat and scene.disc > 0.5),
+        "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
         "on_moving_part": float(scene.parent_moves) * scene.smallness,
     }
 

@@ -108,10 +108,11 @@ def _motion_cues(
     share = config.sweep.share
     parent = with_parent.free(share) / scene.diagonal
     free = everything.free(share) / scene.diagonal
-    useful = config.slides.useful_travel
+    own = np.abs(axes @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
+    useful = np.clip(config.slides.useful_share * own, config.slides.useful_least, None)
     longest = np.minimum(1.0, parent.max(axis=1) / useful)
     shortest = np.minimum(1.0, parent.min(axis=1) / useful)
-    short = 0.5 * useful * scene.diagonal
+    short = config.slides.short_travel * scene.diagonal
     crossed = 0.5 * (with_parent.crossed(short) + everything.crossed(short)).min(axis=1)
     return {
         "travel_parent": large * longest,
