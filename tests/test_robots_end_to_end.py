@@ -1,0 +1,68 @@
+"""Real robots and everyday objects: their joints are erased, inferred again and held against the promised bounds.
+
+The models are not ours to ship; they are read from the folder that KINEMATIFY_BENCH names.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from kinematify.benchmark.datasets import CONDITIONS, find_objects
+from kinematify.benchmark.job import Job, run_job
+from kinematify.config import load_config
+
+if TYPE_CHECKING:
+    from kinematify.benchmark.job import JobResult
+
+BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
+REST = next(condition for condition in CONDITIONS if condition.name == "rest")
+DIAGONAL_SHARE = 0.06
+"""A door's axis stands somewhere in the thickness of its edge, which is what the meshes leave open."""
+
+
+@cache
+def inferred_again(name: str) -> JobResult:
+    """Erase, infer and score an object at rest, with its parts renamed and shuffled."""
+    items = [item for item in find_objects(BENCH) if item.name == name] if BENCH.is_dir() else []
+    if not items:
+        pytest.skip(f"There is no benchmark model {name} here; set KINEMATIFY_BENCH to the folder of the models.")
+    result = run_job(Job(item=items[0], condition=REST, variant="default", config=load_config()), key=name)
+    assert result.status == "ok", result.message
+    return result
+
+
+@pytest.mark.parametrize(("name", "count"), [("panda", 9), ("ur10e", 6)])
+def test_arms_come_back_exactly(name: str, count: int) -> None:
+    score = inferred_again(name).score
+    assert score is not None
+    assert score.root_right
+    assert score.ted.value == 0
+    assert len(score.joints) == count
+    assert all(joint.type_right for joint in score.joints)
+    assert np.mean([joint.angle_deg for joint in score.joints]) <= 0.5
+    assert np.mean([joint.line_m for joint in score.joints if joint.line_m is not None]) <= 0.002
+
+
+@pytest.mark.parametrize(("name", "count"), [("cabinet_41083", 4), ("microwave_7128", 5), ("box_100141", 1)])
+def test_everyday_objects_come_back_with_their_joints(name: str, count: int) -> None:
+    score = inferred_again(name).score
+    assert score is not None
+    assert score.root_right
+    assert score.ted.value == 0
+    assert len(score.joints) == count
+    assert all(joint.type_right for joint in score.joints)
+    assert np.mean([joint.angle_deg for joint in score.joints]) <= 0.5
+    lines = [joint.line_m for joint in score.joints if joint.line_m is not None]
+    assert np.mean(lines) <= DIAGONAL_SHARE * score.diagonal
+
+
+@pytest.mark.parametrize(("name", "seconds"), [("panda", 40.0), ("cabinet_41083", 15.0)])
+def test_the_time_is_bounded(name: str, seconds: float) -> None:
+    """Several times what it takes alone, so that a busy machine passes and a quadratic mistake does not."""
+    assert inferred_again(name).seconds <= seconds
