@@ -21,7 +21,7 @@ from kinematify.contact.symmetry import find_clusters
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.assembly.part import Assembly, FloatArray, IntArray
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface, Samples
 
@@ -104,16 +104,14 @@ def find_bridges(assembly: Assembly, surfaces: Sequence[PartSurface], pairs: Seq
         bridges[pair] = gap
 
 
-def _component_labels(n: int, pairs: Sequence[Pair]) -> FloatArray:
+def _component_labels(n: int, pairs: Sequence[Pair]) -> IntArray:
     rows = [a for a, _ in pairs]
     columns = [b for _, b in pairs]
     graph = coo_matrix((np.ones(len(pairs)), (rows, columns)), shape=(n, n))
-    return connected_components(graph, directed=False)[1]
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def _smallest_gap(
-    assembly: Assembly, surfaces: Sequence[PartSurface], labels: FloatArray
-) -> tuple[Pair, float]:
+def _smallest_gap(assembly: Assembly, surfaces: Sequence[PartSurface], labels: IntArray) -> tuple[Pair, float]:
     """Closest pair between the smallest component and the rest."""
     counts = np.bincount(labels)
     inside = np.flatnonzero(labels == int(np.argmin(counts)))

@@ -17,6 +17,8 @@ from scipy.spatial import cKDTree
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import Assembly, FloatArray
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface
@@ -84,13 +86,13 @@ def _fingerprint(points: FloatArray) -> FloatArray:
     return np.concatenate([radii, spreads])
 
 
-def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: float) -> FloatArray:
+def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: float) -> NDArray[np.bool_]:
     """Matrix of pairs that may be congruent."""
     scale = np.maximum(sizes[:, None], sizes[None])
     difference = np.abs(prints[:, None] - prints[None]).max(axis=2)
     area_ratio = np.minimum(areas[:, None], areas[None]) / np.maximum(np.maximum(areas[:, None], areas[None]), 1e-300)
     close = difference <= 2.5 * tolerance * scale
-    return close & (area_ratio > 1 - 4 * tolerance)
+    return np.asarray(close & (area_ratio > 1 - 4 * tolerance))
 
 
 def _principal_axes(points: FloatArray) -> FloatArray:

@@ -18,7 +18,6 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.part import read_only
 
 if TYPE_CHECKING:
     from typing import Any
@@ -134,7 +133,7 @@ class PartSurface:
         counts = np.bincount(edge_of_side, minlength=len(edges))
         pairs, cosines = self.smooth_pairs
         sharp = pairs[np.abs(cosines) < np.cos(self.crease_angle), 2]
-        return edges[np.union1d(sharp, np.flatnonzero(counts == 1))]
+        return np.asarray(edges[np.union1d(sharp, np.flatnonzero(counts == 1))])
 
     @cached_property
     def feature_pieces(self) -> FeaturePieces:
@@ -191,7 +190,8 @@ class PartSurface:
         edges, _, _ = self._edge_table
         pairs, cosines = self.smooth_pairs
         smooth = pairs[cosines > np.cos(self.crease_angle)]
-        left, right = [], []
+        left: list[IntArray] = []
+        right: list[IntArray] = []
         for end in range(2):
             vertex = edges[smooth[:, 2], end]
             for side, out in ((0, left), (1, right)):
@@ -202,7 +202,7 @@ class PartSurface:
             return np.arange(n)
         i, j = np.concatenate(left), np.concatenate(right)
         _, labels = connected_components(coo_matrix((np.ones(len(i)), (i, j)), shape=(n, n)), directed=False)
-        return labels.astype(np.int64)
+        return np.asarray(labels, dtype=np.int64)
 
     def sample(self, count: int, *, faces: IntArray | None = None, seed: int = 0) -> Samples:
         """Sample the surface evenly by area: systematic along the cumulative area, random inside a face.

@@ -62,7 +62,7 @@ def _cross_directions(side: _Side, count: int, rng: np.random.Generator) -> Floa
     cross = np.cross(side.normals[first], side.normals[second])
     sine = np.linalg.norm(cross, axis=1)
     good = sine > 0.3  # about 17 deg; nearly parallel normals leave the direction open
-    return cross[good] / sine[good, None]
+    return np.asarray(cross[good] / sine[good, None])
 
 
 def _score(sides: tuple[_Side, _Side], axes: FloatArray, config: RailConfig) -> FloatArray:
@@ -81,7 +81,7 @@ def _extruded_area(side: _Side, axes: FloatArray, config: RailConfig) -> FloatAr
     fit = np.exp(-((along / config.tolerance_sine) ** 2)) * (side.weights / side.weights.sum())[:, None]
     moments = np.einsum("sl,si,sj->lij", fit, side.normals, side.normals)
     # The normals that count are across the axis, so the smallest of the three eigenvalues belongs to the axis itself.
-    return np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0)
+    return np.asarray(np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0))
 
 
 def _guiding_edges(side: _Side, axes: FloatArray, config: RailConfig) -> FloatArray:

@@ -8,7 +8,7 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
-import kinematify
+from kinematify import __version__
 from kinematify.model.output import RECORD_FILE, write_model_folder
 from kinematify.model.preview import render_preview
 from kinematify.model.urdf import write_urdf
@@ -55,7 +55,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
     assembly = inference.assembly
     record = {
         "schema": SCHEMA,
-        "kinematify": kinematify.__version__,
+        "kinematify": __version__,
         "versions": {"python": platform.python_version(), **_versions()},
         "seed": inference.config.seed,
         "source": assembly.source,
