@@ -165,8 +165,6 @@ class QualityConfig(StageConfig):
 
     half_score: float
     """Bearing score at which half of the full quality is reached."""
-    rail_weight: float
-    """Worth of a rail's score against a bearing's."""
     contact_weight: float
     """Largest quality of an edge without any bearing."""
     strength_power: float
@@ -354,7 +352,7 @@ class KindConfig(StageConfig):
     stuck_deg: float
     """Turn below which a part counts as stuck [deg]."""
     stuck_slide: float
-    """Travel below which a part counts as stuck, fraction of the diagonal."""
+    """Travel below which a part counts as stuck, fraction of its own diagonal."""
     weights: dict[str, float]
     """Weight of each cue of `joints/kind.py`; positive for sliding."""
 
@@ -374,6 +372,21 @@ class LimitsConfig(StageConfig):
     """A turning joint keeps at least this range [deg]."""
     least_slide: float
     """A sliding joint keeps at least this travel, fraction of the diagonal."""
+
+
+class RailsConfig(StageConfig):
+    """When the rail of a contact speaks for sliding."""
+
+    score_none: float
+    """Rail score up to which it says nothing."""
+    score_full: float
+    """Rail score from which it says all it can."""
+    lead_none: float
+    """The same for the rail's score over that of the best bearing line."""
+    lead_full: float
+    """Full where the lead is at least this."""
+    rounded_lead: float
+    """Below this lead a pair of end parts is hinged, not sliding."""
 
 
 class JointsConfig(StageConfig):
@@ -409,6 +422,7 @@ class JointsConfig(StageConfig):
     panels: PanelsConfig
     slides: SlidesConfig
     kind: KindConfig
+    rails: RailsConfig
     limits: LimitsConfig
 
 

@@ -137,7 +137,7 @@ def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
     chain_end = tree.depths[scene.child] >= 2 or facing
     stands_out = scene.inside < 0.8
     apart = float(np.linalg.norm(twin.centre - scene.centre)) < 2.0 * float(scene.parent_frame.extents.max())
-    return bool(chain_end and stands_out and apart and not scene.gated)
+    return bool(chain_end and stands_out and apart and not scene.gated and not scene.rounded)
 
 
 def _overlapping(scene: JointScene, twin: BoxFrame) -> bool:

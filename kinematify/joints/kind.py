@@ -58,7 +58,12 @@ def decide_kind(
         slides: Ranked directions.
         config: Weights; positive ones speak for sliding.
     """
-    cues = {**_room_cues(scene, turns, slides), **_shape_cues(scene, turns), **_twin_cues(scene, siblings)}
+    cues = {
+        **_room_cues(scene, turns, slides),
+        **_shape_cues(scene, turns),
+        **_twin_cues(scene, siblings),
+        "rail": scene.mechanism * scene.railed,
+    }
     cues["panel"] *= 1.0 - cues["blocked_turn"]  # a plate that cannot turn is no door
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
@@ -169,5 +174,5 @@ def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: 
     if scene.gated:
         return False
     turn = float(turns.free_parent[: config.kind.stuck_candidates].max())
-    slide = float(slides.free_parent.max())
+    slide = float(slides.free_parent.max()) * scene.diagonal / max(scene.frame.diagonal, 1e-12)
     return bool(turn < np.radians(config.kind.stuck_deg) and slide < config.kind.stuck_slide)

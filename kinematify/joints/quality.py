@@ -13,13 +13,11 @@ if TYPE_CHECKING:
 def edge_quality(edge: ContactEdge, bearing: EdgeBearing | None, config: QualityConfig) -> float:
     """Quality of a contact edge in [0, 1].
 
-    The score of the best bearing or, discounted, of the rail, saturated; contact strength fills what they leave open,
-    so that it only decides among edges without either. A bridge, which touches nothing, keeps a little of that.
+    The score of the best bearing, saturated; contact strength fills what it leaves open, so that it only decides among
+    edges without one. Rails do not count, for the flat faces of neighbouring boxes look like them. A bridge, which
+    touches nothing, keeps a little of its contact's share.
     """
-    score = 0.0
-    if bearing is not None:
-        rail = bearing.rail.score if bearing.rail is not None else 0.0
-        score = max(bearing.lines[0].score if bearing.lines else 0.0, config.rail_weight * rail)
+    score = bearing.lines[0].score if bearing is not None and bearing.lines else 0.0
     bearing_share = score / (score + config.half_score)
     touching = float(edge.strength**config.strength_power)
     if edge.bridge:

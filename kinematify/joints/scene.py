@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.assembly.part import FloatArray
-    from kinematify.config import JointsConfig
+    from kinematify.config import JointsConfig, RailsConfig
     from kinematify.joints.bearing import BearingLine, EdgeBearing
     from kinematify.joints.frames import BoxFrame
     from kinematify.joints.workspace import ContactView, PartCache
@@ -66,6 +66,10 @@ class JointScene:
     bearing: EdgeBearing | None
     gated: bool
     """The best line of the bearing passes the gate."""
+    railed: float
+    """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
+    rounded: bool
+    """The contact is about as round as it is extruded, or more."""
     compact: float
     """1 where the contact is a small patch of the child, as in a machine's joint; 0 where it is spread out."""
     mechanism: float
@@ -90,6 +94,23 @@ class JointScene:
     def centre(self) -> FloatArray:
         """Centre of the child's slab, shape (3,)."""
         return self.frame.centre
+
+
+def _rail_lead(bearing: EdgeBearing | None) -> float:
+    """Score of the contact's rail over that of its best line; 0 without a rail."""
+    if bearing is None or bearing.rail is None:
+        return 0.0
+    best = bearing.lines[0].score if bearing.lines else 0.0
+    return bearing.rail.score / max(best, 1e-3)
+
+
+def _railed(bearing: EdgeBearing | None, config: RailsConfig) -> float:
+    lead = _rail_lead(bearing)
+    if lead == 0.0 or bearing is None or bearing.rail is None:
+        return 0.0
+    strong = np.interp(bearing.rail.score, (config.score_none, config.score_full), (0.0, 1.0))
+    leading = np.interp(lead, (config.lead_none, config.lead_full), (0.0, 1.0))
+    return float(strong * leading)
 
 
 def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
@@ -147,6 +168,8 @@ def joint_scene(
         flat=up > config.flat_cosine,
         bearing=bearing,
         gated=bearing is not None and passes_gate(bearing, contact, config),
+        railed=_railed(bearing, config.rails),
+        rounded=0.0 < _rail_lead(bearing) < config.rails.rounded_lead,
         compact=compact,
         mechanism=1.0 if serial else compact,
         on_top=bool(frame.centre[2] > low + 0.75 * (high - low)),

@@ -54,7 +54,7 @@ def rank_slides(scene: JointScene, twins: FloatArray, config: JointsConfig) -> R
     )
     cues = {
         **_motion_cues(scene, axes, with_parent, everything, config),
-        **_shape_cues(scene, axes, sources, with_parent, config),
+        **_shape_cues(scene, axes, twins, with_parent, config),
     }
     weights = config.slides.weights
     scores = sum(
@@ -73,8 +73,10 @@ def rank_slides(scene: JointScene, twins: FloatArray, config: JointsConfig) -> R
 
 
 def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> tuple[FloatArray, tuple[str, ...]]:
-    """Distinct directions: bearing, twins, the child's box, the parent's box, the contact normal."""
+    """Distinct directions: rail, bearing, twins, the child's box, the parent's box, the contact normal."""
     found: list[tuple[FloatArray, str]] = []
+    if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
+        found.append((scene.bearing.rail.axis, "rail"))
     if scene.bearing is not None and scene.bearing.lines and scene.gated:
         found.append((scene.bearing.lines[0].axis, "bearing"))
     found += [(axis, "twin") for axis in twins]
@@ -135,7 +137,7 @@ def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:
 
 
 def _shape_cues(
-    scene: JointScene, axes: FloatArray, sources: tuple[str, ...], with_parent: Sweep, config: JointsConfig
+    scene: JointScene, axes: FloatArray, twins: FloatArray, with_parent: Sweep, config: JointsConfig
 ) -> dict[str, FloatArray]:
     large = 1.0 - scene.smallness
     thin = np.abs(axes @ scene.frame.axes[scene.frame.thin])
@@ -146,12 +148,24 @@ def _shape_cues(
     bearing = np.zeros(len(axes))
     if scene.bearing is not None and scene.gated:
         bearing = np.abs(axes @ scene.bearing.lines[0].axis)
+    rail = np.zeros(len(axes))
+    if scene.bearing is not None and scene.bearing.rail is not None:
+        rail = scene.mechanism * scene.railed * np.abs(axes @ scene.bearing.rail.axis)
     return {
         "thin_large": large * thin,
         "horizontal": large * (1.0 - np.abs(axes @ UP)),
         "along_bearing": bearing,
+        "along_rail": rail,
         "thin_small": scene.smallness * thin,
         "normal_small": scene.smallness * pressed,
-        "twin": np.array([float(source == "twin") for source in sources]),
+        "twin": _along_any(axes, twins, config),
         "lift_off": large * float(scene.panel and scene.flat and scene.on_top) * np.abs(axes @ UP) * rising,
     }
+
+
+def _along_any(axes: FloatArray, directions: FloatArray, config: JointsConfig) -> FloatArray:
+    """1 for each axis that no candidate tells apart from one of the directions, else 0, shape (c,)."""
+    if len(directions) == 0:
+        return np.zeros(len(axes))
+    nearest = np.abs(axes @ directions.T).max(axis=1)
+    return np.asarray(nearest >= np.cos(np.radians(config.slides.distinct_deg)), dtype=np.float64)
