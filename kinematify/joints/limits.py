@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointType
+from kinematify.joints.frames import UP
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     if free.min() >= np.pi and _turns_freely(scene, axis):
         return Range(
             kind=JointType.CONTINUOUS,
-            sign=1.0,
+            sign=_neutral_sign(scene, axis),
             lower=-np.inf,
             upper=np.inf,
             free_forward=np.pi,
@@ -73,7 +74,8 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     sign = _turn_sign(scene, axis, pivot, free)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
     least = np.radians(config.limits.least_deg)
-    if scene.gated or scene.mechanism > 0.5:
+    door = scene.panel and scene.mechanism <= 0.5
+    if (scene.gated and not door) or scene.mechanism > 0.5:
         lower, upper = -float(backward), float(forward)
     else:
         lower = -float(backward) if backward < least else 0.0
@@ -90,7 +92,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
 
 def _turns_freely(scene: JointScene, axis: FloatArray) -> bool:
     """A knob or wheel: a bearing through the part whose mass is spread evenly about it."""
-    if not scene.gated or scene.mechanism >= 1.0:
+    if not scene.gated or (scene.mechanism >= 1.0 and scene.smallness < 1.0):
         return False
     points = scene.cache.samples(scene.child).points
     offset = points - scene.contact.centroid
@@ -104,8 +106,18 @@ def _turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Flo
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
     velocity = np.cross(axis, scene.centre - pivot)
-    away = scene.outward if scene.outward.any() else np.array([0.0, 0.0, 1.0])
-    return 1.0 if float(velocity @ away) >= 0.0 else -1.0
+    away = scene.outward if scene.outward.any() else UP
+    if abs(float(velocity @ away)) < 0.05 * scene.frame.diagonal:
+        return _neutral_sign(scene, axis)
+    return 1.0 if float(velocity @ away) > 0.0 else -1.0
+
+
+def _neutral_sign(scene: JointScene, axis: FloatArray) -> float:
+    """Where neither way opens: the axis points from the parent to the child, else up, as knobs and arms have it."""
+    apart = float((scene.centre - scene.parent_frame.centre) @ axis)
+    if abs(apart) < 0.02 * scene.parent_frame.diagonal:
+        apart = float(axis @ UP) if abs(float(axis @ UP)) > 0.1 else apart
+    return 1.0 if apart >= 0.0 else -1.0
 
 
 def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
