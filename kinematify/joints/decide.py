@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from kinematify.joints.frames import BoxFrame
     from kinematify.joints.kind import KindDecision
     from kinematify.joints.panels import RankedTurns
+    from kinematify.joints.rooted import RootedTree
     from kinematify.joints.scene import JointScene
     from kinematify.joints.slides import RankedSlides
-    from kinematify.topology.tree import KinematicTree
 
 
 def estimate_joints(
     assembly: Assembly,
     graph: ContactGraph,
-    tree: KinematicTree,
+    tree: RootedTree,
     bearings: Mapping[tuple[int, int], EdgeBearing],
     *,
     config: JointsConfig,
@@ -58,7 +58,7 @@ def estimate_joints(
 
 def _estimate(
     cache: PartCache,
-    tree: KinematicTree,
+    tree: RootedTree,
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearings: Mapping[tuple[int, int], EdgeBearing],
@@ -99,7 +99,7 @@ def _estimate(
 # ---- twins ---------------------------------------------------------------------------------------------------------
 
 
-def leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
+def leaf_twins(graph: ContactGraph, tree: RootedTree, edge: tuple[int, int]) -> tuple[int, ...]:
     """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
     parent, child = edge
     label = graph.cluster_of[child]
@@ -113,7 +113,7 @@ def leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) 
 
 
 def describe_twins(
-    scene: JointScene, tree: KinematicTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
+    scene: JointScene, tree: RootedTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
 ) -> Siblings:
     """What the twins say about the type."""
     return Siblings(
@@ -123,7 +123,7 @@ def describe_twins(
     )
 
 
-def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
+def _gripping(scene: JointScene, tree: RootedTree, twin: BoxFrame) -> bool:
     """Fingers: no bearing, no panel, standing out of the parent and apart from each other.
 
     At the end of a chain that is enough. On a base, where doors, legs and wheels are twins too, the pair must also be

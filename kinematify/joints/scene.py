@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from kinematify.config import JointsConfig, RailsConfig
     from kinematify.joints.bearing import BearingLine, EdgeBearing
     from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.rooted import RootedTree
     from kinematify.joints.workspace import ContactView, PartCache
-    from kinematify.topology.tree import KinematicTree
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,7 +113,7 @@ def _railed(bearing: EdgeBearing | None, config: RailsConfig) -> float:
     return float(strong * leading)
 
 
-def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
+def part_frames(cache: PartCache, tree: RootedTree, config: JointsConfig) -> dict[int, BoxFrame]:
     """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
     root = cache.samples(tree.root)
     body = body_axes(root.normals, root.areas)
@@ -127,7 +127,7 @@ def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> 
 
 def joint_scene(
     cache: PartCache,
-    tree: KinematicTree,
+    tree: RootedTree,
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearing: EdgeBearing | None,
@@ -245,7 +245,7 @@ def _inside(cache: PartCache, child: int, frame: BoxFrame, body_box: FloatArray)
     return float(np.all((local > body_box[0] + margin) & (local < body_box[1] - margin), axis=1).mean())
 
 
-def _subtree(tree: KinematicTree, part: int) -> set[int]:
+def _subtree(tree: RootedTree, part: int) -> set[int]:
     found, queue = {part}, [part]
     for node in queue:
         found.update(tree.children[node])
@@ -268,7 +268,7 @@ def _outward(frame: BoxFrame, body_box: FloatArray) -> FloatArray:
     return np.asarray(frame.axes[k] * (1.0 if to_upper < to_lower else -1.0))
 
 
-def _handle(cache: PartCache, tree: KinematicTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
+def _handle(cache: PartCache, tree: RootedTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
     """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
     points = cache.samples(child).points
     local = frame.local(points)
