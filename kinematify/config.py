@@ -349,6 +349,8 @@ class KindConfig(StageConfig):
     """Largest influence of a single cue."""
     stuck_candidates: int
     """Turning candidates that must all be blocked before a part counts as fixed."""
+    stuck_factor: float
+    """Room up to this many times the thresholds below is looked at again, without grace."""
     stuck_deg: float
     """Turn below which a part counts as stuck [deg]."""
     stuck_slide: float
@@ -366,8 +368,6 @@ class LimitsConfig(StageConfig):
     """Travel of a drawer as a fraction of its own length."""
     button: float
     """Travel of a button as a fraction of its own thickness."""
-    step_deg: float
-    """Resolution of the sweep [deg]."""
     least_deg: float
     """A turning joint keeps at least this range [deg]."""
     least_slide: float

@@ -14,10 +14,12 @@ import numpy as np
 
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
+from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
     from kinematify.joints.panels import RankedTurns
     from kinematify.joints.scene import JointScene
@@ -170,9 +172,27 @@ def _twin_cues(scene: JointScene, siblings: Siblings) -> dict[str, float]:
 
 
 def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> bool:
-    """Neither the best turns nor the best slides are free: one rigid body that was cut in two."""
-    if scene.gated:
-        return False
+    """Neither turns nor slides are free: one rigid body that was cut in two.
+
+    Where little is free, both are swept again without grace, which would carry a part over the wall that holds it.
+    """
+    little = config.kind.stuck_factor
+    slide = _slide_room(scene, slides.free_parent * scene.diagonal)
     turn = float(turns.free_parent[: config.kind.stuck_candidates].max())
-    slide = float(slides.free_parent.max()) * scene.diagonal / max(scene.frame.diagonal, 1e-12)
-    return bool(turn < np.radians(config.kind.stuck_deg) and slide < config.kind.stuck_slide)
+    limit = np.radians(config.kind.stuck_deg)
+    if scene.gated or turn > little * limit or slide > little * config.kind.stuck_slide:
+        return False
+    strict = config.sweep.model_copy(update={"grace": 0.0})
+    points = moving_points(scene.cache, scene.child, strict)
+    slid = sweep_slides(scene.cache, points, slides.axes, (scene.parent,), limit=0.1 * scene.diagonal, config=strict)
+    lines, few = turns.lines, slice(config.kind.stuck_candidates)
+    turned = sweep_turns(
+        scene.cache, points, lines.axes[few], lines.pivots[few], (scene.parent,), limit=2 * limit, config=strict
+    )
+    room = _slide_room(scene, slid.free(strict.share))
+    return bool(turned.free(strict.share).max() < limit and room < config.kind.stuck_slide)
+
+
+def _slide_room(scene: JointScene, free: FloatArray) -> float:
+    """Largest free travel as a fraction of the child's own diagonal."""
+    return float(free.max()) / max(scene.frame.diagonal, 1e-12)

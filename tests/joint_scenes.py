@@ -1,0 +1,63 @@
+"""Joint inference on known objects with their true tree: what the tests of `kinematify.joints` share."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from kinematify.config import load_config
+from kinematify.contact.build import build_contact_graph
+from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearing import fit_bearings
+from kinematify.joints.decide import estimate_joints
+from kinematify.joints.scene import joint_scene, part_frames
+from kinematify.joints.workspace import PartCache
+from kinematify.topology.tree import KinematicTree
+from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.candidate import JointEstimate
+    from kinematify.joints.scene import JointScene
+    from tests.known import KnownObject
+
+CONFIG = load_config()
+Evidence = tuple["KinematicTree", "ContactGraph", "Mapping[tuple[int, int], EdgeBearing]"]
+
+
+def evidence(known: KnownObject) -> Evidence:
+    """True tree, contact graph and bearings of a known object."""
+    parents = [-1] * len(known.parts)
+    for joint in known.joints:
+        parents[known.index[joint.child]] = known.index[joint.parent]
+    assembly = known.assembly
+    surfaces = part_surfaces(assembly, config=CONFIG.surface)
+    graph = build_contact_graph(assembly, surfaces, config=CONFIG.contact, seed=0)
+    bearings = fit_bearings(assembly, surfaces, graph, config=CONFIG.bearing, seed=0)
+    return KinematicTree(parents=tuple(parents)), graph, bearings
+
+
+def infer_joints(known: KnownObject) -> dict[str, JointEstimate]:
+    """The estimate of every joint by the name of its child."""
+    tree, graph, bearings = evidence(known)
+    estimates = estimate_joints(known.assembly, graph, tree, bearings, config=CONFIG.joints, seed=0)
+    return {known.parts[estimate.child].name: estimate for estimate in estimates}
+
+
+@cache
+def estimates_of(name: str) -> dict[str, JointEstimate]:
+    """`infer_joints` of the object that the builder of this name makes, computed once."""
+    return infer_joints(BUILDERS[name]())
+
+
+def scene_of(known: KnownObject, child: str) -> JointScene:
+    """The scene of the joint that moves `child`."""
+    tree, graph, bearings = evidence(known)
+    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
+    frames = part_frames(cache, tree, CONFIG.joints)
+    index = known.index[child]
+    edge = (tree.parents[index], index)
+    return joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)

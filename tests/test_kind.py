@@ -1,0 +1,63 @@
+"""Types of joints on known objects."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.joints.candidate import JointType
+from kinematify.joints.kind import Siblings, decide_kind
+from kinematify.joints.panels import rank_turns
+from kinematify.joints.slides import rank_slides
+from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
+from tests.known import box, known_object, sliding
+from tests.objects import BUILDERS
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "edge_door",
+        "drawer",
+        "nested_drawer",
+        "knob",
+        "sliding_lid",
+        "laptop",
+        "button",
+        "square_lift",
+        "round_lift",
+        "parallel_gripper",
+        "serial_arm",
+        "wheel",
+    ],
+)
+def test_types_of_known_objects(name: str) -> None:
+    known = BUILDERS[name]()
+    estimates = estimates_of(name)
+    for joint in known.joints:
+        found = estimates[joint.child].kind
+        assert found.turns == joint.kind.turns, joint.child
+        assert (found is JointType.PRISMATIC) == (joint.kind is JointType.PRISMATIC), joint.child
+
+
+def test_a_part_that_cannot_move_at_all_is_fixed() -> None:
+    shell = box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)) - box((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
+    core = box((-0.0999, -0.0999, -0.0999), (0.0999, 0.0999, 0.0999))
+    known = known_object(
+        "walled_in", {"shell": shell, "core": core}, sliding("shell", "core", (1, 0, 0), (0, 0, 0), (0.0, 0.1))
+    )
+    estimate = infer_joints(known)["core"]
+    assert estimate.kind is JointType.FIXED
+    assert (estimate.lower, estimate.upper) == (0.0, 0.0)
+
+
+def test_evidence_moves_the_odds_the_stated_way() -> None:
+    known = BUILDERS["edge_door"]()
+    scene = scene_of(known, known.joints[0].child)
+    turns = rank_turns(scene, CONFIG.joints)
+    slides = rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
+    alone = decide_kind(scene, Siblings(count=1, gripping=False, overlapping=False), turns, slides, CONFIG.joints)
+    paired = decide_kind(scene, Siblings(count=2, gripping=False, overlapping=True), turns, slides, CONFIG.joints)
+    assert alone.kind is JointType.REVOLUTE
+    assert paired.odds == pytest.approx(alone.odds + CONFIG.joints.kind.weights["sliding_pair"])
+    assert set(alone.cues) == set(CONFIG.joints.kind.weights)

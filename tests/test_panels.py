@@ -1,0 +1,64 @@
+"""Candidate lines of turning joints and their ranking."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.joints.panels import propose_lines, rank_turns
+from tests.joint_scenes import CONFIG, scene_of
+from tests.known import box, known_object, turning
+from tests.objects import BUILDERS
+
+
+def off_line(axis: np.ndarray, pivot: np.ndarray, line_axis: np.ndarray, line_pivot: np.ndarray) -> tuple[float, float]:
+    """Angle [deg] and distance of two nearly parallel lines."""
+    angle = np.degrees(np.arccos(min(1.0, abs(float(axis @ line_axis)))))
+    return angle, float(np.linalg.norm(np.cross(pivot - line_pivot, line_axis)))
+
+
+@pytest.mark.parametrize("name", ["edge_door", "laptop", "piano_box", "hinge_pin", "knob", "barrel_hinge_door"])
+def test_the_true_line_is_among_the_candidates_and_wins(name: str) -> None:
+    known = BUILDERS[name]()
+    joint = known.joints[0]
+    scene = scene_of(known, joint.child)
+    ranked = rank_turns(scene, CONFIG.joints)
+    angle, distance = off_line(ranked.lines.axes[0], ranked.lines.pivots[0], joint.axis, joint.pivot)
+    assert angle < 2.0
+    assert distance < 0.04 * scene.diagonal
+
+
+def test_box_lines_hold_every_edge_and_the_middle() -> None:
+    known = BUILDERS["edge_door"]()
+    scene = scene_of(known, known.joints[0].child)
+    lines = propose_lines(scene, CONFIG.joints)
+    assert lines.sources.count("box_edge") == 27
+    np.testing.assert_allclose(np.linalg.norm(lines.axes, axis=1), 1.0)
+
+
+def door_with_handle(side: float) -> object:
+    """A closed door without hinges in a frame that is the same on both sides; only the handle tells."""
+    body = box((-0.3, 0.0, 0.0), (0.3, 0.4, 0.8)) - box((-0.28, -0.1, 0.02), (0.28, 0.38, 0.78))
+    panel = box((-0.29, -0.022, 0.01), (0.29, -0.002, 0.79))
+    panel += box((side * 0.24 - 0.01, -0.06, 0.3), (side * 0.24 + 0.01, -0.01, 0.5))
+    joint = turning("body", "door", (0, 0, 1), (-side * 0.29, -0.012, 0), limits=(0.0, 1.5))
+    return known_object("handled", {"body": body, "door": panel}, joint)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_hinge_is_opposite_the_handle(side: float) -> None:
+    scene = scene_of(door_with_handle(side), "door")
+    ranked = rank_turns(scene, CONFIG.joints)
+    assert abs(ranked.lines.axes[0][2]) > 0.99
+    assert np.sign(ranked.lines.pivots[0][0]) == -side
+
+
+def test_no_cue_exceeds_the_cap() -> None:
+    known = BUILDERS["edge_door"]()
+    scene = scene_of(known, known.joints[0].child)
+    ranked = rank_turns(scene, CONFIG.joints)
+    weights, cap = CONFIG.joints.panels.weights, CONFIG.joints.panels.cap
+    assert set(ranked.cues) == set(weights)
+    total = sum(np.clip(weights[name] * value, -cap, cap) for name, value in ranked.cues.items())
+    bonus = CONFIG.joints.panels.bearing_bonus * np.array([source == "bearing" for source in ranked.lines.sources])
+    np.testing.assert_allclose(ranked.scores, total + bonus * scene.gated, atol=1e-9)

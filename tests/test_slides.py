@@ -1,0 +1,38 @@
+"""Directions of sliding joints."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.joints.slides import rank_slides
+from tests.joint_scenes import CONFIG, scene_of
+from tests.objects import BUILDERS, with_yaw
+
+NO_TWINS = np.empty((0, 3))
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.6])
+@pytest.mark.parametrize("name", ["drawer", "sliding_lid", "square_lift", "round_lift", "button"])
+def test_the_true_direction_wins(name: str, yaw: float) -> None:
+    known = with_yaw(BUILDERS[name](), yaw)
+    joint = known.joints[0]
+    ranked = rank_slides(scene_of(known, joint.child), NO_TWINS, CONFIG.joints)
+    assert abs(float(ranked.axes[0] @ joint.axis)) > np.cos(np.radians(1.0))
+
+
+def test_candidates_are_distinct_directions() -> None:
+    known = BUILDERS["drawer"]()
+    ranked = rank_slides(scene_of(known, "drawer"), np.array([[1.0, 0.0, 0.0]]), CONFIG.joints)
+    cosines = np.abs(ranked.axes @ ranked.axes.T) - np.eye(len(ranked.axes))
+    assert cosines.max() < np.cos(np.radians(CONFIG.joints.slides.distinct_deg))
+    assert set(ranked.cues) == set(CONFIG.joints.slides.weights)
+    assert list(ranked.scores) == sorted(ranked.scores, reverse=True)
+
+
+def test_a_drawer_leaves_by_the_front_and_stops_at_the_back() -> None:
+    known = BUILDERS["drawer"]()
+    ranked = rank_slides(scene_of(known, "drawer"), NO_TWINS, CONFIG.joints)
+    out, back = ranked.free_parent[0] if ranked.axes[0] @ known.joints[0].axis > 0 else ranked.free_parent[0][::-1]
+    assert out > 0.3
+    assert back < 0.05

@@ -1,0 +1,75 @@
+"""The virtual motion test against motions whose stops are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.joints.sweep import Sweep, moving_points, sweep_slides, sweep_turns
+from tests.joint_scenes import CONFIG, scene_of
+from tests.known import box, known_object, sliding
+from tests.objects import BUILDERS
+
+SWEEP = CONFIG.joints.sweep
+
+
+def wall_in_front(distance: float) -> object:
+    """A cube on a floor with a wall at `distance` along x."""
+    room = box((-1, -1, -0.2), (1, 1, -0.001)) + box((0.1 + distance, -1, -0.1), (0.15 + distance, 1, 1))
+    return known_object(
+        "walled",
+        {"room": room, "cube": box((-0.1, -0.1, 0), (0.1, 0.1, 0.2))},
+        sliding("room", "cube", (1, 0, 0), (0, 0, 0), (0.0, distance)),
+    )
+
+
+@pytest.mark.parametrize("distance", [0.05, 0.2, 0.5])
+def test_a_slide_stops_at_the_wall(distance: float) -> None:
+    scene = scene_of(wall_in_front(distance), "cube")
+    points = moving_points(scene.cache, scene.child, SWEEP)
+    axes = np.array([[1.0, 0.0, 0.0]])
+    free = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=1.5, config=SWEEP).free(SWEEP.share)[0]
+    assert free[0] == pytest.approx(distance, abs=0.01)
+    assert free[1] == 1.5
+
+
+def test_an_open_shell_stops_motion_as_a_solid_does() -> None:
+    known = wall_in_front(0.3)
+    scene = scene_of(known, "cube")
+    points = moving_points(scene.cache, scene.child, SWEEP)
+    # The wall is entered through its front face alone, so faces behind it do not matter.
+    hits = scene.cache.first_hits(scene.parent, points, np.tile([0.8, 0.0, 0.0], (len(points), 1)))
+    assert np.isfinite(hits).all()
+
+
+def test_a_door_opens_outwards_and_not_inwards() -> None:
+    known = BUILDERS["edge_door"]()
+    scene = scene_of(known, known.joints[0].child)
+    joint = known.joints[0]
+    points = moving_points(scene.cache, scene.child, SWEEP)
+    sweep = sweep_turns(
+        scene.cache, points, joint.axis[None], joint.pivot[None], (scene.parent,), limit=np.pi / 2, config=SWEEP
+    )
+    outwards, inwards = sweep.free(SWEEP.share)[0]
+    assert outwards > np.radians(80.0)
+    assert inwards < np.radians(10.0)
+
+
+def test_free_is_a_weighted_quantile_and_joining_takes_the_nearer_stop() -> None:
+    hits = np.array([[[0.1, 0.2, 0.3, np.inf], [np.inf] * 4]])
+    sweep = Sweep(hits=hits, counted=np.ones((1, 4)), limit=1.0)
+    assert sweep.free(0.2)[0].tolist() == [0.1, 1.0]
+    assert sweep.free(0.3)[0].tolist() == [0.2, 1.0]
+    assert sweep.crossed(0.25)[0].tolist() == [0.5, 0.0]
+    closer = Sweep(hits=np.full((1, 2, 4), 0.05), counted=np.ones((1, 4)), limit=1.0)
+    assert sweep.joined(closer).free(0.03)[0].tolist() == [0.05, 0.05]
+
+
+def test_points_near_the_axis_are_exempt() -> None:
+    known = BUILDERS["edge_door"]()
+    scene = scene_of(known, known.joints[0].child)
+    points = moving_points(scene.cache, scene.child, SWEEP)
+    joint = known.joints[0]
+    sweep = sweep_turns(scene.cache, points, joint.axis[None], joint.pivot[None], (), limit=0.1, config=SWEEP)
+    radius = np.linalg.norm(np.cross(points - joint.pivot, joint.axis), axis=1)
+    np.testing.assert_array_equal(sweep.counted[0] > 0, radius > SWEEP.hinge_zone * radius.max())
