@@ -113,6 +113,10 @@ class BearingConfig(StageConfig):
     """Distinct lines, best by circles, that are refined as well."""
     keep: int
     """Distinct lines kept per edge."""
+    apart_angle: float
+    """Lines closer than this in direction [deg] and closer than `apart` at the contact are one line."""
+    apart: float
+    """The distance that goes with it, fraction of the assembly's diagonal; proposals use twice both."""
     normal_tolerance: float
     """Angle between a normal and the meridian plane that still counts as consistent [deg]."""
     fine_tolerance: float

@@ -17,7 +17,7 @@ from kinematify.assembly.part import read_only
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
     from kinematify.config import RailConfig
-    from kinematify.joints.bearing import _Side
+    from kinematify.joints.bearing_evidence import Side, Sides
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,7 +33,7 @@ class Rail:
         object.__setattr__(self, "axis", read_only(self.axis, np.float64))
 
 
-def fit_rail(sides: tuple[_Side, _Side], config: RailConfig, rng: np.random.Generator) -> Rail | None:
+def fit_rail(sides: Sides, config: RailConfig, rng: np.random.Generator) -> Rail | None:
     """Find the best rail of a contact.
 
     Args:
@@ -54,7 +54,7 @@ def fit_rail(sides: tuple[_Side, _Side], config: RailConfig, rng: np.random.Gene
     return Rail(axis=refined, score=float(_score(sides, refined[None], config)[0]))
 
 
-def _cross_directions(side: _Side, count: int, rng: np.random.Generator) -> FloatArray:
+def _cross_directions(side: Side, count: int, rng: np.random.Generator) -> FloatArray:
     """Directions across pairs of normals that are far from parallel, shape (L, 3)."""
     if len(side.weights) == 0:
         return np.empty((0, 3))
@@ -65,14 +65,14 @@ def _cross_directions(side: _Side, count: int, rng: np.random.Generator) -> Floa
     return np.asarray(cross[good] / sine[good, None])
 
 
-def _score(sides: tuple[_Side, _Side], axes: FloatArray, config: RailConfig) -> FloatArray:
+def _score(sides: Sides, axes: FloatArray, config: RailConfig) -> FloatArray:
     area = [_extruded_area(side, axes, config) for side in sides]
     edges = [_guiding_edges(side, axes, config) for side in sides]
     guided = (config.edge_floor + np.sqrt(edges[0] * edges[1])) / (config.edge_floor + 1)
     return np.asarray(np.sqrt(area[0] * area[1]) * guided)
 
 
-def _extruded_area(side: _Side, axes: FloatArray, config: RailConfig) -> FloatArray:
+def _extruded_area(side: Side, axes: FloatArray, config: RailConfig) -> FloatArray:
     """Share of near area along each direction, through the smaller eigenvalue of its normals across it, (L,).
 
     One flat wall has rank one and counts nothing: it slides in two directions.
@@ -84,7 +84,7 @@ def _extruded_area(side: _Side, axes: FloatArray, config: RailConfig) -> FloatAr
     return np.asarray(np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0))
 
 
-def _guiding_edges(side: _Side, axes: FloatArray, config: RailConfig) -> FloatArray:
+def _guiding_edges(side: Side, axes: FloatArray, config: RailConfig) -> FloatArray:
     """Share of the near feature edges' length that runs along each direction, (L,)."""
     lengths = side.lengths * side.edge_weights
     total = float(lengths.sum())
@@ -94,7 +94,7 @@ def _guiding_edges(side: _Side, axes: FloatArray, config: RailConfig) -> FloatAr
     return np.asarray(lengths @ parallel / total)
 
 
-def _refine(sides: tuple[_Side, _Side], axis: FloatArray, config: RailConfig) -> FloatArray:
+def _refine(sides: Sides, axis: FloatArray, config: RailConfig) -> FloatArray:
     """Direction of least squared sine against the normals that count, both parts weighing the same."""
     for _ in range(config.refine_steps):
         moments = np.zeros((3, 3))

@@ -1,0 +1,105 @@
+"""How much of the evidence near a contact turns into itself about a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.line import Lines
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import BearingConfig
+    from kinematify.joints.bearing_evidence import Side
+    from kinematify.joints.line import Line
+
+OCTAGON = 0.8
+"""Length of an edge piece in radii beyond which it is no arc: an octagon's side is 0.77 long."""
+_BLOCK = 256  # lines at a time: samples x lines fit the cache
+
+
+def surface_support(side: Side, lines: Lines, config: BearingConfig) -> FloatArray:
+    """Share of near area that turns into itself about each line, weighted by how well it locates the line.
+
+    Consistent area counts through the smaller eigenvalue of the 2x2 matrix of its normals across the axis: a flat
+    wall, which a far-away line explains too, has rank one and counts nothing. Area perpendicular to the axis (flanges,
+    washers) counts a little.
+
+    Args:
+        side: Evidence of one part.
+        lines: L candidates.
+        config: Tolerance of the normals and weight of flanges.
+
+    Returns:
+        Support in [0, 1], shape (L,).
+    """
+    blocks = [
+        _block_support(side, lines.subset(slice(start, start + _BLOCK)), config)
+        for start in range(0, len(lines), _BLOCK)
+    ]
+    return np.asarray(np.clip(np.concatenate([*blocks, np.empty(0)]), 0.0, 1.0))
+
+
+def line_support(side: Side, line: Line, config: BearingConfig) -> float:
+    """`surface_support` of a single line."""
+    return float(surface_support(side, Lines(axes=line.axis[None], points=line.point[None]), config)[0])
+
+
+def _block_support(side: Side, lines: Lines, config: BearingConfig) -> FloatArray:
+    u, p = lines.axes, lines.points
+    e1, e2 = _across(u)
+    along = side.normals @ u.T  # (S, L)
+    n1, n2 = side.normals @ e1.T, side.normals @ e2.T
+    x1 = side.points @ e1.T - np.einsum("ij,ij->i", p, e1)
+    x2 = side.points @ e2.T - np.einsum("ij,ij->i", p, e2)
+    radius = np.sqrt(x1 * x1 + x2 * x2) + 1e-12
+    miss = (x1 * n2 - x2 * n1) / radius  # sine of the angle between normal and meridian plane
+    fit = np.exp(-((miss / config.normal_tolerance_sine) ** 2)) * side.weights[:, None]
+    s11, s22, s12 = (fit * n1 * n1).sum(0), (fit * n2 * n2).sum(0), (fit * n1 * n2).sum(0)
+    half = 0.5 * (s11 + s22)
+    smaller = half - np.sqrt(np.maximum(0.25 * (s11 - s22) ** 2 + s12 * s12, 0))
+    flat = (np.exp(-((1 - along * along) / config.normal_tolerance_sine**2)) * side.weights[:, None]).sum(0)
+    total = max(float(side.weights.sum()), 1e-300)
+    return np.asarray((2 * smaller + config.flange_weight * flat) / total)
+
+
+def _across(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two unit vectors across each axis, shapes (L, 3)."""
+    helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
+    first = np.cross(axes, helper)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return first, np.cross(axes, first)
+
+
+def circle_support(side: Side, line: Line, *, diagonal: float, config: BearingConfig) -> float:
+    """Arc of feature edges that run around the line, in full turns near the contact, saturated to [0, 1].
+
+    Args:
+        side: Evidence of one part.
+        line: The candidate.
+        diagonal: Of the assembly [m]; pieces of nearly equal radius and height belong to one circle.
+        config: Tolerances.
+    """
+    if len(side.lengths) == 0:
+        return 0.0
+    offset = side.middles - line.point
+    height = offset @ line.axis
+    radial = offset - height[:, None] * line.axis
+    radius = np.linalg.norm(radial, axis=1)
+    sine = config.circle_tolerance_sine
+    around = (
+        (np.abs(side.tangents @ line.axis) < sine)
+        & (np.abs(np.einsum("ij,ij->i", side.tangents, radial)) < sine * radius)
+        & (side.lengths < OCTAGON * radius)
+    )
+    if not around.any():
+        return 0.0
+    cell = config.circle_cell * diagonal
+    keys = np.stack([np.round(radius[around] / cell), np.round(height[around] / cell)], axis=1)
+    _, inverse = np.unique(keys, axis=0, return_inverse=True)
+    turn = side.lengths[around] / radius[around] / (2 * np.pi)
+    turns = np.bincount(inverse.reshape(-1), turn)
+    weighted = np.bincount(inverse.reshape(-1), turn * side.edge_weights[around])
+    arc = weighted * (turns > config.least_arc)
+    return float(1 - np.exp(-np.minimum(arc, 2.0).sum()))

@@ -1,0 +1,88 @@
+"""Straight lines in space: candidates for joint axes, before they have a type, a sign or limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kinematify.assembly.part import FloatArray, IntArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Line:
+    """A line through a point; the sign of its direction means nothing."""
+
+    axis: FloatArray
+    """Unit direction, world frame, shape (3,)."""
+    point: FloatArray
+    """Any point of the line, world frame [m], shape (3,)."""
+
+    def foot(self, target: FloatArray) -> FloatArray:
+        """Point of the line that is nearest to `target`, world frame [m], shape (3,)."""
+        return np.asarray(self.point + self.axis * float((target - self.point) @ self.axis))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Lines:
+    """Many lines in two arrays."""
+
+    axes: FloatArray
+    """Unit directions, world frame, shape (L, 3)."""
+    points: FloatArray
+    """A point of each line, world frame [m], shape (L, 3)."""
+
+    def __len__(self) -> int:
+        return len(self.axes)
+
+    def __getitem__(self, index: int) -> Line:
+        return Line(axis=self.axes[index], point=self.points[index])
+
+    def __iter__(self) -> Iterator[Line]:
+        return (self[index] for index in range(len(self)))
+
+    def subset(self, index: IntArray | Sequence[int] | slice) -> Lines:
+        """Keep the lines at these positions, in this order."""
+        return Lines(axes=self.axes[index], points=self.points[index])
+
+    def through_feet(self, target: FloatArray) -> Lines:
+        """The same lines, each with the point that is nearest to `target` (3,)."""
+        along = np.einsum("ij,ij->i", target - self.points, self.axes)
+        return Lines(axes=self.axes, points=self.points + along[:, None] * self.axes)
+
+    def distinct(self, count: int, *, angle: float, distance: float) -> list[int]:
+        """Pick greedily, in the given order, the lines that differ from every line picked before.
+
+        Args:
+            count: Stop after this many.
+            angle: Lines closer in direction [deg] *and* in position repeat each other.
+            distance: From the point of one line to the other line [m].
+
+        Returns:
+            Their positions, ascending.
+        """
+        kept: list[int] = []
+        cosine = np.cos(np.deg2rad(angle))
+        for index, (axis, point) in enumerate(zip(self.axes, self.points, strict=True)):
+            offset = self.points[kept] - point
+            offset -= (offset @ axis)[:, None] * axis
+            same = (np.abs(self.axes[kept] @ axis) > cosine) & (np.linalg.norm(offset, axis=1) < distance)
+            if not same.any():
+                kept.append(index)
+            if len(kept) == count:
+                break
+        return kept
+
+
+def join(parts: Sequence[Lines]) -> Lines:
+    """Put lists of lines one after the other."""
+    return Lines(
+        axes=np.concatenate([part.axes for part in parts]), points=np.concatenate([part.points for part in parts])
+    )
+
+
+NO_LINES = Lines(axes=np.empty((0, 3)), points=np.empty((0, 3)))
