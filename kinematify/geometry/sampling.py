@@ -1,4 +1,7 @@
-"""Surface samples of a part: area-uniform, stratified and reproducible."""
+"""Surface samples of a part: area-uniform, stratified and reproducible.
+
+`sample_surface` samples a part as it is given; `geometry.surface` interpolates smooth normals at the same places.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,13 @@ if TYPE_CHECKING:
 # Generator of the two-dimensional Kronecker sequence of lowest discrepancy (powers of the plastic number's inverse).
 _KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])
 _MORTON_BITS = 20  # 3 x 20 bits fill an int64; cells of 1e-6 of the part's size
+_SPREAD_STEPS = (
+    (32, 0x001F00000000FFFF),
+    (16, 0x001F0000FF0000FF),
+    (8, 0x100F00F00F00F00F),
+    (4, 0x10C30C30C30C30C3),
+    (2, 0x1249249249249249),
+)  # each halves the runs of adjacent bits
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,54 +67,85 @@ def sample_surface(part: Part, count: int, seed: int) -> SurfaceSamples:
         raise ValueError(f"A surface sample needs count >= 1, got {count}.")
     if not part.area > 0.0:
         raise AssemblyError(f"Part {part.name} has no surface area to sample; set it aside or mend its mesh.")
-    shift = np.random.default_rng(seed).random(3)
-    faces = _systematic_faces(part, count, shift[0])
-    square = (np.arange(1, count + 1)[:, None] * _KRONECKER + shift[1:]) % 1.0
-    corners = _canonical_corners(part.vertices[part.faces[faces]])
+    corners = part.vertices[part.faces]
+    faces, barycentric = place_samples(corners, part.face_areas, curve_order(corners, part.face_areas), count, seed)
     return SurfaceSamples(
-        points=np.einsum("nc,ncd->nd", _barycentric(square), corners),
-        normals=_unit_normals(corners),
+        points=np.einsum("nc,ncd->nd", barycentric, corners[faces]),
+        normals=_unit_normals(corners[faces]),
         areas=np.full(count, part.area / count),
         faces=faces,
     )
 
 
-def _systematic_faces(part: Part, count: int, shift: float) -> IntArray:
+def curve_order(corners: FloatArray, areas: FloatArray) -> IntArray:
+    """Order faces along a Morton curve through their centres; ties (twin faces) fall back on the area.
+
+    Args:
+        corners: Corners of every face [m], shape (F, 3, 3), not all in one point.
+        areas: Area of every face [m^2], shape (F,).
+
+    Returns:
+        Indices of faces, shape (F,); the same walk over the surface however the faces are listed.
+    """
+    centres = corners.mean(axis=1)
+    lower, upper = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    # Rounding decides the cell; the half cell keeps symmetric parts away from its edge.
+    cells = ((centres - lower) / (upper - lower).max() * (2**_MORTON_BITS - 2) + 0.5).astype(np.int64)
+    code = _every_third_bit(cells) @ np.array([1, 2, 4])
+    return np.lexsort((areas, code))
+
+
+def place_samples(
+    corners: FloatArray, areas: FloatArray, order: IntArray, count: int, seed: int
+) -> tuple[IntArray, FloatArray]:
+    """Place `count` samples at equal steps of area along a walk over faces.
+
+    Args:
+        corners: Corners of every face [m], shape (F, 3, 3).
+        areas: Area of every face [m^2], shape (F,).
+        order: The faces to walk, from `curve_order`, with positive total area, shape (n,).
+        count: Number of samples.
+        seed: Shifts the sequence.
+
+    Returns:
+        Face of each sample, shape (count,), and its barycentric coordinates there, shape (count, 3).
+    """
+    shift = np.random.default_rng(seed).random(3)
+    faces = _systematic_faces(areas, order, count, shift[0])
+    square = (np.arange(1, count + 1)[:, None] * _KRONECKER + shift[1:]) % 1.0
+    return faces, _unturned(_barycentric(square), corners[faces])
+
+
+def _every_third_bit(cells: IntArray) -> IntArray:
+    """Spread the bits of 20-bit numbers so that two zeros lie between any two of them."""
+    code = cells
+    for step, mask in _SPREAD_STEPS:
+        code = (code | (code << step)) & mask
+    return code
+
+
+def _systematic_faces(areas: FloatArray, order: IntArray, count: int, shift: float) -> IntArray:
     """Faces met at `count` equal steps of accumulated area, shape (count,)."""
-    order = _curve_order(part)
-    accumulated = np.cumsum(part.face_areas[order])
+    accumulated = np.cumsum(areas[order])
     steps = (np.arange(count) + shift) * (accumulated[-1] / count)
     met = np.searchsorted(accumulated, steps, side="right")  # `right` never stops at a face without area
-    last = np.flatnonzero(part.face_areas[order])[-1]
+    last = np.flatnonzero(areas[order])[-1]
     found: IntArray = order[np.minimum(met, last)]
     return found
-
-
-def _curve_order(part: Part) -> IntArray:
-    """Faces along a Morton curve through their centres; ties (twin faces) fall back on the area."""
-    centres = part.vertices[part.faces].mean(axis=1)
-    size = float(np.ptp(part.bounds, axis=0).max())
-    # Rounding decides the cell; the half cell keeps symmetric parts away from its edge.
-    cells = ((centres - part.bounds[0]) / size * (2**_MORTON_BITS - 2) + 0.5).astype(np.int64)
-    code = np.zeros(len(cells), dtype=np.int64)
-    for bit in range(_MORTON_BITS):
-        for axis in range(3):
-            code |= ((cells[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return np.lexsort((part.face_areas, code))
-
-
-def _canonical_corners(corners: FloatArray) -> FloatArray:
-    """Rotate each triangle's corners so that the listing order does not matter; winding is kept, shape (n, 3, 3)."""
-    along = (corners - corners.mean(axis=1, keepdims=True)) @ np.array([0.5377, 0.6911, 0.4829])
-    first = along.argmin(axis=1)
-    turned = (first[:, None] + np.arange(3)) % 3
-    return np.take_along_axis(corners, turned[:, :, None], axis=1)
 
 
 def _barycentric(square: FloatArray) -> FloatArray:
     """Map the unit square to barycentric coordinates, keeping areas, (n, 2) -> (n, 3)."""
     root = np.sqrt(square[:, 0])
     return np.stack([1.0 - root, root * (1.0 - square[:, 1]), root * square[:, 1]], axis=1)
+
+
+def _unturned(barycentric: FloatArray, corners: FloatArray) -> FloatArray:
+    """Count coordinates (n, 3) from a corner that the geometry picks, not from the one that is listed first."""
+    along = (corners - corners.mean(axis=1, keepdims=True)) @ np.array([0.5377, 0.6911, 0.4829])
+    first = along.argmin(axis=1)
+    # Column c of the result belongs to the listed corner c, which is number (c - first) from the picked one.
+    return np.take_along_axis(barycentric, (np.arange(3) - first[:, None]) % 3, axis=1)
 
 
 def _unit_normals(corners: FloatArray) -> FloatArray:

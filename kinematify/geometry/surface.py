@@ -18,6 +18,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from kinematify.geometry.sampling import curve_order, place_samples
 
 if TYPE_CHECKING:
     from typing import Any
@@ -205,30 +206,41 @@ class PartSurface:
         return np.asarray(labels, dtype=np.int64)
 
     def sample(self, count: int, *, faces: IntArray | None = None, seed: int = 0) -> Samples:
-        """Sample the surface evenly by area: systematic along the cumulative area, random inside a face.
+        """Sample the surface uniformly by area, in the walk of `geometry.sampling`.
 
         Args:
             count: Number of samples.
             faces: Indices of welded faces to sample; all by default.
-            seed: Seed of the position inside a face.
+            seed: Shifts the samples; the same seed gives the same ones however the faces are listed.
 
         Returns:
-            Samples with interpolated normals; empty where there is no area.
+            Samples with interpolated normals, ordered along the walk; empty where there is no area.
         """
         _, areas = self.face_normals
-        chosen = np.arange(len(areas)) if faces is None else faces
-        cumulative = np.cumsum(areas[chosen])
-        if len(chosen) == 0 or cumulative[-1] <= 0:
+        order = self._walk(faces)
+        total = float(areas[order].sum())
+        if total <= 0:
             return Samples(points=np.empty((0, 3)), normals=np.empty((0, 3)), areas=np.empty(0))
-        rng = np.random.default_rng(seed)
-        ticks = (np.arange(count) + rng.random()) / count * cumulative[-1]
-        picked = chosen[np.minimum(np.searchsorted(cumulative, ticks), len(chosen) - 1)]
-        barycentric = _random_barycentric(rng, count)
-        vertices, tri = self.welded
-        points = np.einsum("nk,nkd->nd", barycentric, vertices[tri[picked]])
+        vertices, triangles = self.welded
+        picked, barycentric = place_samples(vertices[triangles], areas, order, count, seed)
+        points = np.einsum("nk,nkd->nd", barycentric, vertices[triangles[picked]])
         normals = np.einsum("nk,nkd->nd", barycentric, self.corner_normals[picked])
         normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
-        return Samples(points=points, normals=normals, areas=np.full(count, cumulative[-1] / count))
+        return Samples(points=points, normals=normals, areas=np.full(count, total / count))
+
+    def _walk(self, faces: IntArray | None) -> IntArray:
+        """Some faces, or all, in the order of the curve through all of them."""
+        order = self._curve
+        if faces is None:
+            return order
+        rank = np.empty(len(order), dtype=np.int64)
+        rank[order] = np.arange(len(order))
+        return faces[np.argsort(rank[faces])]
+
+    @cached_property
+    def _curve(self) -> IntArray:
+        vertices, faces = self.welded
+        return curve_order(vertices[faces], self.face_normals[1]) if len(faces) else np.empty(0, dtype=np.int64)
 
     def faces_near(self, bounds: FloatArray, margin: float) -> IntArray:
         """Welded faces whose box meets `bounds` (2, 3) grown by `margin` [m]."""
@@ -269,12 +281,6 @@ def _corner_angles(vertices: FloatArray, faces: IntArray) -> FloatArray:
         cross = np.linalg.norm(np.cross(left, right), axis=1)
         angles[:, k] = np.arctan2(cross, np.einsum("ij,ij->i", left, right))
     return angles
-
-
-def _random_barycentric(rng: np.random.Generator, count: int) -> FloatArray:
-    u, v = rng.random(count), rng.random(count)
-    root = np.sqrt(u)
-    return np.stack([1 - root, root * (1 - v), root * v], axis=1)
 
 
 def _chain_triples(edges: IntArray) -> list[tuple[IntArray, IntArray, IntArray]]:

@@ -1,0 +1,108 @@
+"""Clusters of congruent parts: copies, turned copies and mirror images belong together, other shapes do not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kinematify.assembly.part import Assembly, Part
+from kinematify.config import load_config
+from kinematify.contact.symmetry import aligned_chamfer, find_clusters
+from kinematify.geometry.surface import part_surfaces
+from tests.known import box, cylinder, rotation, union
+
+CONFIG = load_config()
+MIRROR = np.diag([1.0, -1.0, 1.0])
+
+
+def hook(arm: float = 0.6, knob: float = 0.3) -> Part:
+    """A chiral part: three bars along three axes with a knob at the end."""
+    solid = union(
+        box((0, 0, 0), (1.0, 0.2, 0.2)),
+        box((0.8, 0, 0), (1.0, arm, 0.2)),
+        box((0.8, arm - 0.2, 0), (1.0, arm, 0.5)),
+        cylinder(0.5 * knob, (0, 0.1, 0.1), (-knob, 0.1, 0.1)),
+    )
+    mesh = solid.to_mesh64()
+    return Part(name="hook", vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
+
+
+def placed(part: Part, name: str, turn: np.ndarray, shift: tuple[float, float, float]) -> Part:
+    faces = part.faces if np.linalg.det(turn) > 0 else part.faces[:, ::-1]
+    return Part(name=name, vertices=part.vertices @ turn.T + np.asarray(shift), faces=faces)
+
+
+def clusters_of(*parts: Part) -> tuple[tuple[int, ...], ...]:
+    assembly = Assembly(parts=parts, source="test")
+    return find_clusters(assembly, part_surfaces(assembly, config=CONFIG.surface), config=CONFIG.contact, seed=0)
+
+
+@settings(max_examples=10)
+@given(seed=st.integers(0, 10**6), mirrored=st.booleans())
+def test_turned_and_mirrored_copies_cluster(seed: int, mirrored: bool) -> None:
+    rng = np.random.default_rng(seed)
+    axis = rng.normal(size=3)
+    turn = rotation(axis / np.linalg.norm(axis), rng.uniform(0, np.pi)) @ (MIRROR if mirrored else np.eye(3))
+    copy = placed(hook(), "copy", turn, tuple(rng.uniform(-3, 3, 3)))
+    assert clusters_of(hook(), copy) == ((0, 1),)
+
+
+def test_groups_are_ascending_and_singletons_are_left_out() -> None:
+    def bar(name: str, x: float) -> Part:
+        return placed(hook(arm=0.9), name, np.eye(3), (x, 0, 0))
+
+    quarter = rotation(np.array([0.0, 0.0, 1.0]), np.pi / 2)
+    parts = (
+        hook(), bar("b", 2.0), placed(hook(), "c", quarter, (4, 0, 0)), hook(knob=0.6), bar("e", 8.0),
+        placed(hook(), "f", MIRROR, (10, 0, 0)),
+    )  # fmt: skip
+    assert clusters_of(*parts) == ((0, 2, 5), (1, 4))
+
+
+@pytest.mark.parametrize("other", [hook(arm=1.0), hook(knob=0.45)], ids=["longer arm", "thicker knob"])
+def test_different_shapes_do_not_cluster(other: Part) -> None:
+    assert clusters_of(hook(), placed(other, "other", np.eye(3), (3, 0, 0))) == ()
+
+
+def test_the_same_shape_in_another_size_does_not_cluster() -> None:
+    larger = Part(name="larger", vertices=1.1 * hook().vertices, faces=hook().faces)
+    assert clusters_of(hook(), larger) == ()
+
+
+def test_noise_below_the_tolerance_does_not_part_twins() -> None:
+    noise = np.random.default_rng(0).normal(scale=0.003, size=hook().vertices.shape)
+    noisy = Part(name="noisy", vertices=hook().vertices + noise, faces=hook().faces)
+    assert clusters_of(hook(), noisy) == ((0, 1),)
+
+
+def test_another_tessellation_does_not_part_twins() -> None:
+    smooth = union(cylinder(0.4, (0, 0, 0), (0, 0, 1), segments=64), box((0, -0.1, 0), (0.8, 0.1, 0.2))).to_mesh64()
+    rough = union(cylinder(0.4, (0, 0, 0), (0, 0, 1), segments=24), box((0, -0.1, 0), (0.8, 0.1, 0.2))).to_mesh64()
+    parts = [
+        Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
+        for name, mesh in (("smooth", smooth), ("rough", rough))
+    ]
+    assert clusters_of(*parts) == ((0, 1),)
+
+
+def test_clusters_follow_the_parts_when_these_are_permuted() -> None:
+    parts = [
+        hook(),
+        hook(arm=0.9),
+        placed(hook(), "c", MIRROR, (4, 0, 0)),
+        placed(hook(arm=0.9), "d", MIRROR, (6, 0, 0)),
+    ]
+    assert clusters_of(*parts) == ((0, 2), (1, 3))
+    assert clusters_of(*(parts[k] for k in (3, 0, 1, 2))) == ((0, 2), (1, 3))
+    assert clusters_of(*(parts[k] for k in (0, 2, 3, 1))) == ((0, 1), (2, 3))
+
+
+def test_aligned_chamfer_ignores_axes_and_signs_and_sees_differences() -> None:
+    rng = np.random.default_rng(1)
+    cloud = rng.normal(size=(400, 3)) * [3.0, 2.0, 1.0]
+    cloud -= cloud.mean(axis=0)
+    turned = cloud @ (rotation(np.array([0.0, 0.6, 0.8]), 2.0) @ MIRROR).T
+    assert aligned_chamfer(cloud, turned) == pytest.approx(0.0, abs=1e-9)
+    assert aligned_chamfer(cloud, cloud * [1.0, 1.0, 1.5]) > 0.05
