@@ -106,3 +106,11 @@ def test_aligned_chamfer_ignores_axes_and_signs_and_sees_differences() -> None:
     turned = cloud @ (rotation(np.array([0.0, 0.6, 0.8]), 2.0) @ MIRROR).T
     assert aligned_chamfer(cloud, turned) == pytest.approx(0.0, abs=1e-9)
     assert aligned_chamfer(cloud, cloud * [1.0, 1.0, 1.5]) > 0.05
+
+
+@settings(max_examples=10)
+@given(seed=st.integers(0, 10**6))
+def test_aligned_chamfer_does_not_depend_on_which_cloud_is_first(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    first, second = (rng.normal(size=(n, 3)) * rng.uniform(0.5, 2.0, 3) for n in (80, 60))
+    assert aligned_chamfer(first, second) == pytest.approx(aligned_chamfer(second, first), rel=1e-9)

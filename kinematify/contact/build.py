@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import fcl
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -79,10 +78,7 @@ def near_pairs(assembly: Assembly, margin: float) -> list[Pair]:
 
 def exact_gap(surfaces: Sequence[PartSurface], pair: Pair) -> float:
     """Smallest distance between the triangles of two parts [m]; 0 where they cross."""
-    first, second = surfaces[pair[0]].collision_object, surfaces[pair[1]].collision_object
-    if fcl.collide(first, second, fcl.CollisionRequest(), fcl.CollisionResult()):
-        return 0.0
-    return max(float(fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult())), 0.0)
+    return surfaces[pair[0]].gap(surfaces[pair[1]])
 
 
 def find_bridges(assembly: Assembly, surfaces: Sequence[PartSurface], pairs: Sequence[Pair]) -> dict[Pair, float]:

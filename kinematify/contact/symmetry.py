@@ -6,7 +6,7 @@ all pairs; the Chamfer distance after the best of the alignments of principal ax
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import permutations, product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,19 +58,20 @@ def find_clusters(
 
 
 def aligned_chamfer(first: FloatArray, second: FloatArray) -> float:
-    """Mean nearest-neighbour distance [m] of two centred clouds after the best alignment of principal axes.
+    """Mean nearest-neighbour distance [m], both ways, of two centred clouds after the best alignment of their axes.
 
-    Axes are tried with all signs and, since equal spreads leave their order open, all orders, so mirrored twins
-    match. Clouds of shape (n, 3); the better of the symmetric averages is returned.
+    Principal axes are tried with all signs and, since equal spreads leave their order open, all orders, so mirrored
+    twins match. Clouds of shape (n, 3) and (m, 3).
     """
-    axes_a, axes_b = _principal_axes(first), _principal_axes(second)
-    tree = cKDTree(first @ axes_a)
-    in_axes = second @ axes_b
+    one, other = first @ _principal_axes(first), second @ _principal_axes(second)
+    tree_of_one, tree_of_other = cKDTree(one), cKDTree(other)
     best = np.inf
-    for order in ((0, 1, 2), (1, 0, 2), (0, 2, 1), (2, 1, 0), (1, 2, 0), (2, 0, 1)):
+    for order in permutations(range(3)):
         for signs in product((1.0, -1.0), repeat=3):
-            moved = in_axes[:, order] * signs
-            best = min(best, float(tree.query(moved)[0].mean()))
+            there = float(tree_of_one.query(other[:, order] * signs)[0].mean())
+            if there < 2 * best:  # the way back can halve the mean at best
+                back = float(tree_of_other.query((one * signs)[:, np.argsort(order)])[0].mean())
+                best = min(best, 0.5 * (there + back))
     return best
 
 

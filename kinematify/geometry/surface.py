@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, FloatArray, IntArray, Part
     from kinematify.config import SurfaceConfig
 
+_UNIT_SHARE = 1e-3  # of the assembly's diagonal; FCL measured wrong from 0.1 down, right from 1 to 1e-6
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Samples:
@@ -74,15 +76,20 @@ class FeatureCircles:
 class PartSurface:
     """Derived geometry of one part, each piece computed once when first asked for."""
 
-    def __init__(self, part: Part, *, crease_angle: float) -> None:
+    def __init__(self, part: Part, *, crease_angle: float, origin: FloatArray | None = None, unit: float = 1.0) -> None:
         """Keep the part.
 
         Args:
             part: The mesh.
             crease_angle: Faces that meet at a larger dihedral angle form a sharp edge [rad].
+            origin: Where the collision tree has its origin, world frame [m], shape (3,); the world's by default.
+            unit: Length of one unit of the collision tree [m]. FCL takes short lengths for none whatever the size of
+                the object, so a thousandth of that size is a good unit. Surfaces that meet must share both.
         """
         self.part = part
         self.crease_angle = crease_angle
+        self.origin = np.zeros(3) if origin is None else origin
+        self.unit = unit
 
     @cached_property
     def welded(self) -> tuple[FloatArray, IntArray]:
@@ -254,13 +261,20 @@ class PartSurface:
         corners = vertices[faces]
         return corners.min(1), corners.max(1)
 
+    def gap(self, other: PartSurface) -> float:
+        """Smallest distance between the triangles of two parts of one assembly [m]; 0 where they cross."""
+        first, second = self._collision_object, other._collision_object
+        if fcl.collide(first, second, fcl.CollisionRequest(), fcl.CollisionResult()):
+            return 0.0
+        return self.unit * max(float(fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult())), 0.0)
+
     @cached_property
-    def collision_object(self) -> fcl.CollisionObject:
-        """FCL tree of the triangles, in the world frame."""
+    def _collision_object(self) -> fcl.CollisionObject:
+        """FCL tree of the triangles, in units of `unit` from `origin`."""
         vertices, faces = self.welded
         model = fcl.BVHModel()
         model.beginModel(len(vertices), len(faces))
-        model.addSubModel(vertices, faces)
+        model.addSubModel((vertices - self.origin) / self.unit, faces)
         model.endModel()
         return fcl.CollisionObject(model, fcl.Transform())
 
@@ -268,7 +282,8 @@ class PartSurface:
 def part_surfaces(assembly: Assembly, *, config: SurfaceConfig) -> tuple[PartSurface, ...]:
     """Wrap every part of an assembly, in order; nothing is computed yet."""
     crease = math.radians(config.crease_angle)
-    return tuple(PartSurface(part, crease_angle=crease) for part in assembly.parts)
+    middle, unit = assembly.bounds.mean(axis=0), _UNIT_SHARE * assembly.diagonal
+    return tuple(PartSurface(part, crease_angle=crease, origin=middle, unit=unit) for part in assembly.parts)
 
 
 def _corner_angles(vertices: FloatArray, faces: IntArray) -> FloatArray:
