@@ -389,6 +389,8 @@ class RailsConfig(StageConfig):
     """The same for the rail's score over that of the best bearing line."""
     lead_full: float
     """Full where the lead is at least this."""
+    held_deg: float
+    """Free turn about a line along the rail beyond which the rail is a pin [deg]."""
     rounded_lead: float
     """Below this lead a pair of end parts is hinged, not sliding."""
 

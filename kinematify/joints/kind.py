@@ -64,7 +64,7 @@ def decide_kind(
         **_room_cues(scene, turns, slides),
         **_shape_cues(scene, turns),
         **_twin_cues(scene, siblings),
-        "rail": scene.mechanism * scene.railed,
+        "rail": scene.mechanism * _held_rail(scene, turns, config),
     }
     cues["panel"] *= 1.0 - cues["blocked_turn"]  # a plate that cannot turn is no door
     weights, cap = config.kind.weights, config.kind.cap
@@ -73,6 +73,15 @@ def decide_kind(
         return KindDecision(kind=JointType.FIXED, odds=odds, cues=cues)
     kind = JointType.PRISMATIC if odds > 0 else JointType.REVOLUTE
     return KindDecision(kind=kind, odds=odds, cues=cues)
+
+
+def _held_rail(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> float:
+    """The rail, unless it runs along a line about which the part can turn: a pin is extruded along its axis too."""
+    if scene.bearing is None or scene.bearing.rail is None:
+        return 0.0
+    along = bool(scene.bearing.lines) and abs(float(scene.bearing.lines[0].axis @ scene.bearing.rail.axis)) > 0.95
+    turn = float(np.degrees(turns.free_parent[0].max()))
+    return 0.0 if along and turn > config.rails.held_deg else scene.railed
 
 
 def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> dict[str, float]:
