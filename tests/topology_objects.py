@@ -14,9 +14,7 @@ from kinematify.topology.stats import PartStats, part_stats
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-NO_SAMPLES = ContactSamples(
-    points=np.zeros((0, 3)), normals=np.zeros((0, 3)), distances=np.zeros(0), areas=np.zeros(0)
-)
+NO_SAMPLES = ContactSamples(points=np.zeros((0, 3)), normals=np.zeros((0, 3)), distances=np.zeros(0), areas=np.zeros(0))
 BOX_FACES = np.array([
     (0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4),
     (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7),
@@ -26,9 +24,7 @@ X, Y, Z = np.eye(3)
 
 def edge(a: int, b: int, strength: float = 0.5, *, bridge: bool = False) -> ContactEdge:
     """A contact without samples."""
-    return ContactEdge(
-        a=a, b=b, gap=0.0, strength=strength, samples_a=NO_SAMPLES, samples_b=NO_SAMPLES, bridge=bridge
-    )
+    return ContactEdge(a=a, b=b, gap=0.0, strength=strength, samples_a=NO_SAMPLES, samples_b=NO_SAMPLES, bridge=bridge)
 
 
 def graph_of(

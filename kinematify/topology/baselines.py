@@ -88,4 +88,3 @@ def _spread(
             if not visited[other]:
                 visited[other], parents[other] = True, node
                 queue.append(other)
-
