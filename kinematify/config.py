@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
@@ -22,6 +22,9 @@ class StageConfig(BaseModel):
     """Base of all stages: strict types, unknown keys and non-finite numbers refused, frozen."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+_Stage = TypeVar("_Stage", bound=StageConfig)
 
 
 class AssemblyConfig(StageConfig):
@@ -628,14 +631,30 @@ def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Confi
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value has the wrong type.
     """
-    values = _read_layers(_config_path(name_or_path), seen=())
-    values.update(overrides)
+    return validated(Config, {**load_values(name_or_path), **overrides}, name_or_path)
+
+
+def load_values(name_or_path: str | Path) -> dict[str, Any]:
+    """Read a YAML file, shipped or not, with what it extends.
+
+    Raises:
+        ConfigError: The name is unknown or the YAML is malformed.
+    """
+    return _read_layers(_config_path(name_or_path), seen=())
+
+
+def validated(stage: type[_Stage], values: dict[str, Any], name_or_path: str | Path) -> _Stage:
+    """Make a configuration from values.
+
+    Raises:
+        ConfigError: A value is missing, unknown or of the wrong type.
+    """
     try:
-        return Config.model_validate(values)
+        return stage.model_validate(values)
     except ValidationError as error:
         problems = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise ConfigError(
-            f"The configuration {name_or_path} does not fit: {problems}. Compare it with default.yaml."
+            f"The configuration {name_or_path} does not fit: {problems}. Compare it with the one that is shipped."
         ) from error
 
 

@@ -42,8 +42,10 @@ __all__ = [
     "Mimic",
     "RigidGroup",
     "RobotDescription",
+    "describe",
     "forward_kinematics",
     "joint_values",
+    "parse_description",
     "read_description",
     "rest_configuration",
     "rigid_groups",
@@ -78,11 +80,23 @@ def read_description(path: Path, *, package_dirs: Sequence[Path] = ()) -> RobotD
         DescriptionError: The file cannot be read, is not a kinematic tree of single-axis joints, or a mesh is missing
             or broken. The message names the link or joint.
     """
-    robot = _parse(path)
+    return describe(parse_description(path), path, geometry_source(path, package_dirs))
+
+
+def describe(robot: _Element, path: Path, source: GeometrySource) -> RobotDescription:
+    """Do the work of `read_description` on a parsed document, so that its other content can be read beside it.
+
+    Args:
+        robot: What `parse_description` returned.
+        path: The URDF file, for messages.
+        source: Where meshes are looked up.
+
+    Raises:
+        DescriptionError: As for `read_description`.
+    """
     read = [_joint(element) for element in robot.findall("joint")]
     _check_tree(path, [_name(element) for element in robot.findall("link")], [item.joint for item in read])
     _check_mimics([item.joint for item in read])
-    source = geometry_source(path, package_dirs)
     links = tuple(_link(element, source) for element in robot.findall("link"))
     description = RobotDescription(
         name=robot.get("name") or path.stem,
@@ -94,8 +108,12 @@ def read_description(path: Path, *, package_dirs: Sequence[Path] = ()) -> RobotD
     return description
 
 
-def _parse(path: Path) -> _Element:
-    """Return the robot element; entities, DOCTYPE and oversized files are refused before anything is expanded."""
+def parse_description(path: Path) -> _Element:
+    """Return the robot element; entities, DOCTYPE and oversized files are refused before anything is expanded.
+
+    Raises:
+        DescriptionError: The file cannot be read, is not well-formed, or is no URDF.
+    """
     try:
         size = path.stat().st_size
         text = path.read_bytes() if size <= MAX_URDF_BYTES else b""

@@ -62,7 +62,7 @@ class GeometrySource:
         return LinkMesh(vertices=vertices, faces=mesh.faces[:, order])
 
     def _mesh_file(self, shape: _Element, where: str) -> RawMesh:
-        path = self._resolved(shape.get("filename") or "", where)
+        path = self.resolved(shape.get("filename") or "", where)
         if path not in self.cache:
             try:
                 self.cache[path] = merged(read_meshes(path), path.stem)
@@ -70,7 +70,16 @@ class GeometrySource:
                 raise DescriptionError(f"The mesh of {where} cannot be used. {error}") from error
         return self.cache[path]
 
-    def _resolved(self, filename: str, where: str) -> Path:
+    def resolved(self, filename: str, where: str) -> Path:
+        """Return the mesh file that a document names.
+
+        Args:
+            filename: As written.
+            where: The link, for messages.
+
+        Raises:
+            DescriptionError: It is nowhere; the message lists the places.
+        """
         candidates = self._candidates(filename, where)
         found = next((path for path in candidates if path.is_file()), None)
         if found is None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 import platform
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
 from kinematify.model.output import RECORD_FILE, write_model_folder
 from kinematify.model.preview import render_preview
 from kinematify.model.urdf import write_urdf
+from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -56,7 +56,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
     record = {
         "schema": SCHEMA,
         "kinematify": __version__,
-        "versions": {"python": platform.python_version(), **_versions()},
+        "versions": {"python": platform.python_version(), **package_versions(_PACKAGES)},
         "seed": inference.config.seed,
         "source": assembly.source,
         "parts": [
@@ -81,16 +81,6 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "configuration": inference.config.model_dump(mode="json"),
     }
     return {key: _finite(value) for key, value in record.items()}
-
-
-def _versions() -> dict[str, str]:
-    found = {}
-    for package in _PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "missing"
-    return found
 
 
 def _contact(inference: Inference, edge: ContactEdge) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""Behaviour in physics engines, each in its own process."""

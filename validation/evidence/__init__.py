@@ -1,0 +1,1 @@
+"""Does the geometry of two links explain the joint between them?"""

@@ -1,0 +1,96 @@
+"""What a check says: findings with their evidence, and the status of the check itself (design section 4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Severity(StrEnum):
+    """How bad a finding is; an error makes the verdict ``fail``."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+class Blame(StrEnum):
+    """Who can act on a finding."""
+
+    KINEMATICS = "kinematics"
+    """Axis, pivot, type, parent or limit of a joint: the inference can choose again."""
+    PHYSICS = "physics"
+    """Mass, inertia, collision geometry, effort: the exporter can add or correct them."""
+    ASSET = "asset"
+    """The file or a mesh is broken."""
+    ENGINE = "engine"
+    """Engines disagree with each other or with the analytical model."""
+    TASK = "task"
+    """A robot cannot use the object."""
+
+
+class Status(StrEnum):
+    """What became of a check; skipped and blocked never count as passed."""
+
+    PASS = "pass"
+    FAIL = "fail"
+    """It has at least one error or warning."""
+    SKIPPED = "skipped"
+    """It does not apply, was not asked for, or time ran out; the reason is given."""
+    BLOCKED = "blocked"
+    """An earlier failure, a crash or a hang kept it from running; the reason is given."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One thing that is wrong, or worth knowing, with where, how much and what to do."""
+
+    check: str
+    """Id, e.g. ``KV301``."""
+    severity: Severity
+    blame: Blame
+    message: str
+    """One or two sentences: what was found and what was expected."""
+    remedy: str
+    """What to do, with target values where they are known."""
+    joint: str | None = None
+    link: str | None = None
+    pair: tuple[str, str] | None = None
+    """Two links, in the order of the document."""
+    engine: str | None = None
+    q: Mapping[str, float] | None = None
+    """Configuration in which it was seen, joint -> value [rad or m]."""
+    value: float | None = None
+    """What was measured, in `unit`."""
+    limit: float | None = None
+    """What it was compared with, in `unit`."""
+    unit: str | None = None
+    line: int | None = None
+    """Line of the URDF that it is about."""
+    suppressed: str | None = None
+    """Reason given by the user for not counting it; it is still reported."""
+
+    def __post_init__(self) -> None:
+        if self.q is not None:
+            object.__setattr__(self, "q", MappingProxyType(dict(self.q)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckResult:
+    """The outcome of one check in one engine."""
+
+    check: str
+    engine: str | None
+    """``mujoco``, ``pybullet``, ``pinocchio``, or None where no engine is involved."""
+    status: Status
+    reason: str | None = None
+    """Why it was skipped or blocked."""
+    seconds: float = 0.0
+    findings: tuple[Finding, ...] = ()
+    measured: Mapping[str, float] = field(default_factory=dict)
+    """Named figures worth reading even where nothing is wrong, e.g. the largest tracking error."""

@@ -1,0 +1,1 @@
+"""Collision along the motion, by exact geometry."""

@@ -1,0 +1,211 @@
+"""Stages in processes of their own: a crash, a hang or a memory blow-up ends the stage, not the run.
+
+Workers are forked from a server that has the heavy imports done, so that one costs milliseconds. A worker sends each
+result through a pipe at once; what it sent before it died is kept.
+"""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+import os
+import resource
+import signal
+import sys
+import time
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import connection, forkserver
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from kinematify.validation.stage import Recorder
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
+
+    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.report import JointSummary
+    from kinematify.validation.stage import StageRequest
+
+_THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+_PRELOADED = ("kinematify.validation.read", "kinematify.geometry.surface")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stage:
+    """A group of checks that runs in one process."""
+
+    name: str
+    function: str
+    """``module:function`` with the signature ``(request, recorder)``."""
+    checks: tuple[tuple[str, str | None], ...]
+    """Every (id, engine) that it tells if nothing goes wrong."""
+    after: tuple[str, ...] = ()
+    """Names of the stages that must have ended without a crash before."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageEnd:
+    """How a stage ended."""
+
+    stage: Stage
+    told: tuple[CheckResult | JointSummary, ...]
+    failure: str | None
+    """Why it did not end by itself, as words that follow "because"; None if it did."""
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Running:
+    stage: Stage
+    process: BaseProcess
+    started: float
+    told: list[CheckResult | JointSummary]
+
+
+def start_server() -> None:
+    """Start the server that workers are forked from; returns at once, the imports go on beside the caller's work."""
+    multiprocessing.get_context("forkserver").set_forkserver_preload(list(_PRELOADED))
+    with _one_thread(), _without_main():
+        forkserver.ensure_running()
+
+
+def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> Iterator[StageEnd]:
+    """Run stages, each as soon as those before it have ended; yield each end. Closing the iterator stops all.
+
+    Args:
+        stages: In an order in which each stands behind those that it comes after.
+        request: What each of them is given.
+        workers: Processes at a time.
+    """
+    start_server()
+    waiting, ended = list(stages), dict[str, str | None]()
+    active: dict[Connection, _Running] = {}
+    try:
+        while waiting or active:
+            for stage in [s for s in waiting if all(name in ended for name in s.after)]:
+                if len(active) == workers:
+                    break
+                waiting.remove(stage)
+                broken = next((name for name in stage.after if ended[name]), None)
+                if broken is not None:
+                    end = StageEnd(stage=stage, told=(), failure=f"the stage {broken} {ended[broken]}", seconds=0.0)
+                    ended[stage.name] = "did not run"
+                    yield end
+                else:
+                    receiver, running = _start(stage, request)
+                    active[receiver] = running
+            for end in _listen(active, request):
+                ended[end.stage.name] = end.failure
+                yield end
+    finally:
+        for receiver, running in active.items():
+            _stop(receiver, running.process)
+
+
+def _start(stage: Stage, request: StageRequest) -> tuple[Connection, _Running]:
+    context = multiprocessing.get_context("forkserver")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=_work, args=(sender, stage, request), daemon=True)
+    with _without_main():
+        process.start()
+    sender.close()  # only the worker may hold the sending end: its death is then the end of the stream
+    return receiver, _Running(stage=stage, process=process, started=time.monotonic(), told=[])
+
+
+def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
+    """Body of a worker. Ctrl-C reaches the whole process group; the parent alone answers it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    limit = request.settings.budget.stage_bytes
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    _silence(request.work / f"{stage.name}.log")
+    module, function = stage.function.split(":")
+    run: Callable[[StageRequest, Recorder], None] = getattr(importlib.import_module(module), function)
+    with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
+        run(request, Recorder(sender.send, request.selected))
+        sender.send(None)
+
+
+def _silence(log: os.PathLike[str]) -> None:
+    """Send what C libraries print into a file: it must not end up in the user's answer."""
+    target = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    os.dup2(target, 1)
+    os.dup2(target, 2)
+
+
+def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterator[StageEnd]:
+    """Take in what the workers tell, and yield those that have ended, died or run out of time."""
+    if not active:
+        return
+    limit = request.settings.budget.stage_seconds
+    until = min(min(running.started for running in active.values()) + limit - time.monotonic(), _grace(request))
+    ready = connection.wait(list(active), max(0.0, until))
+    for receiver, running in list(active.items()):
+        failure: str | None = None
+        if receiver in ready:
+            try:
+                message = receiver.recv()
+            except EOFError:
+                running.process.join()
+                failure = _cause(running.process.exitcode)
+            else:
+                if message is not None:
+                    running.told.append(message)
+                    continue
+        elif time.monotonic() >= running.started + limit:
+            failure = f"hung: it was stopped after {limit:.0f} s"
+        elif _grace(request) <= 0.0:
+            failure = "was stopped at the end of the time budget"
+        else:
+            continue
+        del active[receiver]
+        _stop(receiver, running.process)
+        seconds = time.monotonic() - running.started
+        yield StageEnd(stage=running.stage, told=tuple(running.told), failure=failure, seconds=seconds)
+
+
+def _grace(request: StageRequest) -> float:
+    """Seconds until a stage that should have ended by itself at the deadline is stopped."""
+    return request.deadline + 2.0 - time.time()
+
+
+def _cause(exit_code: int | None) -> str:
+    if exit_code is not None and exit_code < 0:
+        return f"crashed with {signal.Signals(-exit_code).name}"
+    return f"failed with status {exit_code}"
+
+
+def _stop(receiver: Connection, process: BaseProcess) -> None:
+    receiver.close()
+    process.kill()
+    process.join()
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """One thread per library in the workers: there are as many of them as cores."""
+    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """Hide the caller's script, which workers would run again although they need nothing of it."""
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main

@@ -1,0 +1,51 @@
+"""Which stage tells which checks, and in which order they run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.validation.catalogue import agreement, engines, evidence, geometry, meshes, physics
+from kinematify.validation.isolation import Stage
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.validation.catalogue import Check
+
+ENGINES = ("mujoco", "pybullet", "pinocchio")
+"""Engines that can be chosen; FCL and the exact geometry are always there."""
+
+CheckKey = tuple[str, str | None]
+"""Id of a check and the engine it runs in."""
+
+
+def asset_stage() -> Stage:
+    """Meshes and declared physics; what comes later needs readable meshes."""
+    return Stage(
+        name="asset", function="kinematify.validation.asset.stage:run", checks=keys(meshes.CHECKS + physics.CHECKS)
+    )
+
+
+def later_stages(chosen: Sequence[str]) -> list[Stage]:
+    """Everything that moves the model, the longest first; engines that were not chosen are left out."""
+    stages = [
+        Stage(name="prepare", function="kinematify.validation.prepare.stage:run", checks=()),
+        Stage(name="geometry", function="kinematify.validation.geometry.stage:run", checks=keys(geometry.CHECKS)),
+        Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(evidence.CHECKS)),
+    ]
+    for engine in chosen:
+        checks = tuple(key for key in keys(engines.CHECKS) if key[1] == engine)
+        function = f"kinematify.validation.engines.{engine}_stage:run"
+        after = () if engine == "pinocchio" else ("prepare",)
+        stages.append(Stage(name=engine, function=function, checks=checks, after=after))
+    return stages
+
+
+def agreement_keys() -> tuple[CheckKey, ...]:
+    """Checks that compare what the engines have left behind."""
+    return keys(agreement.CHECKS)
+
+
+def keys(checks: Sequence[Check]) -> tuple[CheckKey, ...]:
+    """(id, engine) of every result that the checks give."""
+    return tuple((check.id, engine) for check in checks for engine in (check.engines or (None,)))

@@ -1,0 +1,1 @@
+"""Before any mesh is opened: is the file a URDF that engines may see?"""

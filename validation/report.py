@@ -1,0 +1,135 @@
+"""The answer of `kinematify validate`: every check with its status, every finding, and a verdict."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.finding import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.validation.finding import CheckResult, Finding
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointSummary:
+    """What is known of one joint at the end."""
+
+    joint: str
+    kind: str
+    declared_limits: tuple[float, float] | None
+    """[rad or m]; None where there are none."""
+    free_travel: tuple[float, float] | None = None
+    """Range around rest in which nothing collides [rad or m]; None if it was not measured."""
+    best_alternative: Mapping[str, Any] | None = None
+    """``kind``, ``axis``, ``pivot`` (world frame at zero), ``score`` of a joint that explains the geometry better."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ValidationReport:
+    """The result for one model."""
+
+    model: str
+    """Path as it was given."""
+    checks: tuple[CheckResult, ...]
+    joints: tuple[JointSummary, ...] = ()
+    environment: Mapping[str, Any] = field(default_factory=dict)
+    """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All findings, the worst first, otherwise in the order of the checks."""
+        order = list(Severity)
+        found = [finding for check in self.checks for finding in check.findings]
+        return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))
+
+    @property
+    def counted(self) -> tuple[Finding, ...]:
+        """Findings that are not suppressed."""
+        return tuple(finding for finding in self.findings if finding.suppressed is None)
+
+    @property
+    def verdict(self) -> str:
+        """``fail`` with an error, ``warn`` with a warning, else ``pass``; suppressed findings do not count."""
+        severities = {finding.severity for finding in self.counted}
+        if Severity.ERROR in severities:
+            return "fail"
+        return "warn" if Severity.WARNING in severities else "pass"
+
+    @property
+    def exit_status(self) -> int:
+        """1 with an error, else 0."""
+        return 1 if self.verdict == "fail" else 0
+
+    def as_json(self) -> dict[str, Any]:
+        """The report as JSON values (design 2.3, schema 1); absent values and non-finite numbers are null."""
+        return {
+            "schema": SCHEMA,
+            "model": self.model,
+            "verdict": self.verdict,
+            "checks": [_check_json(check) for check in self.checks],
+            "findings": [_finding_json(finding) for finding in self.findings],
+            "joints": [_joint_json(joint) for joint in self.joints],
+            "environment": _plain(self.environment),
+        }
+
+
+def _check_json(check: CheckResult) -> dict[str, Any]:
+    return {
+        "check": check.check,
+        "title": CATALOGUE[check.check].title,
+        "engine": check.engine,
+        "status": check.status.value,
+        "reason": check.reason,
+        "seconds": round(check.seconds, 4),
+        "measured": _plain(check.measured),
+    }
+
+
+def _finding_json(finding: Finding) -> dict[str, Any]:
+    return {
+        "check": finding.check,
+        "severity": finding.severity.value,
+        "blame": finding.blame.value,
+        "joint": finding.joint,
+        "link": finding.link,
+        "pair": None if finding.pair is None else list(finding.pair),
+        "engine": finding.engine,
+        "q": _plain(finding.q),
+        "value": _plain(finding.value),
+        "limit": _plain(finding.limit),
+        "unit": finding.unit,
+        "message": finding.message,
+        "remedy": finding.remedy,
+        "line": finding.line,
+        "suppressed": finding.suppressed,
+    }
+
+
+def _joint_json(joint: JointSummary) -> dict[str, Any]:
+    return {
+        "joint": joint.joint,
+        "type": joint.kind,
+        "declared_limits": _plain(joint.declared_limits),
+        "free_travel": _plain(joint.free_travel),
+        "best_alternative": _plain(joint.best_alternative),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """JSON values only; numbers that are not finite become null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if hasattr(value, "items"):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    return value

@@ -1,0 +1,201 @@
+"""The whole of `kinematify validate` for one model: pre-check, then isolated stages, then one report.
+
+Every check of the catalogue ends up in the report: passed, failed, skipped or blocked, the latter two with a reason.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinematify.validation import agreement
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.environment import environment
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.isolation import run_stages, start_server
+from kinematify.validation.plan import ENGINES, asset_stage, keys, later_stages
+from kinematify.validation.precheck.document import precheck
+from kinematify.validation.report import JointSummary, ValidationReport
+from kinematify.validation.settings import load_settings
+from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.suppression import suppress
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Iterable, Sequence
+
+    from kinematify.validation.isolation import StageEnd
+    from kinematify.validation.plan import CheckKey
+    from kinematify.validation.settings import ValidationSettings
+    from kinematify.validation.suppression import Suppression
+
+    Progress = Callable[[str, float], None]
+
+
+def validate(
+    path: str | Path,
+    *,
+    package_dirs: Sequence[str | Path] = (),
+    settings: ValidationSettings | None = None,
+    selected: Collection[str] | None = None,
+    engines: Sequence[str] = ENGINES,
+    suppressions: Sequence[Suppression] = (),
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> ValidationReport:
+    """Check a URDF: file, declared physics, collision along the motion, joint evidence, engines and their agreement.
+
+    Args:
+        path: The URDF file.
+        package_dirs: Where packages lie (``package://``).
+        settings: Thresholds and budgets; the shipped ones if absent.
+        selected: Ids of the checks to run; all if absent. The pre-check always runs.
+        engines: Of `ENGINES`; checks of the others are reported as skipped.
+        suppressions: Findings that do not count.
+        workers: Processes at a time; as many as there are cores if absent.
+        progress: Told the stage that ended and the fraction done.
+
+    Returns:
+        The report; after an interrupt a partial one that says so.
+
+    Raises:
+        InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
+    """
+    run = _Run(Path(path), frozenset(CATALOGUE) if selected is None else frozenset(selected), progress)
+    settings = settings or load_settings()
+    try:
+        with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
+            request = StageRequest(
+                urdf=run.path.absolute(),
+                package_dirs=tuple(Path(item).absolute() for item in package_dirs),
+                work=Path(folder),
+                settings=settings,
+                selected=run.selected,
+                deadline=time.time() + settings.budget.seconds,
+            )
+            run.all(request, engines, workers or os.cpu_count() or 1)
+    except KeyboardInterrupt:
+        run.interrupted = True
+    return run.report(settings, suppressions)
+
+
+class _Run:
+    """Results as they come in; what has not come in is named with its reason at the end."""
+
+    def __init__(self, path: Path, selected: frozenset[str], progress: Progress | None) -> None:
+        self.path = path
+        self.selected = selected
+        self.interrupted = False
+        self._progress = progress or (lambda stage, fraction: None)
+        self._results: dict[CheckKey, CheckResult] = {}
+        self._joints: dict[str, JointSummary] = {}
+        self._why: dict[CheckKey, tuple[Status, str]] = {}
+        self._started = time.perf_counter()
+
+    def all(self, request: StageRequest, engines: Sequence[str], workers: int) -> None:
+        """Run everything that can run."""
+        start_server()
+        recorder = Recorder(self._take, request.selected)
+        usable = precheck(request, recorder)
+        self._progress("pre-check", 0.05)
+        if not usable:
+            self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
+            return
+        for end in run_stages([asset_stage()], request, workers=1):
+            self._take_end(end)
+        self._progress("meshes and declared physics", 0.15)
+        if self._broken_meshes():
+            self._explain_rest(Status.BLOCKED, "a mesh cannot be used")
+            return
+        stages = later_stages([engine for engine in ENGINES if engine in engines])
+        for number, end in enumerate(run_stages(stages, request, workers=workers)):
+            self._take_end(end)
+            self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
+        self._explain(
+            [key for key in self._missing() if key[1] in set(ENGINES) - set(engines)],
+            Status.SKIPPED,
+            "the engine was not asked for",
+        )
+        agreement.compare(request, recorder)
+
+    def report(self, settings: ValidationSettings, suppressions: Sequence[Suppression]) -> ValidationReport:
+        """Put together what is known."""
+        if self.interrupted:
+            self._explain_rest(Status.SKIPPED, "the run was interrupted")
+        self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
+        checks = suppress([self._result(key) for key in keys(list(CATALOGUE.values()))], suppressions)
+        facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
+        return ValidationReport(
+            model=str(self.path), checks=checks, joints=tuple(self._joints.values()), environment=facts
+        )
+
+    def _take(self, told: CheckResult | JointSummary) -> None:
+        if isinstance(told, JointSummary):
+            self._joints[told.joint] = _merged(self._joints.get(told.joint), told)
+        else:
+            self._results[told.check, told.engine] = told
+
+    def _take_end(self, end: StageEnd) -> None:
+        for told in end.told:
+            self._take(told)
+        if end.failure is None:
+            return
+        left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
+        if left and not end.failure.startswith("the stage"):
+            self._results[left[0]] = _fallen(left[0], end)
+        status = Status.SKIPPED if "budget" in end.failure else Status.BLOCKED
+        self._explain(left, status, f"the stage {end.stage.name} {end.failure}")
+
+    def _broken_meshes(self) -> bool:
+        return any(
+            finding.severity is Severity.ERROR
+            for (check, _), result in self._results.items()
+            if check.startswith("KV1")
+            for finding in result.findings
+        )
+
+    def _missing(self) -> Iterable[CheckKey]:
+        return [key for key in keys(list(CATALOGUE.values())) if key not in self._results and key not in self._why]
+
+    def _explain_rest(self, status: Status, reason: str) -> None:
+        self._explain(self._missing(), status, reason)
+
+    def _explain(self, which: Iterable[CheckKey], status: Status, reason: str) -> None:
+        for key in which:
+            unwanted = key[0] not in self.selected
+            self._why.setdefault(key, (Status.SKIPPED, "it was not asked for") if unwanted else (status, reason))
+
+    def _result(self, key: CheckKey) -> CheckResult:
+        if key in self._results:
+            return self._results[key]
+        status, reason = self._why[key]
+        return CheckResult(check=key[0], engine=key[1], status=status, reason=reason)
+
+
+def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:
+    """What two stages know of one joint together."""
+    if before is None:
+        return now
+    return replace(
+        now,
+        free_travel=now.free_travel or before.free_travel,
+        best_alternative=now.best_alternative or before.best_alternative,
+    )
+
+
+def _fallen(key: CheckKey, end: StageEnd) -> CheckResult:
+    """A crash or a hang as a finding of the check that was under way."""
+    check, engine = key
+    finding = Finding(
+        check=check,
+        severity=Severity.WARNING if engine is None else Severity.ERROR,
+        blame=Blame.ENGINE,
+        engine=engine,
+        message=f"The stage {end.stage.name} {end.failure} during this check or right before it.",
+        remedy="Mend the other findings first and run again; if it stays, report it with the model.",
+    )
+    reason = f"the stage {end.stage.name} {end.failure}"
+    return CheckResult(check=check, engine=engine, status=Status.BLOCKED, reason=reason, findings=(finding,))

@@ -1,0 +1,149 @@
+"""How a group of checks runs: in a process of its own, telling each result as soon as it is known.
+
+A stage is a function `stage(request, recorder)`. What it has told before it crashes, hangs or is stopped is kept;
+the checks that it has not told become ``blocked``.
+"""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.finding import CheckResult, Finding, Severity, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from kinematify.validation.finding import Blame
+    from kinematify.validation.report import JointSummary
+    from kinematify.validation.settings import ValidationSettings
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageRequest:
+    """What every stage is given; it crosses a process border, so it holds plain data only."""
+
+    urdf: Path
+    """The file as the user gave it."""
+    package_dirs: tuple[Path, ...]
+    work: Path
+    """Folder of this run: stages leave there what later ones need (`prepared.urdf`, `poses-ENGINE.npz`)."""
+    settings: ValidationSettings
+    selected: frozenset[str]
+    """Ids of the checks that the user wants."""
+    deadline: float
+    """`time.time()` at which the run should be over; a stage that is late says what it left out."""
+
+    @property
+    def remaining(self) -> float:
+        """Seconds until the deadline, at least 0."""
+        return max(0.0, self.deadline - time.time())
+
+
+@dataclass(kw_only=True)
+class OpenCheck:
+    """A check that is under way: findings are added to it, its status follows from them."""
+
+    id: str
+    engine: str | None
+    findings: list[Finding] = field(default_factory=list)
+    measured: dict[str, float] = field(default_factory=dict)
+    status: Status | None = None
+    reason: str | None = None
+
+    def find(
+        self,
+        message: str,
+        remedy: str,
+        *,
+        severity: Severity | None = None,
+        blame: Blame | None = None,
+        joint: str | None = None,
+        link: str | None = None,
+        pair: tuple[str, str] | None = None,
+        q: dict[str, float] | None = None,
+        value: float | None = None,
+        limit: float | None = None,
+        unit: str | None = None,
+        line: int | None = None,
+    ) -> None:
+        """Add a finding; severity and blame are the catalogue's unless given, see `Finding` for the rest."""
+        check = CATALOGUE[self.id]
+        self.findings.append(
+            Finding(
+                check=self.id,
+                severity=severity or check.severity,
+                blame=blame or check.blame,
+                message=message,
+                remedy=remedy,
+                joint=joint,
+                link=link,
+                pair=pair,
+                engine=self.engine,
+                q=q,
+                value=None if value is None else float(value),
+                limit=None if limit is None else float(limit),
+                unit=unit,
+                line=line,
+            )
+        )
+
+    def skip(self, reason: str) -> None:
+        """Say that it does not apply, or that time ran out before it was complete."""
+        self.status, self.reason = Status.SKIPPED, reason
+
+    def block(self, reason: str) -> None:
+        """Say that an earlier failure keeps it from running."""
+        self.status, self.reason = Status.BLOCKED, reason
+
+
+class Recorder:
+    """Collects what a stage has to say and passes it on at once."""
+
+    def __init__(self, tell: Callable[[CheckResult | JointSummary], None], selected: frozenset[str]) -> None:
+        """Keep where results go and which checks are wanted."""
+        self._tell = tell
+        self._selected = selected
+
+    def wants(self, *checks: str) -> bool:
+        """True if at least one of the checks was asked for; work for none of them can be left out."""
+        return any(check in self._selected for check in checks)
+
+    @contextmanager
+    def check(self, name: str, engine: str | None = None) -> Iterator[OpenCheck]:
+        """Run one check: ``with recorder.check("KV301") as check: ... check.find(...)``.
+
+        An exception inside makes the check ``blocked`` with the exception's text, and the stage goes on: a validator
+        must survive what it validates. Results of checks that were not asked for are dropped.
+        """
+        check = OpenCheck(id=name, engine=engine)
+        start = time.perf_counter()
+        try:
+            yield check
+        except Exception as error:  # the boundary of a check: whatever fails inside is said, not raised
+            check.block(f"{type(error).__name__}: {error}")
+        if name in self._selected:
+            self._tell(_closed(check, time.perf_counter() - start))
+
+    def summarise(self, joint: JointSummary) -> None:
+        """Tell what is known of a joint; later summaries of the same joint add to earlier ones."""
+        self._tell(joint)
+
+
+def _closed(check: OpenCheck, seconds: float) -> CheckResult:
+    counted = any(finding.severity is not Severity.NOTE for finding in check.findings)
+    status = check.status or (Status.FAIL if counted else Status.PASS)
+    return CheckResult(
+        check=check.id,
+        engine=check.engine,
+        # What was found before a check was cut short still stands.
+        status=Status.FAIL if counted else status,
+        reason=check.reason,
+        seconds=seconds,
+        findings=tuple(check.findings),
+        measured=check.measured,
+    )
