@@ -1,0 +1,117 @@
+"""Evidence of bearings and rails, and the quality of an edge."""
+
+from __future__ import annotations
+
+import math
+
+from kinematify.config.base import StageConfig
+
+
+class RailConfig(StageConfig):
+    """Fit of the direction along which a contact is extruded."""
+
+    pairs: int
+    """Random pairs of normals per side."""
+    tolerance: float
+    """Angle by which a normal may leave the plane across the direction [deg]."""
+    edge_tolerance: float
+    """Angle by which a guiding edge may leave the direction [deg]."""
+    edge_floor: float
+    """What a rail without guiding edges keeps of its score, against one with nothing but such edges."""
+    refine_steps: int
+    """Rounds of refinement."""
+
+    @property
+    def tolerance_sine(self) -> float:
+        """Sine of `tolerance`."""
+        return math.sin(math.radians(self.tolerance))
+
+    @property
+    def edge_tolerance_sine(self) -> float:
+        """Sine of `edge_tolerance`."""
+        return math.sin(math.radians(self.edge_tolerance))
+
+
+class BearingConfig(StageConfig):
+    """Fit of bearing lines to a contact edge."""
+
+    fade: float
+    """Distance to the other part over which evidence fades, fraction of the assembly's diagonal."""
+    fade_part: float
+    """The same as a fraction of the smaller part's diagonal; the smaller of the two counts."""
+    negligible: float
+    """Samples with less than this fraction of the largest weight are dropped."""
+    pairs: int
+    """Random pairs of normals per side."""
+    circles: int
+    """Circles through feature edges per side."""
+    coarse_samples: int
+    """Samples per side for the first scoring of all lines."""
+    shortlist: int
+    """Distinct lines, best by area, that are refined."""
+    shortlist_circles: int
+    """Distinct lines, best by circles, that are refined as well."""
+    keep: int
+    """Distinct lines kept per edge."""
+    apart_angle: float
+    """Lines closer than this in direction [deg] and closer than `apart` at the contact are one line."""
+    apart: float
+    """The distance that goes with it, fraction of the assembly's diagonal; proposals use twice both."""
+    normal_tolerance: float
+    """Angle between a normal and the meridian plane that still counts as consistent [deg]."""
+    fine_tolerance: float
+    """The same in the last round of refinement [deg]."""
+    refine_steps: int
+    """Rounds of refinement."""
+    refine_samples: int
+    """Samples per side in all rounds but the last two."""
+    flange_weight: float
+    """Weight of area perpendicular to the axis against area around it."""
+    circle_tolerance: float
+    """Angle by which a piece of edge may miss the tangent of a circle [deg]."""
+    circle_cell: float
+    """Radii and heights that differ by less belong to one circle, fraction of the diagonal."""
+    least_arc: float
+    """Shortest arc that counts, in full turns."""
+    circle_floor: float
+    """What an edge without any circle keeps of its score, against a full circle."""
+    circle_weight: float
+    """Weight of edge pieces against area in the refinement."""
+    turned_support: float
+    """A part whose whole surface turns into itself to this share may turn about its own axis."""
+    turned_length: float
+    """Largest length along the axis of such a part, in diameters."""
+    turned_score: float
+    """Score of a fully round part without any bearing on the other side."""
+    turned_samples: int
+    """Samples, and pairs of normals, for the axis of a whole part."""
+    rail: RailConfig
+    """The counterpart for sliding joints, fitted to the same samples."""
+
+    @property
+    def normal_tolerance_sine(self) -> float:
+        """Sine of `normal_tolerance`."""
+        return math.sin(math.radians(self.normal_tolerance))
+
+    @property
+    def fine_tolerance_sine(self) -> float:
+        """Sine of `fine_tolerance`."""
+        return math.sin(math.radians(self.fine_tolerance))
+
+    @property
+    def circle_tolerance_sine(self) -> float:
+        """Sine of `circle_tolerance`."""
+        return math.sin(math.radians(self.circle_tolerance))
+
+
+class QualityConfig(StageConfig):
+    """Weight of a contact edge in the tree search."""
+
+    half_score: float
+    """Bearing score at which half of the full quality is reached."""
+    contact_weight: float
+    """Largest quality of an edge without any bearing."""
+    strength_power: float
+    """Exponent of the contact strength; small values compress its range."""
+    bridge_share: float
+    """What an edge between parts that do not touch keeps of it."""

@@ -1,0 +1,188 @@
+"""How a joint is chosen: frames, sweeps, panels, slides, kind, limits."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from kinematify.config.base import StageConfig
+
+
+class FramesConfig(StageConfig):
+    """Box frames of parts."""
+
+    volume_slack: float
+    """A preferred frame may hold a box larger than the smallest by this fraction."""
+    handle_share: float
+    """Share of the area facing the thin direction that may lie outside the slab on either side."""
+    handle_gap: float
+    """An end is cut off if it reaches beyond the slab by more than this fraction of the slab's thickness."""
+
+
+class SweepConfig(StageConfig):
+    """Virtual motion test."""
+
+    points: int
+    """Points that stand for the moving part."""
+    shrink: float
+    """Fraction by which they are drawn towards the part's centre."""
+    hinge_zone: float
+    """Points closer to the axis than this fraction of the part's reach are exempt."""
+    grace: float
+    """Motion at the start that is not tested, fraction of the assembly's diagonal."""
+    step_deg: float
+    """Length of the straight pieces of a turn [deg]."""
+    share: float
+    """A motion is blocked once more than this share of the points has hit something."""
+
+
+class GateConfig(StageConfig):
+    """When a bearing line is taken as it is: either is enough."""
+
+    product: float
+    """Surface score times circle score."""
+    located: float
+    """Round area on both parts that locates the line, without flat seats (geometric mean of the shares)."""
+
+
+class PanelsConfig(StageConfig):
+    """Candidate lines and cues of turning joints."""
+
+    sweep_deg: float
+    """Turn that is tested either way [deg]."""
+    full_turn_deg: float
+    """Free turn beyond which more is no better [deg]."""
+    part_deg: float
+    """Turn after which the part must still be near its parent [deg]."""
+    separation_points: int
+    """Points that measure the gap after the turn."""
+    bearings: int
+    """Bearing lines among the candidates."""
+    least_contact: int
+    """Contact samples needed to propose lines from the contact."""
+    cluster_gap: float
+    """Gap between two contact zones, fraction of the part's longest side."""
+    hinge_band: float
+    """Contact within this fraction of the part's reach counts as being at the line."""
+    ajar_share: float
+    """A panel with more of its contact at one edge stands open."""
+    tall: float
+    """Height over width above which an upright panel is tall."""
+    tall_handle: float
+    """What remains of the direction of a handle on a tall panel."""
+    margin_cap: float
+    """Largest effect of the difference of margins."""
+    weak_margin: float
+    """What remains of the difference of margins for lids, and where a handle is clearly off centre."""
+    cap: float
+    """Largest influence of a single cue, in units of the score."""
+    bearing_bonus: float
+    """What a bearing that passes the gate adds to its line."""
+    weights: dict[str, float]
+    """Weight of each cue of `joints/panels.py`; lengths in diagonals."""
+
+
+class SlidesConfig(StageConfig):
+    """Candidate directions and cues of sliding joints."""
+
+    sweep: float
+    """Travel that is tested either way, fraction of the diagonal."""
+    useful_share: float
+    """Free travel beyond which more is no better, fraction of the part's length that way."""
+    useful_least: float
+    """The same as a fraction of the diagonal, for parts that are short that way."""
+    short_travel: float
+    """Travel on which crossings are counted, fraction of the diagonal."""
+    distinct_deg: float
+    """Directions closer than this are one [deg]."""
+    cap: float
+    """Largest influence of a single cue, in units of the score."""
+    weights: dict[str, float]
+    """Weight of each cue of `joints/slides.py`; lengths in diagonals."""
+
+
+class KindConfig(StageConfig):
+    """Log odds of sliding against turning."""
+
+    bias: float
+    """Log odds of sliding before any evidence."""
+    cap: float
+    """Largest influence of a single cue."""
+    stuck_candidates: int
+    """Turning candidates that must all be blocked before a part counts as fixed."""
+    stuck_factor: float
+    """Room up to this many times the thresholds below is looked at again, without grace."""
+    stuck_deg: float
+    """Turn below which a part counts as stuck [deg]."""
+    stuck_slide: float
+    """Travel below which a part counts as stuck, fraction of its own diagonal."""
+    weights: dict[str, float]
+    """Weight of each cue of `joints/kind.py`; positive for sliding."""
+
+
+class LimitsConfig(StageConfig):
+    """Limits from sweeps: an upper bound of the designed range."""
+
+    panel_deg: float
+    """Largest opening of a panel [deg]."""
+    drawer: float
+    """Travel of a drawer as a fraction of its own length."""
+    button: float
+    """Travel of a button as a fraction of its own thickness."""
+    least_deg: float
+    """A turning joint keeps at least this range [deg]."""
+    least_slide: float
+    """A sliding joint keeps at least this travel, fraction of the diagonal."""
+
+
+class RailsConfig(StageConfig):
+    """When the rail of a contact speaks for sliding."""
+
+    score_none: float
+    """Rail score up to which it says nothing."""
+    score_full: float
+    """Rail score from which it says all it can."""
+    lead_none: float
+    """The same for the rail's score over that of the best bearing line."""
+    lead_full: float
+    """Full where the lead is at least this."""
+    held_deg: float
+    """Free turn about a line along the rail beyond which the rail is a pin [deg]."""
+    rounded_lead: float
+    """Below this lead a pair of end parts is hinged, not sliding."""
+
+
+class JointsConfig(StageConfig):
+    """Choice of each joint's type, axis, direction and limits."""
+
+    method: Literal["geometry", "cavl"]
+    """Bearings, panels and slides, or the paper's DW-CAVL alone."""
+    samples: int
+    """Surface samples per part."""
+    alternatives: int
+    """Distinct candidates kept per type."""
+    contact_band: float
+    """Contact samples within this distance beyond the gap count as touching, fraction of the diagonal."""
+    small_full: float
+    """A part below this fraction of its parent's diagonal is small."""
+    small_none: float
+    """A part above this fraction of its parent's diagonal is not small."""
+    panel_thinness: float
+    """A panel is thinner than this fraction of its second side."""
+    upright_cosine: float
+    """A panel whose thin direction is less vertical than this is upright."""
+    spread_full: float
+    """Contact spread below this fraction of the child's half diagonal is compact."""
+    spread_none: float
+    """Contact spread above this fraction of the child's half diagonal is not compact."""
+    serial_depth: int
+    """A tree with this many joints in series is a linkage."""
+    flat_cosine: float
+    """A panel whose thin direction is more vertical than this is flat."""
+    frames: FramesConfig
+    sweep: SweepConfig
+    gate: GateConfig
+    panels: PanelsConfig
+    slides: SlidesConfig
+    kind: KindConfig
+    rails: RailsConfig
+    limits: LimitsConfig

@@ -1,0 +1,79 @@
+"""The model that is written and its picture."""
+
+from __future__ import annotations
+
+from kinematify.config.base import StageConfig
+
+
+class ModelConfig(StageConfig):
+    """Mass properties, limits and names of the model that is written."""
+
+    solid_density: float
+    """Density of the volume of a closed mesh [kg/m^3]."""
+    hull_density: float
+    """Density of the convex hull of a mesh that is open or flat [kg/m^3]."""
+    min_mass: float
+    """Smallest mass of a link [kg]."""
+    min_inertia: float
+    """Smallest principal moment of a link [kg m^2]."""
+    min_thickness: float
+    """Thinner parts get this thickness for mass and collision."""
+    min_thickness_m: float
+    """The same as a length [m]; the larger of the two counts."""
+    turn_effort: float
+    """Effort limit of joints that turn [N m]."""
+    slide_effort: float
+    """Effort limit of joints that slide [N]."""
+    turn_velocity: float
+    """Velocity limit of joints that turn [rad/s]."""
+    slide_velocity: float
+    """Velocity limit of joints that slide [m/s]."""
+    min_travel: float
+    """Smallest range between the limits [rad if it turns, else fraction of the diagonal]."""
+    max_travel: float
+    """Largest travel of a joint that slides, in each direction."""
+    max_name_length: int
+    """Longer model names are cut [characters]."""
+
+
+class PreviewConfig(StageConfig):
+    """Pictures of a model; lengths as fractions of the diagonal of what is shown."""
+
+    panel_width: int
+    """Width of one panel [pixels]."""
+    panel_height: int
+    """Height of one panel [pixels]."""
+    subsamples: int
+    """Rays per pixel side where edges are smoothed."""
+    openness_rays: int
+    """Rays per pixel for how much of the sky a point sees."""
+    openness_reach: float
+    """Surfaces beyond this distance do not darken a point."""
+    floor_cells: int
+    """Cells per side of the map of the shadow on the floor."""
+    smooth_angle: float
+    """Faces that meet at a larger angle are shaded with a sharp edge [deg]."""
+    field_of_view: float
+    """Smaller opening angle of the camera [deg]."""
+    elevation: float
+    """Height of the camera above the horizon [deg]."""
+    azimuths: int
+    """Directions around the object that are tried for the best view."""
+    probe_pixels: int
+    """Width of the small pictures that compare views [pixels]."""
+    glyph_radius: float
+    """Half the thickness of a joint arrow."""
+    hidden_glyph: float
+    """Opacity of a joint arrow behind a surface, between 0 and 1."""
+    moved_fraction: float
+    """Share of a joint's range by which it is moved."""
+    max_turn: float
+    """Joints are not turned farther than this in a picture [deg]."""
+    max_slide: float
+    """Joints are not slid farther than this in a picture."""
+    chain_joints: int
+    """With more moving joints than this, each turns less, so that a chain does not curl up."""
+    exploded: float
+    """Parts of the exploded view move away from the centre by this multiple of their distance from it."""
+    legend_entries: int
+    """Joints named below the picture; the rest is counted."""

@@ -1,0 +1,61 @@
+"""The stages up to the contact graph: what is accepted, surfaces, contacts, signed distance."""
+
+from __future__ import annotations
+
+from kinematify.config.base import StageConfig
+
+
+class AssemblyConfig(StageConfig):
+    """Limits on what is accepted as input."""
+
+    max_parts: int
+    """More parts than this are refused."""
+    max_faces: int
+    """Faces of all parts together; more are refused."""
+    max_part_faces: int
+    """A part with more faces is simplified to this number for inference (output keeps the original)."""
+    min_vertices: int
+    """A part with fewer distinct vertices is set aside (paper III-B: too few vertices)."""
+    min_extent: float
+    """A part whose largest extent is below this fraction of the assembly's diagonal is set aside."""
+    max_archive_bytes: int
+    """Size of a mesh file, and unpacked size of a ZIP [bytes]."""
+    weld: float
+    """Vertices closer than this fraction of their mesh's diagonal are merged."""
+    duplicate: float
+    """Two parts whose vertices agree within this fraction of the assembly's diagonal are the same part twice."""
+
+
+class SurfaceConfig(StageConfig):
+    """Derived geometry of a part's surface."""
+
+    crease_angle: float
+    """Faces that meet at a larger dihedral angle form a sharp edge [deg]."""
+
+
+class ContactConfig(StageConfig):
+    """Which parts touch, and where; lengths as fractions of the assembly's diagonal."""
+
+    tolerance: float
+    """Largest gap that counts as contact."""
+    band: float
+    """Samples farther from the other part than this say nothing about the joint."""
+    samples: int
+    """Surface samples per side of a contact."""
+    cluster_samples: int
+    """Surface samples per part for comparing shapes."""
+    cluster_tolerance: float
+    """Largest Chamfer distance of congruent parts, as a fraction of the part's diagonal."""
+
+
+class SdfConfig(StageConfig):
+    """Grids of signed distances (III-B)."""
+
+    resolution: int
+    """Cells along the longest side of a part's grid."""
+    margin: float
+    """Room around the part, fraction of the part's own diagonal."""
+    band_cells: float
+    """Distances are exact within this many cells of the surface, at least 2; beyond, to half a cell."""
+    cache_bytes: int
+    """Grids kept in memory [bytes]."""
