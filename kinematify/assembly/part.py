@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.spatial import ConvexHull, QhullError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -131,5 +133,24 @@ class Assembly:
 
     @cached_property
     def diagonal(self) -> float:
-        """Length of the bounding box diagonal [m]; the unit of most tolerances."""
-        return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))
+        """Smallest diagonal of an upright box around all parts [m]; the unit of most tolerances.
+
+        For an object that stands square to the world it is that of the bounding box. Unlike that, it stays the same
+        when the object is turned about z.
+        """
+        height = float(self.bounds[1, 2] - self.bounds[0, 2])
+        plan = [part.vertices[used_vertices(part.faces, len(part.vertices)), :2] for part in self.parts]
+        return math.hypot(height, _smallest_rectangle(np.concatenate(plan)))
+
+
+def _smallest_rectangle(points: FloatArray) -> float:
+    """Smallest diagonal of a rectangle around points in the plane, shape (n, 2), with a side along their hull."""
+    try:
+        corners = points[ConvexHull(points).vertices]
+    except QhullError:  # all points on one line, or as good as
+        return float(np.linalg.norm(np.ptp(points, axis=0)))
+    sides = np.roll(corners, -1, axis=0) - corners
+    along = sides / np.linalg.norm(sides, axis=1)[:, None]
+    across = along @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    widths = np.ptp(corners @ along.T, axis=0), np.ptp(corners @ across.T, axis=0)
+    return float(np.sqrt((widths[0] ** 2 + widths[1] ** 2).min()))

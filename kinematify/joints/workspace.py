@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import igl
@@ -12,7 +11,6 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
 from kinematify.geometry.sampling import sample_surface
-from kinematify.joints.frames import body_axes
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,20 +61,10 @@ class PartCache:
         self._seed = seed
         self._store: dict[tuple[str, int], Any] = {}
 
-    @cached_property
+    @property
     def diagonal(self) -> float:
-        """Diagonal of the assembly's upright box [m], turned with the object; the unit of most tolerances.
-
-        Unlike `Assembly.diagonal` it does not change when the object is turned about z.
-        """
-        indices = range(len(self.assembly.parts))
-        axes = body_axes(
-            np.concatenate([self.samples(part).normals for part in indices]),
-            np.concatenate([self.samples(part).areas for part in indices]),
-        )
-        local = [self.assembly.parts[part].vertices[self.assembly.parts[part].faces] @ axes.T for part in indices]
-        spans = np.array([[part.min(axis=(0, 1)), part.max(axis=(0, 1))] for part in local])
-        return float(np.linalg.norm(spans[:, 1].max(axis=0) - spans[:, 0].min(axis=0)))
+        """Diagonal of the assembly [m]; the unit of most tolerances."""
+        return self.assembly.diagonal
 
     def samples(self, part: int) -> SurfaceSamples:
         """Area-uniform surface samples of a part."""
