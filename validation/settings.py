@@ -48,6 +48,15 @@ class EngineSettings(StageConfig):
 class AgreementSettings(StageConfig):
     """KV6xx: agreement of engines."""
 
+    random_rows: int
+    """Quasi-random configurations beside zero, rest and the ends of every joint."""
+    end_rows: int
+    """Configurations at most for the ends of the joints; joints share them where there are more."""
+    dynamic_rows: int
+    """Configurations with mass matrix and gravity torques."""
+    dynamic_numbers: int
+    """Entries of all mass matrices together at most; large models have fewer configurations."""
+
 
 class ValidationSettings(StageConfig):
     """All families."""

@@ -1,0 +1,175 @@
+"""The configurations in which all engines are compared, and the file in which each leaves what it computed there.
+
+Every engine stage calls `agreement_configurations` (same answer everywhere), fills an `EnginePoses` and leaves it with
+`write_poses`; `validation/agreement.py` compares them. An engine's own names, orders and merged links stay inside its
+stage: what is written is in the order of the document.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.stats import qmc
+
+from kinematify.assembly.part import read_only
+from kinematify.assembly.robot import joint_values, rest_configuration
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.assembly.robot import DescribedJoint, RobotDescription
+    from kinematify.validation.settings import AgreementSettings
+
+GRAVITY = 9.81
+"""Along -z of the root link's frame [m/s^2]; every engine is set to it."""
+_UNLIMITED_TURN = np.pi
+_WIDEST_TURN = 4.0 * np.pi
+"""Wider ranges [rad] repeat the same poses."""
+_WIDEST_SLIDE = 100.0
+"""Beyond it [m] floating-point error of the pose would be taken for disagreement."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Configurations:
+    """Rows of joint values; followers have the value that their mimic rule gives them."""
+
+    links: tuple[str, ...]
+    """All links, in the order of the document."""
+    joints: tuple[str, ...]
+    """Every joint that is not fixed, followers included, in the order of the document."""
+    q: FloatArray
+    """Joint values [rad or m], shape (n, j): zero, rest, Sobol points, then the ends of every joint. Read-only."""
+    dynamic: int
+    """Mass matrices and gravity torques are computed for the first so many rows only."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "q", read_only(self.q, np.float64))
+
+    def named(self, row: int) -> dict[str, float]:
+        """Return one row as joint -> value, as a finding wants it."""
+        return dict(zip(self.joints, self.q[row].tolist(), strict=True))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EnginePoses:
+    """What one engine says of the rows of `Configurations`; the contract of `poses-ENGINE.npz`.
+
+    The base is fixed: the root link's frame is the world, gravity is `GRAVITY` along its -z. The matrices are those of
+    the tree without mimic constraints: followers are degrees of freedom of their own. What an engine cannot tell is
+    None.
+    """
+
+    links: tuple[str, ...]
+    """As in `Configurations`."""
+    joints: tuple[str, ...]
+    """As in `Configurations`."""
+    q: FloatArray
+    """As in `Configurations`, shape (n, j)."""
+    T_world_link: FloatArray
+    """Pose of every link's frame (not of its centre of mass), shape (n, L, 4, 4); NaN for links the engine lost."""
+    masses: FloatArray | None = None
+    """Mass of every link as the engine has it [kg], shape (L,); NaN for links it lost or merged into others."""
+    total_mass: float | None = None
+    """Of everything it loaded [kg]."""
+    mass_matrix: FloatArray | None = None
+    """Joint-space inertia over `joints`, shape (k, j, j), k = `Configurations.dynamic`; NaN for joints it lost."""
+    gravity: FloatArray | None = None
+    """Torques and forces at the joints that hold the model still [N m or N], shape (k, j); NaN for joints it lost.
+    A positive value pushes the joint upwards in its own coordinate (MuJoCo: `qfrc_bias` at zero velocity; Pinocchio:
+    `computeGeneralizedGravity`)."""
+    contacts: IntArray | None = None
+    """Row, link, link (smaller index first) of every pair of links that touches or overlaps, shape (c, 3), each once;
+    links are indices into `links`. Links that fixed joints join, and links without collision shapes, are left out."""
+    contact_depth: FloatArray | None = None
+    """Deepest point of each of `contacts` [m], positive where they overlap, shape (c,)."""
+
+
+def agreement_configurations(description: RobotDescription, settings: AgreementSettings, seed: int) -> Configurations:
+    """Return the same rows in every process: zero, rest, quasi-random ones, and both ends of every joint.
+
+    Args:
+        description: The tree; meshes play no part (`DeclaredModel.kinematics`).
+        settings: How many rows.
+        seed: Of the run (`ValidationSettings.seed`).
+    """
+    leaders = [joint for joint in description.joints if joint.kind != "fixed" and joint.mimic is None]
+    rest = rest_configuration(description)
+    middle = np.array([rest[joint.name] for joint in leaders])
+    lower, upper = _ends(leaders)
+    values = np.vstack(
+        [
+            np.zeros((1, len(leaders))),
+            middle[None],
+            _spread(lower, upper, settings.random_rows, seed),
+            _at_ends(middle, lower, upper, settings.end_rows),
+        ]
+    )
+    joints = tuple(joint.name for joint in description.joints if joint.kind != "fixed")
+    return Configurations(
+        links=tuple(link.name for link in description.links),
+        joints=joints,
+        q=_with_followers(description, [joint.name for joint in leaders], joints, values),
+        dynamic=min(len(values), settings.dynamic_rows, max(2, settings.dynamic_numbers // max(1, len(joints) ** 2))),
+    )
+
+
+def _ends(leaders: list[DescribedJoint]) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest value of each joint [rad or m], shape (m,) each; unlimited ones turn once."""
+    widest = np.array([_WIDEST_TURN if joint.kind.turns else _WIDEST_SLIDE for joint in leaders])
+    lower = np.array([joint.lower if np.isfinite(joint.lower) else -_UNLIMITED_TURN for joint in leaders])
+    upper = np.array([joint.upper if np.isfinite(joint.upper) else _UNLIMITED_TURN for joint in leaders])
+    return np.clip(lower, -widest, widest), np.clip(upper, -widest, widest)
+
+
+def _spread(lower: FloatArray, upper: FloatArray, rows: int, seed: int) -> FloatArray:
+    """Sobol points in the box of the limits, shape (rows, m)."""
+    if not len(lower):
+        return np.zeros((0, 0))
+    # SciPy's table of direction numbers ends at this dimension; larger models repeat its columns in another order.
+    known = min(len(lower), qmc.Sobol.MAXDIM)
+    points = qmc.Sobol(known, rng=np.random.default_rng(seed)).random_base2(max(0, (rows - 1).bit_length()))[:rows]
+    unit: FloatArray = points[:, np.arange(len(lower)) % known]
+    return lower + unit * (upper - lower)
+
+
+def _at_ends(middle: FloatArray, lower: FloatArray, upper: FloatArray, rows: int) -> FloatArray:
+    """Each joint at each end, the others at rest; several joints share a row where there are too many for `rows`."""
+    count = min(len(middle), max(1, rows // 2))
+    values = np.tile(middle, (2 * count, 1))
+    for joint in range(len(middle)):
+        values[2 * (joint % count), joint] = lower[joint]
+        values[2 * (joint % count) + 1, joint] = upper[joint]
+    return values
+
+
+def _with_followers(
+    description: RobotDescription, leaders: list[str], joints: tuple[str, ...], values: FloatArray
+) -> FloatArray:
+    rows = [joint_values(description, dict(zip(leaders, row.tolist(), strict=True))) for row in values]
+    return np.array([[row[name] for name in joints] for row in rows]).reshape(len(values), len(joints))
+
+
+def write_poses(work: Path, engine: str, poses: EnginePoses) -> None:
+    """Leave what an engine computed for the agreement checks."""
+    arrays = {name: np.asarray(value) for name, value in vars(poses).items() if value is not None}
+    with (work / f"poses-{engine}.npz").open("wb") as file:
+        np.savez(file, allow_pickle=False, **arrays)
+
+
+def read_poses(work: Path, engine: str) -> EnginePoses | None:
+    """Return what an engine left, or None where it left nothing or was cut off while writing."""
+    try:
+        with np.load(work / f"poses-{engine}.npz", allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+        return None
+    return EnginePoses(
+        links=tuple(arrays.pop("links").tolist()),
+        joints=tuple(arrays.pop("joints").tolist()),
+        total_mass=float(arrays.pop("total_mass")) if "total_mass" in arrays else None,
+        **arrays,
+    )
