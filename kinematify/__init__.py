@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kinematify.errors import KinematifyError
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline.infer import Inference, infer
+    from kinematify.pipeline import Inference, infer, write_inference
     from kinematify.topology.tree import KinematicTree
 
 __version__ = "0.1.0"
@@ -34,6 +34,7 @@ __all__ = [
     "infer",
     "load_assembly",
     "load_config",
+    "write_inference",
 ]
 
 _HOMES = {
@@ -48,6 +49,7 @@ _HOMES = {
     "infer": "kinematify.pipeline",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",
+    "write_inference": "kinematify.pipeline",
 }
 
 

@@ -17,6 +17,7 @@ from kinematify.assembly.description import forward_kinematics, read_description
 from kinematify.assembly.mesh_file import GLTF_SUFFIXES, RawMesh, merged, read_meshes
 from kinematify.assembly.names import natural_key
 from kinematify.assembly.pieces import connected_pieces, labelled_parts
+from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 
 if TYPE_CHECKING:
@@ -50,7 +51,12 @@ class _Reading:
 
 
 def load_assembly(
-    path: Path, *, config: AssemblyConfig, up: str = "auto", scale: float = 1.0, labels: Path | None = None
+    path: str | Path,
+    *,
+    config: AssemblyConfig | None = None,
+    up: str = "auto",
+    scale: float = 1.0,
+    labels: Path | None = None,
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
@@ -61,7 +67,7 @@ def load_assembly(
 
     Args:
         path: File or folder.
-        config: Limits and tolerances.
+        config: Limits and tolerances; those of the default configuration if absent.
         up: ``auto`` (y for glTF as its standard says, z for all else), ``y`` or ``z``; y-up input is turned to z up.
         scale: Metres per unit of the input.
         labels: Labels per triangle of a single mesh.
@@ -71,6 +77,7 @@ def load_assembly(
         DescriptionError: A URDF cannot be read.
     """
     path = Path(path)
+    config = config or load_config().assembly
     _check_arguments(up, scale)
     given = _given(path, _Reading(up=up, labels=labels, config=config))
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))

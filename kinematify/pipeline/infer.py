@@ -11,6 +11,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
@@ -66,19 +67,20 @@ class Inference:
 
 
 def infer(
-    assembly: Assembly, *, config: Config, base: str | None = None, progress: Progress | None = None
+    assembly: Assembly, *, config: Config | None = None, base: str | None = None, progress: Progress | None = None
 ) -> Inference:
     """Infer the kinematic tree and all joints of an assembly (paper, Algorithm 1).
 
     Args:
         assembly: Rigid parts in one configuration, world frame, z up, metres.
-        config: All stages; `config.seed` makes the answer reproducible.
+        config: All stages, the default ones if absent; `config.seed` makes the answer reproducible.
         base: Name of the part that is the base link, where it is known.
         progress: Called with the name of each stage and the share of the work done before it, in [0, 1].
 
     Raises:
         InputError: `base` is no part of the assembly.
     """
+    config = config or load_config()
     clock = _StageClock(progress or (lambda stage, share: None))
     root = _base_index(assembly, base)
     with clock.stage("contacts", 0.0):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import platform
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
@@ -15,7 +16,6 @@ from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from kinematify.contact.graph import ContactEdge
     from kinematify.joints.bearing import BearingLine
@@ -27,7 +27,7 @@ SCHEMA = 1
 _PACKAGES = ("numpy", "scipy", "torch", "trimesh", "libigl", "python-fcl", "embreex")
 
 
-def write_inference(inference: Inference, out: Path, *, overwrite: bool = False, preview: bool = True) -> None:
+def write_inference(inference: Inference, out: str | Path, *, overwrite: bool = False, preview: bool = True) -> None:
     """Write the model folder: ``model.urdf``, ``meshes/``, ``inference.json`` and ``preview.png``.
 
     Args:
@@ -47,7 +47,7 @@ def write_inference(inference: Inference, out: Path, *, overwrite: bool = False,
         if preview:
             render_preview(inference.model, folder / "preview.png", inference.config.preview)
 
-    write_model_folder(out, write, overwrite=overwrite)
+    write_model_folder(Path(out), write, overwrite=overwrite)
 
 
 def inference_record(inference: Inference) -> dict[str, Any]:
