@@ -6,26 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.bearings import ALONG_X, at, barrel, fork, room
-from tests.known import (
-    KnownJoint,
-    KnownObject,
-    ball,
-    bore,
-    box,
-    cylinder,
-    fixed,
-    hull,
-    known_object,
-    moved,
-    rod,
-    rotation,
-    sliding,
-    tray,
-    turning,
-    union,
-    varied,
-)
+from kinematify.sources.procedural.pieces.bearings import ALONG_X, at, barrel, fork, room
+from kinematify.sources.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
+from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, rotation, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold

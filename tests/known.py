@@ -1,18 +1,15 @@
-"""Objects whose joints are known, and the solids that they are built from.
+"""Objects whose joints are known.
 
 Lengths are metres, angles radians, coordinates the world frame with z up; every joint stands at zero in the
-configuration that the parts are given in. Cylinders are polygons, so a bore is widened until even its flats
-keep the stated clearance: a shaft turns in it without touching at any angle.
+configuration that the parts are given in. The solids are those of `kinematify.sources.procedural`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from manifold3d import Manifold, OpType
 
 from kinematify.assembly.part import Assembly, Part, read_only
 from kinematify.joints.candidate import JointType
@@ -20,12 +17,10 @@ from kinematify.joints.candidate import JointType
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from manifold3d import Manifold
+
     from kinematify.assembly.part import FloatArray
-
-SEGMENTS = 48
-"""Sides of the polygon that stands for a circle."""
-
-Point = Sequence[float]
+    from kinematify.sources.procedural.solids import Point
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -187,55 +182,3 @@ def varied(seed: int | None, spread: float = 0.12) -> Callable[[float], float]:
     """Return a function that scales a size at random by up to `spread`; without a seed sizes stay as they are."""
     rng = np.random.default_rng(seed)
     return lambda size: size if seed is None else size * rng.uniform(1.0 - spread, 1.0 + spread)
-
-
-def off(point: Point, x: float, y: float, z: float) -> FloatArray:
-    """Return the point moved by (x, y, z)."""
-    return np.add(point, (x, y, z))
-
-
-def box(lower: Point, upper: Point) -> Manifold:
-    """Return the box between two corners."""
-    return Manifold.cube(np.subtract(upper, lower)).translate(lower)
-
-
-def cylinder(radius: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
-    """Return the cylinder whose circular faces are centred at `start` and `end`."""
-    direction = np.subtract(end, start, dtype=np.float64)
-    length = float(np.linalg.norm(direction))
-    direction /= length
-    side = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
-    side /= np.linalg.norm(side)
-    frame = np.column_stack([side, np.cross(direction, side), direction, np.asarray(start, dtype=np.float64)])
-    return Manifold.cylinder(length, radius, radius, segments).transform(frame)
-
-
-def bore(radius: float, clearance: float, start: Point, end: Point, *, segments: int = SEGMENTS) -> Manifold:
-    """Return what to take away so that a shaft of `radius` turns freely with `clearance` at the tightest place."""
-    return cylinder((radius + clearance) / np.cos(np.pi / segments), start, end, segments=segments)
-
-
-def rod(radius: float, start: Point, end: Point) -> Manifold:
-    """Return a cylinder with round ends."""
-    return cylinder(radius, start, end, segments=32) + ball(radius, start) + ball(radius, end)
-
-
-def ball(radius: float, centre: Point, *, segments: int = 32) -> Manifold:
-    """Return a sphere."""
-    return Manifold.sphere(radius, segments).translate(centre)
-
-
-def union(*solids: Manifold) -> Manifold:
-    """Return the union of all solids."""
-    return Manifold.batch_boolean(list(solids), OpType.Add)
-
-
-def hull(*solids: Manifold) -> Manifold:
-    """Return the convex hull of all solids."""
-    return Manifold.batch_hull(list(solids))
-
-
-def tray(lower: Point, upper: Point, wall: float) -> Manifold:
-    """Return a box that is open at the top."""
-    inner_upper = (upper[0] - wall, upper[1] - wall, upper[2] + wall)
-    return box(lower, upper) - box(np.add(lower, wall), inner_upper)

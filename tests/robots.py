@@ -6,23 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.bearings import at, fork, room, stub
-from tests.known import (
-    KnownJoint,
-    KnownObject,
-    bore,
-    box,
-    cylinder,
-    known_object,
-    moved,
-    off,
-    rod,
-    rotation,
-    sliding,
-    turning,
-    union,
-    varied,
-)
+from kinematify.sources.procedural.pieces.bearings import at, fork, room, stub
+from kinematify.sources.procedural.solids import bore, box, cylinder, off, rod, union
+from tests.known import KnownJoint, KnownObject, known_object, moved, rotation, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold

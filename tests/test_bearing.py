@@ -21,7 +21,8 @@ from kinematify.joints.bearing_fit import across_axis, circle_rows, moved_line, 
 from kinematify.joints.bearing_proposals import normal_pair_lines
 from kinematify.joints.bearing_scores import circle_support, line_support, surface_support
 from kinematify.joints.line import Line, Lines, join
-from tests.known import bore, box, cylinder, known_object, posed, rotation, shuffled, turning
+from kinematify.sources.procedural.solids import bore, box, cylinder
+from tests.known import known_object, posed, rotation, shuffled, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:

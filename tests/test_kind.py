@@ -9,8 +9,9 @@ from kinematify.joints.candidate import JointType
 from kinematify.joints.kind import Siblings, decide_kind
 from kinematify.joints.panels import rank_turns
 from kinematify.joints.slides import rank_slides
+from kinematify.sources.procedural.solids import box
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
-from tests.known import box, known_object, sliding
+from tests.known import known_object, sliding
 from tests.objects import BUILDERS
 
 

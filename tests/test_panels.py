@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from kinematify.joints.panels import propose_lines, rank_turns
+from kinematify.sources.procedural.solids import box
 from tests.joint_scenes import CONFIG, scene_of
-from tests.known import box, known_object, turning
+from tests.known import known_object, turning
 from tests.objects import BUILDERS
 
 

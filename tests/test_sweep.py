@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from kinematify.joints.sweep import Sweep, moving_points, sweep_slides, sweep_turns
+from kinematify.sources.procedural.solids import box
 from tests.joint_scenes import CONFIG, scene_of
-from tests.known import box, known_object, sliding
+from tests.known import known_object, sliding
 from tests.objects import BUILDERS
 
 SWEEP = CONFIG.joints.sweep

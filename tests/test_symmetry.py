@@ -11,7 +11,8 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.symmetry import aligned_chamfer, find_clusters
 from kinematify.geometry.surface import part_surfaces
-from tests.known import box, cylinder, rotation, union
+from kinematify.sources.procedural.solids import box, cylinder, union
+from tests.known import rotation
 
 CONFIG = load_config()
 MIRROR = np.diag([1.0, -1.0, 1.0])

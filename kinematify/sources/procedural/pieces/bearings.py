@@ -1,4 +1,4 @@
-"""Pairs of solids that let one part turn on another: pin hinges, forks and flanged stubs."""
+"""Pairs of solids that let one part turn on another: barrel hinges, forks and flanged stubs."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tests.known import bore, box, cylinder, hull, union
+from kinematify.sources.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.assembly.part import FloatArray
-    from tests.known import Point
+    from kinematify.sources.procedural.solids import Point
 
 Rectangle = tuple[float, float, float, float]
 """Lower x, upper x, lower y, upper y in a cross-section."""

@@ -1,0 +1,1 @@
+"""Text or a picture becomes an assembly of rigid parts."""

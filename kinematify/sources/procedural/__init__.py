@@ -1,0 +1,1 @@
+"""Objects built from parameters, with joints that are known exactly."""

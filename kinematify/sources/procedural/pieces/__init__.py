@@ -1,0 +1,1 @@
+"""Pieces that many families share: hinges, bearings, handles, carcasses."""
