@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,7 @@ from kinematify.joints.slides import rank_slides
 from kinematify.joints.workspace import PartCache
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import Assembly, FloatArray
     from kinematify.config import JointsConfig
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from kinematify.joints.bearing import EdgeBearing
     from kinematify.joints.frames import BoxFrame
     from kinematify.joints.kind import KindDecision
+    from kinematify.joints.line import Line
     from kinematify.joints.panels import RankedTurns
     from kinematify.joints.rooted import RootedTree
     from kinematify.joints.scene import JointScene
@@ -65,13 +67,8 @@ def _estimate(
     *,
     config: JointsConfig,
 ) -> JointEstimate:
-    scene = joint_scene(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
-    twins = leaf_twins(cache.graph, tree, edge)
-    siblings = describe_twins(scene, tree, frames, twins)
-    turns = rank_turns(scene, config)
-    grips = _twin_directions(scene, frames, twins) if siblings.gripping else np.empty((0, 3))
-    slides = rank_slides(scene, grips, config)
-    decision = decide_kind(scene, siblings, turns, slides, config)
+    weighed = weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
+    scene, turns, slides, decision = weighed.scene, weighed.turns, weighed.slides, weighed.decision
     axis, pivot = _chosen_line(scene, decision.kind, turns, slides)
     found = find_range(scene, decision.kind, axis, pivot, config)
     return JointEstimate(
@@ -94,6 +91,48 @@ def _estimate(
             "free_backward": found.free_backward,
         },
     )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WeighedJoints:
+    """Every joint that one tree edge may have, weighed, before one is chosen."""
+
+    scene: JointScene
+    turns: RankedTurns
+    slides: RankedSlides
+    decision: KindDecision
+
+
+def weigh_joints(
+    cache: PartCache,
+    tree: RootedTree,
+    frames: Mapping[int, BoxFrame],
+    edge: tuple[int, int],
+    bearing: EdgeBearing | None,
+    *,
+    config: JointsConfig,
+    given: Sequence[Line] = (),
+) -> WeighedJoints:
+    """Rank all turns and slides of the tree edge (parent, child) and weigh the types against each other.
+
+    Args:
+        cache: Samples and scenes of the parts.
+        tree: Parent of every part.
+        frames: `part_frames` of the tree.
+        edge: Parent and child.
+        bearing: Of their contact, if they touch.
+        config: Weights and thresholds.
+        given: Lines to rank beside the proposals, as turns about them and as slides along them. They have no say in
+            the type.
+    """
+    scene = joint_scene(cache, tree, frames, edge, bearing, config=config)
+    twins = leaf_twins(cache.graph, tree, edge)
+    siblings = describe_twins(scene, tree, frames, twins)
+    turns = rank_turns(scene, config, given)
+    grips = _twin_directions(scene, frames, twins) if siblings.gripping else np.empty((0, 3))
+    slides = rank_slides(scene, grips, config, [line.axis for line in given])
+    decision = decide_kind(scene, siblings, turns.proposed, slides.proposed, config)
+    return WeighedJoints(scene=scene, turns=turns, slides=slides, decision=decision)
 
 
 # ---- twins ---------------------------------------------------------------------------------------------------------

@@ -16,14 +16,18 @@ from kinematify.joints.frames import UP
 from kinematify.joints.sweep import moving_points, sweep_turns
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
+    from kinematify.joints.line import Line
     from kinematify.joints.scene import JointScene
     from kinematify.joints.sweep import Sweep
 
 CORNER, HALF_WAY, CENTRE, OTHER = range(4)
+
+GIVEN = "given"
+"""Source of candidates that were not proposed but given."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,10 +60,32 @@ class RankedTurns:
     outward: FloatArray
     """+1 where turning about + moves the part out of the body, -1 where inwards, in between undecided, shape (c,)."""
 
+    @property
+    def proposed(self) -> RankedTurns:
+        """Without those that were given."""
+        return self.subset(np.flatnonzero(np.array(self.lines.sources) != GIVEN))
 
-def rank_turns(scene: JointScene, config: JointsConfig) -> RankedTurns:
-    """Propose the lines about which the child may turn and rank them."""
-    lines = propose_lines(scene, config)
+    def subset(self, index: IntArray) -> RankedTurns:
+        """The candidates at these positions, in this order."""
+        return RankedTurns(
+            lines=_reorder(self.lines, index),
+            scores=self.scores[index],
+            cues={name: value[index] for name, value in self.cues.items()},
+            free=self.free[index],
+            free_parent=self.free_parent[index],
+            outward=self.outward[index],
+        )
+
+
+def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> RankedTurns:
+    """Propose the lines about which the child may turn and rank them.
+
+    Args:
+        scene: The pair.
+        config: Weights and sweeps.
+        given: Lines to rank beside the proposals, from elsewhere; their source is `GIVEN`.
+    """
+    lines = propose_lines(scene, config, given)
     points = moving_points(scene.cache, scene.child, config.sweep)
     limit = np.radians(config.panels.sweep_deg)
     with_parent = sweep_turns(
@@ -85,15 +111,15 @@ def rank_turns(scene: JointScene, config: JointsConfig) -> RankedTurns:
     )
     if scene.gated:
         scores = scores + config.panels.bearing_bonus * np.array([source == "bearing" for source in lines.sources])
-    order = np.argsort(-scores, kind="stable")
-    return RankedTurns(
-        lines=_reorder(lines, order),
-        scores=scores[order],
-        cues={name: value[order] for name, value in cues.items()},
-        free=everything.free(config.sweep.share)[order],
-        free_parent=with_parent.free(config.sweep.share)[order],
-        outward=outward[order],
+    ranked = RankedTurns(
+        lines=lines,
+        scores=scores,
+        cues=cues,
+        free=everything.free(config.sweep.share),
+        free_parent=with_parent.free(config.sweep.share),
+        outward=outward,
     )
+    return ranked.subset(np.argsort(-scores, kind="stable"))
 
 
 def _reorder(lines: Lines, order: IntArray) -> Lines:
@@ -108,8 +134,8 @@ def _reorder(lines: Lines, order: IntArray) -> Lines:
 # ---- candidates ----------------------------------------------------------------------------------------------------
 
 
-def propose_lines(scene: JointScene, config: JointsConfig) -> Lines:
-    """Bearing lines, lines through the contact, and nine lines per direction of the slab's box."""
+def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> Lines:
+    """Bearing lines, lines through the contact, nine lines per direction of the slab's box, and those given."""
     found: list[tuple[FloatArray, FloatArray, int, str]] = []
     if scene.bearing is not None:
         found += [(line.axis, line.pivot, OTHER, "bearing") for line in scene.bearing.lines[:1] if scene.gated]
@@ -119,6 +145,7 @@ def propose_lines(scene: JointScene, config: JointsConfig) -> Lines:
         ]
     found += _contact_lines(scene, config)
     found += _box_lines(scene)
+    found += [(line.axis, line.point, OTHER, GIVEN) for line in given]
     anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
     axes = np.array([axis for axis, _, _, _ in found])
     pivots = np.array([pivot for _, pivot, _, _ in found])

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.frames import UP
+from kinematify.joints.panels import GIVEN
 from kinematify.joints.sweep import moving_points, sweep_slides
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
     from kinematify.joints.scene import JointScene
     from kinematify.joints.sweep import Sweep
@@ -36,16 +37,37 @@ class RankedSlides:
     free_parent: FloatArray
     """The same against the parent alone, shape (c, 2)."""
 
+    @property
+    def proposed(self) -> RankedSlides:
+        """Without those that were given."""
+        return self.subset(np.flatnonzero(np.array(self.sources) != GIVEN))
 
-def rank_slides(scene: JointScene, twins: FloatArray, config: JointsConfig) -> RankedSlides:
+    def subset(self, index: IntArray) -> RankedSlides:
+        """The candidates at these positions, in this order."""
+        return RankedSlides(
+            axes=self.axes[index],
+            sources=tuple(self.sources[i] for i in index),
+            scores=self.scores[index],
+            cues={name: value[index] for name, value in self.cues.items()},
+            free=self.free[index],
+            free_parent=self.free_parent[index],
+        )
+
+
+def rank_slides(
+    scene: JointScene, twins: FloatArray, config: JointsConfig, given: Sequence[FloatArray] = ()
+) -> RankedSlides:
     """Propose the directions along which the child may slide and rank them.
 
     Args:
         scene: The pair.
         twins: Unit directions towards congruent leaf siblings, shape (k, 3).
         config: Weights and sweeps.
+        given: Unit directions (3,) to rank beside the proposals, from elsewhere; their source is `panels.GIVEN`.
     """
     axes, sources = _directions(scene, twins, config)
+    axes = np.concatenate([axes, np.reshape(given, (-1, 3))])
+    sources += (GIVEN,) * len(given)
     points = moving_points(scene.cache, scene.child, config.sweep)
     limit = config.slides.sweep * scene.diagonal
     with_parent = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=limit, config=config.sweep)
@@ -61,15 +83,15 @@ def rank_slides(scene: JointScene, twins: FloatArray, config: JointsConfig) -> R
         (np.clip(weights[name] * value, -config.slides.cap, config.slides.cap) for name, value in cues.items()),
         start=np.zeros(len(axes)),
     )
-    order = np.argsort(-scores, kind="stable")
-    return RankedSlides(
-        axes=axes[order],
-        sources=tuple(sources[i] for i in order),
-        scores=scores[order],
-        cues={name: value[order] for name, value in cues.items()},
-        free=everything.free(config.sweep.share)[order] / scene.diagonal,
-        free_parent=with_parent.free(config.sweep.share)[order] / scene.diagonal,
+    ranked = RankedSlides(
+        axes=axes,
+        sources=sources,
+        scores=scores,
+        cues=cues,
+        free=everything.free(config.sweep.share) / scene.diagonal,
+        free_parent=with_parent.free(config.sweep.share) / scene.diagonal,
     )
+    return ranked.subset(np.argsort(-scores, kind="stable"))
 
 
 def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> tuple[FloatArray, tuple[str, ...]]:
