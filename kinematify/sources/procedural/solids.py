@@ -6,19 +6,20 @@ clearance: a shaft turns in it without touching at any angle.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from manifold3d import Manifold, OpType
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.assembly.part import FloatArray
 
 SEGMENTS = 48
 """Sides of the polygon that stands for a circle."""
 
-Point = Sequence[float]
+Point: TypeAlias = "Sequence[float] | FloatArray"
 """x, y, z [m]."""
 
 

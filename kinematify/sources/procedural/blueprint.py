@@ -1,0 +1,125 @@
+"""An object with exact joints: bodies in the configuration that they were built in, and how each of them moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.part import Assembly, Part, read_only
+from kinematify.assembly.robot import rotation_about
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """One rigid part with what it is made of."""
+
+    part: Part
+    material: str
+    """E.g. ``wood``, ``steel``, ``plastic``; gives the density."""
+    color: tuple[float, float, float]
+    """Red, green, blue in [0, 1]."""
+
+    @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.part.name
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BlueprintJoint:
+    """The exact joint between two bodies; world frame, zero is the configuration of the bodies."""
+
+    parent: str
+    child: str
+    kind: JointType
+    axis: FloatArray
+    """Unit direction, shape (3,); positive motion opens, by the right hand rule or along it. Read-only."""
+    pivot: FloatArray
+    """A point on the axis [m], shape (3,). Read-only."""
+    lower: float
+    """[rad or m]; -inf for continuous."""
+    upper: float
+    """[rad or m]; +inf for continuous."""
+
+    def __post_init__(self) -> None:
+        axis = np.asarray(self.axis, dtype=np.float64)
+        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
+        object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
+
+    def motion(self, value: float) -> FloatArray:
+        """Return the world transform, shape (4, 4), of what the child carries when the joint moves by `value`."""
+        transform = np.eye(4)
+        if self.kind is JointType.PRISMATIC:
+            transform[:3, 3] = value * self.axis
+        elif self.kind.turns:
+            transform[:3, :3] = rotation_about(self.axis, value)
+            transform[:3, 3] = self.pivot - transform[:3, :3] @ self.pivot
+        return transform
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Blueprint:
+    """An articulated object; the first body is the base link."""
+
+    name: str
+    family: str
+    bodies: tuple[Body, ...]
+    joints: tuple[BlueprintJoint, ...]
+    """One per body but the first, parents before children."""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    """What it was built with, defaults and drawn values included."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parameters", MappingProxyType(dict(self.parameters)))
+
+    @cached_property
+    def joint_above(self) -> dict[str, BlueprintJoint]:
+        """Joint that carries a body, keyed by the body's name."""
+        return {joint.child: joint for joint in self.joints}
+
+    @property
+    def root(self) -> str:
+        """Name of the base link."""
+        return self.bodies[0].name
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """What an inference is given: the parts alone."""
+        return Assembly(parts=tuple(body.part for body in self.bodies), source=self.name)
+
+    def moved(self, values: Mapping[str, float]) -> Blueprint:
+        """Move the joints; the new configuration is the zero of the result.
+
+        Args:
+            values: Child body -> joint value [rad or m]; the others stay.
+        """
+        T_new_old = {self.root: np.eye(4)}
+        joints = []
+        for joint in self.joints:
+            above, value = T_new_old[joint.parent], values.get(joint.child, 0.0)
+            T_new_old[joint.child] = above @ joint.motion(value)
+            joints.append(
+                replace(
+                    joint,
+                    axis=above[:3, :3] @ joint.axis,
+                    pivot=above[:3, :3] @ joint.pivot + above[:3, 3],
+                    lower=joint.lower - value,
+                    upper=joint.upper - value,
+                )
+            )
+        bodies = tuple(replace(body, part=_placed(body.part, T_new_old[body.name])) for body in self.bodies)
+        return replace(self, bodies=bodies, joints=tuple(joints))
+
+
+def _placed(part: Part, transform: FloatArray) -> Part:
+    return Part(name=part.name, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3], faces=part.faces)

@@ -1,0 +1,121 @@
+"""Cabinets, chests, wardrobes and desks' pedestals: any grid of doors, drawers and open shelves."""
+
+from __future__ import annotations
+
+from itertools import count
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.family import Family, Parameter
+from kinematify.sources.procedural.layout import parse_layout
+from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, carcass
+from kinematify.sources.procedural.pieces.handles import HANDLES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.sources.procedural.family import Values
+    from kinematify.sources.procedural.layout import Cell
+    from kinematify.sources.procedural.workshop import Workshop
+
+
+def _build(values: Values, workshop: Workshop) -> None:
+    cells = parse_layout(values.choice("layout") or _default_layout(values.count("doors"), values.count("drawers")))
+    openings = [_opening(cell, values) for cell in cells]
+    behind = [opening for cell, opening in zip(cells, openings, strict=True) if cell.kind != "panel"]
+    size = (values.number("width"), values.number("height"), values.number("depth"))
+    workshop.body("body", carcass(*size, behind))
+    fitting = Fitting(clearance=values.number("clearance"), grip=values.choice("handle"), rest=values.number("open"))
+    names = {kind: count(1) for kind in ("door", "drawer")}
+    for cell, opening in zip(cells, openings, strict=True):
+        if cell.kind == "door":
+            side = _side(cells, cell)
+            add_door(
+                workshop,
+                f"door_{next(names['door'])}",
+                "body",
+                opening,
+                fitting,
+                side=side,
+                outermost=cell.left == 0.0 if side == "left" else cell.right > 1.0 - 1e-9,
+                hinge=values.choice("hinge"),
+            )
+        elif cell.kind == "drawer":
+            add_drawer(workshop, f"drawer_{next(names['drawer'])}", "body", opening, fitting)
+
+
+def _default_layout(doors: int, drawers: int) -> str:
+    """Doors side by side above stacked drawers."""
+    rows = [f"{number}*{kind}" for number, kind in ((doors, "door"), (drawers, "drawer")) if number]
+    return " / ".join(rows) or "shelf"
+
+
+def _opening(cell: Cell, values: Values) -> Opening:
+    width, height = values.number("width"), values.number("height")
+    return Opening(
+        left=(cell.left - 0.5) * width,
+        right=(cell.right - 0.5) * width,
+        bottom=cell.bottom * height,
+        top=cell.top * height,
+        depth=values.number("depth"),
+        wall=values.number("wall"),
+    )
+
+
+def _side(cells: Sequence[Cell], cell: Cell) -> str:
+    """Pairs of doors open from their middle; a single door has its hinge at the nearer outer side, else left."""
+    beside = [
+        other for other in cells
+        if other.kind == "door" and other.bottom == cell.bottom and other.top == cell.top and other.right <= cell.left
+    ]  # fmt: skip
+    if len(beside) % 2 == 1:
+        return "right"
+    alone = cell.right > 1.0 - 1e-9 and cell.left > 0.0
+    return "right" if alone else "left"
+
+
+FAMILY = Family(
+    name="cabinet",
+    title="cabinet or chest",
+    words=(
+        "cabinet",
+        "cupboard",
+        "wardrobe",
+        "closet",
+        "chest",
+        "chest of drawers",
+        "dresser",
+        "sideboard",
+        "nightstand",
+        "bedside table",
+        "drawer unit",
+        "commode",
+        "locker",
+        "bookcase",
+        "shelf",
+        "pantry",
+        "credenza",
+        "armoire",
+    ),
+    material="wood",
+    parameters=(
+        Parameter(name="width", default=0.8, unit="m", bounds=(0.1, 5.0), usual=(0.4, 1.2), help="Outer width."),
+        Parameter(name="height", default=0.9, unit="m", bounds=(0.1, 4.0), usual=(0.5, 1.8), help="Outer height."),
+        Parameter(name="depth", default=0.5, unit="m", bounds=(0.1, 2.0), usual=(0.3, 0.6), help="Outer depth."),
+        Parameter(
+            name="wall",
+            default=0.018,
+            unit="m",
+            bounds=(0.004, 0.05),
+            usual=(0.012, 0.025),
+            help="Of the boards.",
+        ),
+        Parameter(name="doors", default=2, bounds=(0, 12), usual=(0, 3), help="Doors, side by side."),
+        Parameter(name="drawers", default=3, bounds=(0, 12), usual=(1, 4), help="Drawers, stacked below the doors."),
+        Parameter(
+            name="layout", default="", help="Any other arrangement, e.g. '(3*drawer) | door'; overrides the counts."
+        ),
+        Parameter(name="handle", default="bar", choices=HANDLES, help="What doors and drawers are pulled by."),
+        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+    ),
+    build=_build,
+)

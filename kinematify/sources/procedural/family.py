@@ -1,0 +1,173 @@
+"""A family of objects: its parameters with their ranges, and the function that builds one."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.sources.procedural.materials import COLORS, MATERIALS
+from kinematify.sources.procedural.workshop import Workshop
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from kinematify.sources.procedural.blueprint import Blueprint
+
+Value = float | int | str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """One thing that may be asked for."""
+
+    name: str
+    default: Value
+    """Its type is the parameter's: float with a unit, int for a count, str for a choice."""
+    help: str
+    unit: str = ""
+    """``m``, ``rad`` or empty."""
+    bounds: tuple[float, float] | None = None
+    """Values that can be built, both ends included."""
+    usual: tuple[float, float] | None = None
+    """Values that a seed draws from; the default alone if absent."""
+    choices: tuple[str, ...] = ()
+    """Of a choice; a seed draws from all of them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Family:
+    """A kind of object that can be built."""
+
+    name: str
+    """One word, as in ``--category``."""
+    title: str
+    """A few words for lists."""
+    words: tuple[str, ...]
+    """How people call it, singular."""
+    parameters: tuple[Parameter, ...]
+    """Besides those that every family has, see `COMMON`."""
+    build: Callable[[Values, Workshop], None]
+    """Adds bodies and joints to the workshop."""
+    material: str = "wood"
+    """Of its base, if nothing is asked for."""
+
+    @property
+    def all_parameters(self) -> tuple[Parameter, ...]:
+        """Its own and the common ones."""
+        return (*self.parameters, *COMMON)
+
+
+class Values:
+    """Parameters with their values, as a family reads them."""
+
+    def __init__(self, values: Mapping[str, Value], rng: np.random.Generator) -> None:
+        """Keep the values; `rng` is for decoration that has no parameter."""
+        self._values = dict(values)
+        self.rng = rng
+
+    def number(self, name: str) -> float:
+        """A length [m] or an angle [rad]."""
+        return float(self._values[name])
+
+    def count(self, name: str) -> int:
+        """How many."""
+        return int(self._values[name])
+
+    def choice(self, name: str) -> str:
+        """One of the choices."""
+        return str(self._values[name])
+
+
+COMMON = (
+    Parameter(name="open", default=0.0, bounds=(0.0, 1.0), help="Share of the way that moving parts stand open."),
+    Parameter(
+        name="clearance",
+        default=0.001,
+        unit="m",
+        bounds=(0.0, 0.003),
+        usual=(0.0002, 0.003),
+        help="Gap between parts that move past each other.",
+    ),
+    Parameter(name="material", default="", choices=("", *MATERIALS), help="What the base is made of."),
+    Parameter(name="color", default="", choices=("", *COLORS), help="Colour of what names no material of its own."),
+)
+"""Parameters of every family."""
+
+_NOT_DRAWN = ("material", "color")
+
+
+def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None, name: str = "") -> Blueprint:
+    """Build an object of a family.
+
+    Args:
+        family: What to build.
+        given: Parameter -> value in metres, radians, counts or words; others take their default, or what the seed
+            draws from their usual range.
+        seed: Draws what is not given; none takes the defaults.
+        name: Of the object; the family's if empty.
+
+    Raises:
+        InputError: A parameter is unknown or out of its bounds; the message names the nearest or the bounds.
+    """
+    rng = np.random.default_rng(seed)
+    checked = {key: _checked(family, key, value) for key, value in given.items()}
+    values = {p.name: _drawn(p, rng) if seed is not None else p.default for p in family.all_parameters}
+    values.update(checked)
+    workshop = Workshop(
+        family.name, material=str(values["material"]) or family.material, color=str(values["color"]) or None
+    )
+    family.build(Values(values, rng), workshop)
+    return workshop.finish(name or family.name, {"seed": seed, **values})
+
+
+def _drawn(parameter: Parameter, rng: np.random.Generator) -> Value:
+    """Draw a value; always the same number of draws, so that giving one parameter does not change the others."""
+    share = float(rng.random())
+    if parameter.choices and parameter.name not in _NOT_DRAWN:
+        return parameter.choices[int(share * len(parameter.choices))]
+    if parameter.usual is None:
+        return parameter.default
+    low, high = parameter.usual
+    if isinstance(parameter.default, int):
+        return int(low) + int(share * (int(high) - int(low) + 1))
+    return low + share * (high - low)
+
+
+def _checked(family: Family, name: str, value: Any) -> Value:
+    parameter = next((p for p in family.all_parameters if p.name == name), None)
+    if parameter is None:
+        known = [p.name for p in family.all_parameters]
+        near = difflib.get_close_matches(name, known, n=1)
+        hint = f" Did you mean {near[0]}?" if near else ""
+        raise InputError(f"A {family.title} has no parameter {name!r}.{hint} It has {', '.join(known)}.")
+    if isinstance(parameter.default, str):
+        return _checked_choice(family, parameter, str(value))
+    return _checked_number(family, parameter, value)
+
+
+def _checked_choice(family: Family, parameter: Parameter, value: str) -> str:
+    if parameter.choices and value not in parameter.choices:
+        choices = ", ".join(choice for choice in parameter.choices if choice)
+        raise InputError(f"The {parameter.name} of a {family.title} cannot be {value!r}. Choose one of {choices}.")
+    return value
+
+
+def _checked_number(family: Family, parameter: Parameter, value: Any) -> float | int:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    low, high = parameter.bounds or (-math.inf, math.inf)
+    whole = isinstance(parameter.default, int)
+    if not low <= number <= high or (whole and number != int(number)):
+        kind = "a whole number" if whole else "a number"
+        unit = f" {parameter.unit}" if parameter.unit else ""
+        raise InputError(
+            f"The {parameter.name} of a {family.title} is {value!r}, but must be {kind} from {low:g} to {high:g}{unit}."
+        )
+    return int(number) if whole else number

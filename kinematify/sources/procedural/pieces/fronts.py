@@ -1,0 +1,156 @@
+"""Furniture with an open front, and the doors and drawers that close it. Fronts look along -y, up is z."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.pieces.bearings import barrel
+from kinematify.sources.procedural.pieces.handles import handle
+from kinematify.sources.procedural.solids import box, tray, union
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from manifold3d import Manifold
+
+    from kinematify.sources.procedural.workshop import Workshop
+
+_REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
+_BARREL = (0.004, 0.06)  # radius and length of a barrel hinge [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Opening:
+    """One field of a front, its outer border in the plane y = 0 of the carcass's front."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+    depth: float
+    """Of the body behind it [m]."""
+    wall: float
+    """Thickness of the body's walls and of the panel [m]."""
+
+    @property
+    def width(self) -> float:
+        """[m]."""
+        return self.right - self.left
+
+    @property
+    def height(self) -> float:
+        """[m]."""
+        return self.top - self.bottom
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fitting:
+    """How fronts are mounted."""
+
+    clearance: float
+    """Gap between parts that move past each other [m]."""
+    grip: str
+    """Kind of handle."""
+    rest: float
+    """Share of the way that they stand open, in [0, 1]."""
+
+
+def carcass(width: float, height: float, depth: float, openings: Sequence[Opening]) -> Manifold:
+    """Return a body, its front in y = 0 and its floor in z = 0, with a room behind every opening."""
+    body = box((-0.5 * width, 0.0, 0.0), (0.5 * width, depth, height))
+    rooms = [
+        box(
+            (o.left + 0.5 * o.wall, -o.wall, o.bottom + 0.5 * o.wall),
+            (o.right - 0.5 * o.wall, depth - o.wall, o.top - 0.5 * o.wall),
+        )
+        for o in openings
+    ]
+    return body - union(*rooms)
+
+
+def panel(opening: Opening, clearance: float) -> Manifold:
+    """Return the board that covers an opening from outside."""
+    gap = 0.5 * (clearance + _REVEAL)
+    return box(
+        (opening.left + gap, -clearance - opening.wall, opening.bottom + gap),
+        (opening.right - gap, -clearance, opening.top - gap),
+    )
+
+
+def add_drawer(workshop: Workshop, name: str, parent: str, opening: Opening, fitting: Fitting) -> None:
+    """Add a drawer that runs in the room behind an opening and comes out along -y."""
+    clearance = fitting.clearance
+    edge, wall = 0.5 * opening.wall + clearance, min(0.012, 0.1 * opening.width)
+    inner = tray(
+        (opening.left + edge, -clearance - 1e-3, opening.bottom + edge),
+        (
+            opening.right - edge,
+            opening.depth - opening.wall - clearance,
+            opening.bottom + edge + 0.75 * (opening.height - 2.0 * edge),
+        ),
+        wall,
+    )
+    front = -clearance - opening.wall
+    middle = (0.5 * (opening.left + opening.right), front, 0.5 * (opening.bottom + opening.top))
+    solids = handle(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width))
+    workshop.body(name, panel(opening, clearance), inner, *solids)
+    travel = 0.8 * (opening.depth - opening.wall)
+    workshop.slides(name, parent, (0, -1, 0), middle, (0.0, travel), rest=fitting.rest)
+
+
+def add_door(
+    workshop: Workshop,
+    name: str,
+    parent: str,
+    opening: Opening,
+    fitting: Fitting,
+    *,
+    side: str,
+    outermost: bool,
+    hinge: str,
+) -> None:
+    """Add a door that turns outwards about a vertical line at one side of an opening.
+
+    Args:
+        workshop: Where it is added.
+        name: Of the door.
+        parent: The body that carries it; a barrel hinge leaves its other half there.
+        opening: What the door covers.
+        fitting: Gaps, handle and where it stands.
+        side: ``left`` or ``right``.
+        outermost: True if nothing stands beside the hinge; then the door may turn about its inner edge.
+        hinge: ``edge`` (nothing to be seen) or ``barrel``.
+    """
+    clearance = fitting.clearance
+    sign = 1.0 if side == "left" else -1.0  # from the hinge to the free side
+    at_hinge = opening.left if side == "left" else opening.right
+    front, back = -clearance - opening.wall, -clearance
+    free = at_hinge + sign * (opening.width - 0.05)
+    level = 0.5 * (opening.bottom + opening.top)
+    length = min(0.2, 0.4 * opening.height)
+    solids = [panel(opening, clearance), *handle(fitting.grip, (free, front, level), along="z", length=length)]
+    pivot = (at_hinge + sign * 0.5 * (clearance + _REVEAL), back if outermost else front, level)
+    if hinge == "barrel" and outermost:
+        pivot = (at_hinge - sign * (_BARREL[0] + clearance), 0.5 * (front + back), level)
+        of_body, of_door = _barrels(opening, pivot, at_hinge, sign, clearance)
+        for share in (0.15, 0.85):
+            height = (0.0, 0.0, opening.bottom + share * opening.height - level)
+            workshop.add(parent, of_body.translate(height))
+            solids.append(of_door.translate(height))
+    workshop.body(name, *solids)
+    workshop.turns(name, parent, (0, 0, -sign), pivot, (0.0, 1.8), rest=fitting.rest)
+
+
+def _barrels(
+    opening: Opening, pivot: tuple[float, float, float], at_hinge: float, sign: float, clearance: float
+) -> tuple[Manifold, Manifold]:
+    """Both halves of a barrel hinge about the vertical line through `pivot`, its middle there."""
+    radius, length = _BARREL
+    side = sign * (at_hinge - pivot[0])
+    on_body = (side - 0.003, side + 0.001, -pivot[1] + 0.002, -pivot[1] + 0.02)
+    start = side + 0.5 * (clearance + _REVEAL)
+    on_door = (start, start + 0.02, -0.5 * opening.wall, -0.5 * opening.wall + 0.003)
+    halves = barrel(length, radius, clearance, (on_body, on_door))
+    of_body, of_door = (half if sign > 0 else half.mirror((1, 0, 0)) for half in halves)
+    return of_body.translate(pivot), of_door.translate(pivot)

@@ -1,0 +1,144 @@
+"""Where a family puts its object together: solids become bodies, and joints say how they move."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.part import Part
+from kinematify.sources.procedural.blueprint import Blueprint, BlueprintJoint, Body
+from kinematify.sources.procedural.materials import color_of
+from kinematify.sources.procedural.solids import union
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
+    from manifold3d import Manifold
+
+    from kinematify.sources.procedural.materials import RGB
+    from kinematify.sources.procedural.solids import Point
+
+
+class Workshop:
+    """Collects bodies and joints; the first body is the base link, every other one is hung on an earlier one.
+
+    Everything is built closed, at zero; `rest` values say where it stands when it is shown.
+    """
+
+    def __init__(self, family: str, *, material: str, color: str | None = None) -> None:
+        """Begin an object.
+
+        Args:
+            family: Name of the family.
+            material: Of bodies that name none.
+            color: Of bodies that name none; the material's own if absent.
+        """
+        self._family = family
+        self._material = material
+        self._color = color
+        self._solids: dict[str, Manifold] = {}
+        self._looks: dict[str, tuple[str, RGB]] = {}
+        self._joints: list[BlueprintJoint] = []
+        self._rest: dict[str, float] = {}
+
+    def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | None = None) -> str:
+        """Add a rigid part made of solids that overlap or touch; returns its name."""
+        if name in self._solids:
+            raise ValueError(f"The family {self._family} makes two bodies named {name}.")
+        made_of = material or self._material
+        self._solids[name] = union(*solids)
+        self._looks[name] = made_of, color_of(made_of, color or (None if material else self._color))
+        return name
+
+    def add(self, name: str, *solids: Manifold) -> None:
+        """Add solids to a body that is there."""
+        self._solids[name] = union(self._solids[name], *solids)
+
+    def cut(self, name: str, *solids: Manifold) -> None:
+        """Take solids away from a body that is there."""
+        self._solids[name] -= union(*solids)
+
+    def turns(
+        self,
+        child: str,
+        parent: str,
+        axis: Point,
+        pivot: Point,
+        limits: tuple[float, float] | None = None,
+        *,
+        rest: float = 0.0,
+    ) -> None:
+        """Hang a body on another one by a hinge, or by a bearing that turns without end.
+
+        Args:
+            child: The body that moves.
+            parent: The body that carries it.
+            axis: Direction; positive opens by the right hand rule.
+            pivot: A point on the axis [m].
+            limits: [rad]; none for a continuous joint.
+            rest: Share of the way from zero to the upper limit at which it is shown, in [0, 1].
+        """
+        kind = JointType.CONTINUOUS if limits is None else JointType.REVOLUTE
+        lower, upper = limits or (-math.inf, math.inf)
+        self._join(
+            BlueprintJoint(
+                parent=parent,
+                child=child,
+                kind=kind,
+                axis=np.asarray(axis),
+                pivot=np.asarray(pivot),
+                lower=lower,
+                upper=upper,
+            ),
+            rest,
+        )
+
+    def slides(
+        self,
+        child: str,
+        parent: str,
+        axis: Point,
+        pivot: Point,
+        limits: tuple[float, float],
+        *,
+        rest: float = 0.0,
+    ) -> None:
+        """Hang a body on another one by a slide; arguments as for `turns`, limits in metres."""
+        self._join(
+            BlueprintJoint(
+                parent=parent,
+                child=child,
+                kind=JointType.PRISMATIC,
+                axis=np.asarray(axis),
+                pivot=np.asarray(pivot),
+                lower=limits[0],
+                upper=limits[1],
+            ),
+            rest,
+        )
+
+    def _join(self, joint: BlueprintJoint, rest: float) -> None:
+        self._joints.append(joint)
+        if math.isfinite(joint.upper):
+            self._rest[joint.child] = rest * joint.upper
+
+    def finish(self, name: str, parameters: Mapping[str, Any]) -> Blueprint:
+        """Return the object in the configuration in which it is shown."""
+        built = Blueprint(
+            name=name,
+            family=self._family,
+            bodies=tuple(self._made(body) for body in self._solids),
+            joints=tuple(self._joints),
+            parameters=parameters,
+        )
+        return built.moved(self._rest)
+
+    def _made(self, name: str) -> Body:
+        mesh = self._solids[name].to_mesh64()
+        part = Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
+        material, color = self._looks[name]
+        return Body(part=part, material=material, color=color)

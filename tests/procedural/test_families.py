@@ -1,0 +1,86 @@
+"""Every family builds sound objects: closed one-piece parts, a tree, and joints that move without a collision."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from trimesh.collision import CollisionManager
+
+from kinematify.errors import InputError
+from kinematify.sources.procedural.blueprint import Blueprint
+from kinematify.sources.procedural.families import FAMILIES
+from kinematify.sources.procedural.family import build
+
+SEEDS = (None, 0, 1)
+
+
+def collisions(blueprint: Blueprint) -> set[tuple[str, str]]:
+    manager = CollisionManager()
+    for body in blueprint.bodies:
+        manager.add_object(body.name, trimesh.Trimesh(body.part.vertices, body.part.faces, process=False))
+    return manager.in_collision_internal(return_names=True)[1]
+
+
+@pytest.fixture(scope="module", params=[(name, seed) for name in FAMILIES for seed in SEEDS], ids=str)
+def blueprint(request: pytest.FixtureRequest) -> Blueprint:
+    name, seed = request.param
+    return build(FAMILIES[name], {}, seed=seed)
+
+
+def test_parts_are_closed_and_in_one_piece(blueprint):
+    for body in blueprint.bodies:
+        mesh = trimesh.Trimesh(body.part.vertices, body.part.faces, process=False)
+        assert mesh.is_watertight, body.name
+        assert mesh.body_count == 1, body.name
+
+
+def test_joints_make_a_tree_with_parents_first(blueprint):
+    placed = {blueprint.root}
+    for joint in blueprint.joints:
+        assert joint.parent in placed
+        assert joint.child not in placed
+        placed.add(joint.child)
+    assert placed == {body.name for body in blueprint.bodies}
+
+
+def test_limits_hold_the_pose_in_which_it_is_shown(blueprint):
+    for joint in blueprint.joints:
+        assert joint.lower <= 0.0 <= joint.upper
+        assert joint.upper > joint.lower
+
+
+def test_every_joint_moves_through_its_range_without_a_collision(blueprint):
+    assert not collisions(blueprint)
+    for joint in blueprint.joints:
+        for value in np.linspace(max(joint.lower, -np.pi), min(joint.upper, np.pi), 5):
+            hits = collisions(blueprint.moved({joint.child: float(value)}))
+            assert not hits, f"{joint.child} at {value:.3f}: {hits}"
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_a_seed_gives_the_same_object_and_another_seed_another_one(name):
+    first, again, other = (build(FAMILIES[name], {}, seed=seed) for seed in (3, 3, 4))
+    for one, two in zip(first.bodies, again.bodies, strict=True):
+        np.testing.assert_array_equal(one.part.vertices, two.part.vertices)
+    assert dict(first.parameters) != dict(other.parameters)
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_what_is_given_stays_when_the_seed_draws_the_rest(name):
+    parameter = next(p for p in FAMILIES[name].parameters if p.unit == "m" and p.usual)
+    value = 0.5 * sum(parameter.usual)
+    assert build(FAMILIES[name], {parameter.name: value}, seed=5).parameters[parameter.name] == value
+
+
+def test_unknown_parameters_and_values_out_of_bounds_are_refused_with_a_hint():
+    with pytest.raises(InputError, match="Did you mean drawers"):
+        build(FAMILIES["cabinet"], {"drawer": 3})
+    with pytest.raises(InputError, match="from 0 to 12"):
+        build(FAMILIES["cabinet"], {"drawers": 500})
+    with pytest.raises(InputError, match="whole number"):
+        build(FAMILIES["cabinet"], {"drawers": 2.5})
+    with pytest.raises(InputError, match=r"0\.1 to 5 m"):
+        build(FAMILIES["cabinet"], {"width": 3000})
+    with pytest.raises(InputError, match="bar, knob"):
+        build(FAMILIES["cabinet"], {"handle": "rope"})
