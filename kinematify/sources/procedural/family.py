@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,6 +37,10 @@ class Parameter:
     """Values that a seed draws from; the default alone if absent."""
     choices: tuple[str, ...] = ()
     """Of a choice; a seed draws from all of them."""
+    words: tuple[str, ...] = ()
+    """How people call what is counted or measured, singular; the name itself and its singular count anyway."""
+    choice_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """How people call a choice, besides its own name."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def _build(values: Values, workshop: Workshop) -> None:
-    cells = parse_layout(values.choice("layout") or _default_layout(values.count("doors"), values.count("drawers")))
+    cells = parse_layout(values.choice("layout") or _default_layout(values))
     openings = [_opening(cell, values) for cell in cells]
     behind = [opening for cell, opening in zip(cells, openings, strict=True) if cell.kind != "panel"]
     size = (values.number("width"), values.number("height"), values.number("depth"))
@@ -43,10 +43,10 @@ def _build(values: Values, workshop: Workshop) -> None:
             add_drawer(workshop, f"drawer_{next(names['drawer'])}", "body", opening, fitting)
 
 
-def _default_layout(doors: int, drawers: int) -> str:
-    """Doors side by side above stacked drawers."""
-    rows = [f"{number}*{kind}" for number, kind in ((doors, "door"), (drawers, "drawer")) if number]
-    return " / ".join(rows) or "shelf"
+def _default_layout(values: Values) -> str:
+    """Open shelves above doors side by side above stacked drawers."""
+    kinds = (("shelves", "shelf"), ("doors", "door"), ("drawers", "drawer"))
+    return " / ".join(f"{values.count(name)}*{kind}" for name, kind in kinds if values.count(name)) or "shelf"
 
 
 def _opening(cell: Cell, values: Values) -> Opening:
@@ -111,6 +111,9 @@ FAMILY = Family(
         ),
         Parameter(name="doors", default=2, bounds=(0, 12), usual=(0, 3), help="Doors, side by side."),
         Parameter(name="drawers", default=3, bounds=(0, 12), usual=(1, 4), help="Drawers, stacked below the doors."),
+        Parameter(
+            name="shelves", default=0, bounds=(0, 12), words=("shelf", "open shelf", "compartment"), help="Open fields."
+        ),
         Parameter(
             name="layout", default="", help="Any other arrangement, e.g. '(3*drawer) | door'; overrides the counts."
         ),

@@ -38,6 +38,7 @@ def handle(kind: str, at: Point, *, along: str, length: float) -> list[Manifold]
         posts = [cylinder(0.005, (fx, y + _SUNK, fz), (fx, y - 0.03, fz), segments=24) for fx, fz in feet]
         return [rod(0.006, *ends), *posts]
     if kind == "cup":
+        half = min(half, 0.04)  # it always lies, and must not reach beyond a door's free edge
         outer = cylinder(0.03, (x - half, y, z), (x + half, y, z)) - cylinder(0.025, (x - half, y, z), (x + half, y, z))
         caps = [cylinder(0.03, (x + s * half, y, z), (x + s * (half - 0.003), y, z)) for s in (-1, 1)]
         below = box((x - length, y - 0.1, z - 0.1), (x + length, y + 0.1, z))

@@ -1,0 +1,1 @@
+"""A sentence becomes a family with parameters; what was not understood is said."""

@@ -1,0 +1,134 @@
+"""Where things are: above, below, left, right, in rows and columns; the answer is a layout."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.language.words import NUMBERS
+from kinematify.sources.procedural.layout import CELLS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+_ABOVE = ("above", "over", "atop")
+_BELOW = ("below", "under", "beneath", "underneath")
+_BESIDE = ("beside", "next", "alongside")
+_PRONOUNS = ("it", "them", "these", "those", "that", "which", "each", "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mention:
+    """Some things of one kind, as a sentence names them."""
+
+    kind: str
+    """``door``, ``drawer`` or ``shelf``."""
+    count: int
+    first: int
+    """Index of the first word."""
+    last: int
+    """Index of the last word."""
+
+
+@dataclass(kw_only=True)
+class _Block:
+    """A mention with the place that it is given."""
+
+    mention: Mention
+    across: int = 0
+    """-1 left, 1 right."""
+    up: int = 0
+    """1 top, -1 bottom."""
+
+
+def layout_of(words: Sequence[str], mentions: Sequence[Mention]) -> tuple[str, tuple[int, ...]]:
+    """Write down the arrangement that a sentence states.
+
+    Args:
+        words: The sentence.
+        mentions: What it counts, in any order.
+
+    Returns:
+        A layout as `parse_layout` reads it, empty where the sentence states none, and the words that stated it.
+    """
+    shown = sorted((m for m in mentions if m.kind in CELLS and m.count > 0), key=lambda m: m.first)
+    if not shown:
+        return "", ()
+    blocks = [_Block(mention=mention) for mention in shown]
+    used: list[int] = []
+    for k, block in enumerate(blocks):
+        end = blocks[k + 1].mention.first if k + 1 < len(blocks) else len(words)
+        _place(words, blocks, k, range(block.mention.last + 1, end), used)
+    texts = [_cells(words, block.mention, used) for block in blocks]
+    plain = [f"{b.mention.count}*{b.mention.kind}" for b in blocks]
+    if not used and texts == plain and {b.mention.kind for b in blocks} <= {"door", "drawer"}:
+        return "", ()
+    return _written(blocks, texts), tuple(used)
+
+
+def _place(words: Sequence[str], blocks: list[_Block], k: int, between: range, used: list[int]) -> None:
+    """Read the words between mention k and the next one."""
+    block, following = blocks[k], blocks[k + 1] if k + 1 < len(blocks) else None
+    for at in between:
+        word, after = words[at], words[at + 1] if at + 1 < len(words) else ""
+        refers_back = after in _PRONOUNS or following is None or after in (",", ".", ";", "and")
+        if word in ("left", "right"):
+            side = -1 if word == "left" else 1
+            block.across = side
+            if following is not None and after == "of":
+                following.across = -side
+        elif word in _ABOVE or word in _BELOW or (word in ("top", "bottom") and words[at - 1] in ("on", "at", "the")):
+            up = 1 if word in _ABOVE or word == "top" else -1
+            block.up = up
+            others = [following] if following is not None and not refers_back else [b for b in blocks if b is not block]
+            for other in others:
+                other.up = other.up or -up
+        elif word in _BESIDE:
+            block.across = -1
+            if following is not None:
+                following.across = 1
+        else:
+            continue
+        used.append(at)
+
+
+def _cells(words: Sequence[str], mention: Mention, used: list[int]) -> str:
+    """The cells of one mention: stacked, side by side, or in a grid."""
+    kind, count = mention.kind, mention.count
+    near = range(mention.first, min(mention.last + 6, len(words)))
+    for at in near:
+        number = NUMBERS.get(words[at - 1], 0) or (int(words[at - 1]) if words[at - 1].isdigit() else 0)
+        if words[at] in ("column", "columns", "row", "rows") and number and count % number == 0:
+            used.extend((at - 1, at))
+            columns = number if words[at].startswith("column") else count // number
+            return _grid(kind, columns, count // columns)
+        if words[at : at + 3] == ["side", "by", "side"] and at > mention.last:
+            used.extend(range(at, at + 3))
+            return _grid(kind, count, 1)
+        if words[at] == "stacked":
+            used.append(at)
+            return _grid(kind, 1, count)
+    joined = [at for at in range(mention.first, mention.last) if words[at] in ("x", "by")]
+    if joined:
+        used.extend(at for at, word in enumerate(words[: mention.first]) if word == "grid")
+        rows = int(words[joined[0] - 1]) if words[joined[0] - 1].isdigit() else NUMBERS.get(words[joined[0] - 1], 1)
+        return _grid(kind, max(1, count // max(rows, 1)), rows)
+    return f"{count}*{kind}"
+
+
+def _grid(kind: str, columns: int, rows: int) -> str:
+    row = " | ".join([kind] * columns)
+    return " / ".join([f"({row})" if columns > 1 else kind] * rows)
+
+
+def _written(blocks: Sequence[_Block], texts: Sequence[str]) -> str:
+    """Left, middle and right columns; in each, what is on top first."""
+    columns = []
+    for across in (-1, 0, 1):
+        members = [(b, t) for b, t in zip(blocks, texts, strict=True) if b.across == across]
+        order = {"shelf": 0, "door": 1, "drawer": 2}
+        stated = any(b.up for b, _ in members)
+        members.sort(key=lambda item: -item[0].up if stated else order.get(item[0].mention.kind, 3))
+        if members:
+            columns.append(" / ".join(text for _, text in members))
+    return " | ".join(f"({column})" for column in columns) if len(columns) > 1 else columns[0]

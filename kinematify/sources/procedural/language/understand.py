@@ -1,0 +1,369 @@
+"""What a sentence asks for: the family, counts, sizes, choices, colours, arrangement and how far it stands open.
+
+A grammar of small patterns over mended words, driven by what the families declare: nothing here knows a family.
+"""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+from kinematify.sources.procedural.language.arrangement import Mention, layout_of
+from kinematify.sources.procedural.language.words import ARTICLES, STOP_WORDS, UNITS, Token, singular, tokens_of
+from kinematify.sources.procedural.layout import CELLS
+from kinematify.sources.procedural.materials import COLORS, MATERIALS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from kinematify.sources.procedural.family import Family, Parameter, Value
+
+    _Name = tuple[tuple[str, ...], Family]
+
+DIMENSIONS = {
+    "width": ("wide", "width", "across", "broad"),
+    "depth": ("deep", "depth"),
+    "height": ("high", "tall", "height"),
+    "length": ("long", "length"),
+    "diameter": ("diameter",),
+    "wall": ("thick", "thickness"),
+}
+"""Words for a size, keyed by the parameter that they mean."""
+OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0, "opened": 1.0, "unfolded": 1.0}
+_FRACTIONS = {"half": 0.5, "halfway": 0.5, "quarter": 0.25, "slightly": 0.15, "partly": 0.4, "fully": 1.0, "wide": 1.0}
+_HEAD_ENDS = {"with", "having", "has", "whose", "that", "which", "featuring", "and", "made", "on", "in", ",", ":", ";"}
+_PLACES = {
+    *("left", "right", "above", "below", "under", "beneath", "over", "top", "bottom", "beside", "next", "stacked"),
+    *("column", "row", "grid", "lower", "upper"),
+}
+_JOINING = ("x", "by")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Understanding:
+    """A sentence as it was understood."""
+
+    family: str
+    values: Mapping[str, Value]
+    """Parameter -> value."""
+    understood: tuple[str, ...]
+    """One short phrase per thing that was taken up."""
+    ignored: tuple[str, ...]
+    """Words that mean nothing here, as they were written."""
+
+
+@dataclass(kw_only=True)
+class _Reading:
+    """A sentence being read; words that were taken up are marked."""
+
+    tokens: tuple[Token, ...]
+    family: Family
+    values: dict[str, Value] = field(default_factory=dict)
+    understood: list[str] = field(default_factory=list)
+    used: set[int] = field(default_factory=set)
+    mentions: list[Mention] = field(default_factory=list)
+
+    def text(self, k: int) -> str:
+        """Word k, empty beyond the end."""
+        return self.tokens[k].text if 0 <= k < len(self.tokens) else ""
+
+    def take(self, name: str, value: Value, said: str, *where: int) -> None:
+        """Set a parameter; two different values for one are a contradiction."""
+        before = self.values.get(name)
+        if before is not None and before != value:
+            raise InputError(
+                f"The text asks for {name} = {before} and for {name} = {value}. Say one of them for a "
+                f"{self.family.title}."
+            )
+        if before is None:
+            self.understood.append(said)
+        self.values[name] = value
+        self.used.update(where)
+
+    def parameter(self, name: str) -> Parameter | None:
+        """The family's parameter of a name."""
+        return next((p for p in self.family.all_parameters if p.name == name), None)
+
+
+def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
+    """Find out what a sentence asks for.
+
+    Args:
+        sentence: English; slips of spelling are mended towards words that mean something here.
+        families: What can be built, keyed by name.
+
+    Raises:
+        InputError: The text is empty, too long, not English, contradicts itself, or names nothing that can be built;
+            then the nearest families are named.
+    """
+    vocabulary = _vocabulary(families.values())
+    tokens = tokens_of(sentence, vocabulary)
+    names = [(_bare(word, vocabulary), family) for family in families.values() for word in family.words]
+    family, where = _family(sentence, tokens, names)
+    reading = _Reading(tokens=tokens, family=family, used=set(where))
+    reading.understood.append(family.title)
+    for step in (_sizes, _products, _counts, _choices, _openness, _looks):
+        step(reading)
+    _arrangement(reading)
+    return Understanding(
+        family=family.name,
+        values=dict(reading.values),
+        understood=tuple(reading.understood),
+        ignored=tuple(
+            token.given
+            for k, token in enumerate(tokens)
+            if k not in reading.used and token.text not in STOP_WORDS and not token.is_sign
+        ),
+    )
+
+
+def _vocabulary(families: Iterable[Family]) -> set[str]:
+    """All words that mean something, singular."""
+    words = {word for names in DIMENSIONS.values() for word in names} | set(OPENNESS) | set(_FRACTIONS) | set(COLORS)
+    words |= {word for material in MATERIALS.values() for word in material.words} | _PLACES
+    for family in families:
+        for parameter in family.parameters:
+            phrases = [*_nouns(parameter), *(w for c in parameter.choices for w in _choice_words(parameter, c))]
+            words.update(word for phrase in phrases for word in phrase.split())
+    return words | {word for family in families for name in family.words for word in _bare(name, words)}
+
+
+def _bare(phrase: str, words: set[str]) -> tuple[str, ...]:
+    """The words of a name, singular where the singular means something by itself."""
+    return tuple(singular(word, frozenset(words - {word})) for word in phrase.split())
+
+
+def _nouns(parameter: Parameter) -> tuple[str, ...]:
+    """What a count or a size is called, singular."""
+    own = parameter.name.replace("_", " ")
+    return (own.removesuffix("s") if isinstance(parameter.default, int) else own, *parameter.words)
+
+
+def _choice_words(parameter: Parameter, choice: str) -> tuple[str, ...]:
+    return (choice.replace("_", " "), *parameter.choice_words.get(choice, ())) if choice else ()
+
+
+# ---- the family ----------------------------------------------------------------------------------------------------
+
+
+def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) -> tuple[Family, range]:
+    """The family that the head of the sentence names: what stands before `with`, and there the last name."""
+    end = next((k for k, token in enumerate(tokens) if k > 0 and token.text in _HEAD_ENDS), len(tokens))
+    found = _named(tokens[:end], names)
+    if found:
+        return found[-1]
+    anywhere = _named(tokens, names)
+    if anywhere:
+        return anywhere[0]
+    titles = {" ".join(words): family.title for words, family in names}
+    near = [
+        titles[match]
+        for token in tokens
+        for match in difflib.get_close_matches(token.text, titles, n=2, cutoff=0.6)
+        if len(token.text) > 3
+    ]
+    nearest = list(dict.fromkeys(near or titles.values()))[:4]
+    raise InputError(
+        f"The text {sentence[:80]!r} names nothing that can be built. Nearest: {', '.join(nearest)}. `kinematify "
+        "generate --list` shows all categories."
+    )
+
+
+def _named(tokens: tuple[Token, ...], names: Sequence[_Name]) -> list[tuple[Family, range]]:
+    """Families that are named, longest names first where they overlap, in the order of the sentence."""
+    found: list[tuple[Family, range]] = []
+    taken: set[int] = set()
+    for words, family in sorted(names, key=lambda item: -len(item[0])):
+        for k in range(len(tokens) - len(words) + 1):
+            where = range(k, k + len(words))
+            if tuple(tokens[i].text for i in where) == words and not taken & set(where):
+                taken.update(where)
+                found.append((family, where))
+    return sorted(found, key=lambda item: item[1].start)
+
+
+# ---- sizes ---------------------------------------------------------------------------------------------------------
+
+
+def _sizes(reading: _Reading) -> None:
+    """`80 cm wide`, `a height of 2 m`, `0.3 m in diameter`."""
+    k = 0
+    while k < len(reading.tokens):
+        length = _length(reading, k)
+        if length is None:
+            k += 1
+            continue
+        metres, end = length
+        for at in (end, end + 1, k - 1, k - 2):
+            name = _dimension(reading, reading.text(at)) if at not in reading.used else None
+            if name is not None:
+                reading.take(name, metres, f"{name} {metres:g} m", *range(min(k, at), max(end, at + 1)))
+                break
+        k = end
+
+
+def _length(reading: _Reading, k: int) -> tuple[float, int] | None:
+    """A number with a unit at word k: metres, and the word behind it."""
+    number, unit = reading.tokens[k].number, reading.text(k + 1)
+    if number is None or unit not in UNITS or (unit == "in" and reading.text(k + 2) in ("diameter", "total")):
+        return None
+    if reading.text(k + 2) == "in" and reading.text(k + 3) == "diameter":
+        return round(number * UNITS[unit], 9), k + 3
+    return round(number * UNITS[unit], 9), k + 2
+
+
+def _dimension(reading: _Reading, word: str) -> str | None:
+    """The parameter that a word for a size means in this family."""
+    lengths = [p for p in reading.family.all_parameters if p.unit == "m"]
+    own = next((p.name for p in lengths if word and word in p.words), None)
+    if own is not None:
+        return own
+    name = next((name for name, words in DIMENSIONS.items() if word in words), None)
+    if name == "length" and reading.parameter("length") is None:
+        name = "width"
+    return name if name is not None and reading.parameter(name) is not None else None
+
+
+def _products(reading: _Reading) -> None:
+    """`20 x 15 x 10 cm` is width, depth and height."""
+    for k in range(len(reading.tokens)):
+        numbers, places, at = [], [], k
+        while reading.tokens[at : at + 1] and reading.tokens[at].number is not None and at not in reading.used:
+            numbers.append(float(reading.tokens[at].number or 0.0))
+            places.append(at)
+            unit = reading.text(at + 1) if reading.text(at + 1) in UNITS else ""
+            at += 2 if unit else 1
+            if reading.text(at) not in _JOINING or len(numbers) == 3:
+                break
+            at += 1
+        units = [reading.text(i) for i in range(k, at + 1) if reading.text(i) in UNITS]
+        if len(numbers) == 3 and units:
+            scale = UNITS[units[-1]]
+            for name, number in zip(("width", "depth", "height"), numbers, strict=True):
+                if reading.parameter(name) is not None:
+                    size = round(number * scale, 9)
+                    reading.take(name, size, f"{name} {size:g} m", *range(k, at + 1))
+
+
+# ---- counts --------------------------------------------------------------------------------------------------------
+
+
+def _counts(reading: _Reading) -> None:
+    """`two doors`, `3 small drawers`, `no handle`, `a grid of 3 by 2 drawers`, `half a dozen knobs`."""
+    counted = [p for p in reading.family.parameters if isinstance(p.default, int)]
+    for parameter in counted:
+        for noun in _nouns(parameter):
+            words = tuple(noun.split())
+            for k in range(len(reading.tokens) - len(words) + 1):
+                where = range(k, k + len(words))
+                if tuple(reading.text(i) for i in where) == words and not reading.used & set(where):
+                    _count(reading, parameter, where)
+
+
+def _count(reading: _Reading, parameter: Parameter, where: range) -> None:
+    """Take up a noun that can be counted, with the number before it if there is one."""
+    number, first = _number_before(reading, where.start)
+    if number is not None:
+        reading.take(parameter.name, number, f"{number} {parameter.name}", *range(first, where.stop))
+    reading.used.update(where)
+    count = reading.values.get(parameter.name, parameter.default)
+    reading.mentions.append(
+        Mention(kind=_kind(parameter), count=int(count), first=min(first, where.start), last=where.stop - 1)
+    )
+
+
+def _kind(parameter: Parameter) -> str:
+    """The cell of a layout that a parameter counts, else its noun."""
+    return next((noun for noun in _nouns(parameter) if noun in CELLS), _nouns(parameter)[0])
+
+
+def _number_before(reading: _Reading, k: int) -> tuple[int | None, int]:
+    """The number that counts the noun at word k, and the word that it begins at."""
+    at = k - 1
+    while at >= 0 and k - at <= 3:
+        token = reading.tokens[at]
+        if token.number is not None and at not in reading.used:
+            number, first = int(token.number), at
+            if reading.text(at - 1) in _JOINING and at >= 2 and reading.tokens[at - 2].number is not None:
+                return number * int(reading.tokens[at - 2].number or 1), at - 2
+            if token.text == "dozen":
+                number = 6 if reading.text(at - 2) == "half" else 12 * _plain_number(reading, at - 1)
+                first = at - 2 if reading.text(at - 2) == "half" else at - 1
+            if reading.text(at - 1) in ARTICLES:
+                first = at - 1
+            return number, first
+        if token.is_sign or at in reading.used or token.text in ("and", "with"):
+            return None, k
+        at -= 1
+    return None, k
+
+
+def _plain_number(reading: _Reading, k: int) -> int:
+    number = reading.tokens[k].number if k >= 0 else None
+    return int(number) if number else 1
+
+
+# ---- everything else -----------------------------------------------------------------------------------------------
+
+
+def _choices(reading: _Reading) -> None:
+    """`with knobs`, `sliding`, `barrel hinges`."""
+    known = frozenset(word for token in reading.tokens for word in [token.text])
+    for parameter in reading.family.parameters:
+        for choice in parameter.choices:
+            for phrase in _choice_words(parameter, choice):
+                words = tuple(phrase.split())
+                for k in range(len(reading.tokens) - len(words) + 1):
+                    texts = tuple(reading.text(i) for i in range(k, k + len(words)))
+                    bare = tuple(singular(word, frozenset(words) | known) for word in texts)
+                    if words in (texts, bare) and not reading.used & set(range(k, k + len(words))):
+                        where = list(range(k, k + len(words)))
+                        if reading.text(where[-1] + 1) in (parameter.name, f"{parameter.name}s"):
+                            where.append(where[-1] + 1)
+                        reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *where)
+
+
+def _openness(reading: _Reading) -> None:
+    """`half open`, `closed`, `ajar`; an open shelf is not meant."""
+    if reading.parameter("open") is None:
+        return
+    for k, token in enumerate(reading.tokens):
+        if token.text not in OPENNESS or k in reading.used or reading.text(k + 1) in ("shelf", "compartment", "front"):
+            continue
+        share, first = OPENNESS[token.text], k
+        if share == 1.0:
+            for before in (k - 1, k - 2):
+                if reading.text(before) in _FRACTIONS:
+                    share, first = _FRACTIONS[reading.text(before)], before
+            if reading.text(k + 1) in _FRACTIONS and reading.text(k + 1) != "wide":
+                share = _FRACTIONS[reading.text(k + 1)]
+                reading.used.update((k + 1, k + 2) if reading.text(k + 2) == "way" else (k + 1,))
+        reading.take("open", share, f"{share:.0%} open", *range(first, k + 1))
+
+
+def _looks(reading: _Reading) -> None:
+    """Colours and materials."""
+    for k, token in enumerate(reading.tokens):
+        if k in reading.used:
+            continue
+        if token.text in COLORS:
+            reading.take("color", token.text, token.text, k)
+        for name, material in MATERIALS.items():
+            if token.text in material.words:
+                reading.take("material", name, f"made of {name}", k)
+
+
+def _arrangement(reading: _Reading) -> None:
+    """Doors above drawers, columns, what is on the left: for families that have a layout."""
+    if reading.parameter("layout") is None or "layout" in reading.values:
+        return
+    layout, used = layout_of([token.text for token in reading.tokens], reading.mentions)
+    if layout:
+        reading.take("layout", layout, f"arranged as {layout}", *used)
+    if reading.mentions:
+        # Who names the doors and no drawers wants none.
+        for parameter in reading.family.parameters:
+            if _kind(parameter) in CELLS and all(mention.kind != _kind(parameter) for mention in reading.mentions):
+                reading.values[parameter.name] = 0

@@ -1,0 +1,125 @@
+"""Words of a sentence: tokens, numbers, units, singulars, and slips of spelling."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+MAX_WORDS = 200
+"""Longer texts are no description of one object."""
+NUMBERS = {
+    "no": 0, "without": 0, "zero": 0, "a": 1, "an": 1, "one": 1, "single": 1, "two": 2, "pair": 2, "couple": 2,
+    "double": 2, "twin": 2, "both": 2, "three": 3, "triple": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8,
+    "nine": 9, "ten": 10, "eleven": 11, "twelve": 12, "dozen": 12, "thirteen": 13, "fourteen": 14, "fifteen": 15,
+    "sixteen": 16, "seventeen": 17, "eighteen": 18, "nineteen": 19, "twenty": 20, "thirty": 30, "forty": 40,
+    "fifty": 50, "hundred": 100, "thousand": 1000,
+}  # fmt: skip
+"""Number words; `a` and `an` count only before something that can be counted."""
+ARTICLES = ("a", "an")
+UNITS = {
+    "mm": 1e-3, "millimetre": 1e-3, "millimeter": 1e-3, "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2,
+    "dm": 0.1, "m": 1.0, "metre": 1.0, "meter": 1.0, "km": 1e3, "kilometre": 1e3, "kilometer": 1e3, "inch": 0.0254,
+    "inche": 0.0254, "in": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048,
+}  # fmt: skip
+"""Metres per unit."""
+_STOP_TEXT = """
+    a an the of with and or to in on at by for from it its them their that which whose is are has have having i
+    we you would like want need please make me give build create generate some any this these those there be as
+    into my our one each per every other others made out very quite nice simple standard typical normal ordinary
+    small big large medium tall short wide narrow compact little new old modern kitchen living room office
+    household home containing featuring including plus also only just total all set kind type style shaped
+    looking real full size robot robotic mechanical electric object model thing stand standing side
+"""
+STOP_WORDS = frozenset(_STOP_TEXT.split())
+"""Words that carry nothing, or whose sense is left to the seed."""
+
+_TOKEN = re.compile(r"\d+(?:[.,]\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
+_IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Token:
+    """One word, number or sign."""
+
+    text: str
+    """As it is read: lower case, singular, spelling mended."""
+    given: str
+    """As it was written, in lower case."""
+
+    @property
+    def number(self) -> float | None:
+        """Its value, if it is a number or a number word."""
+        if self.text in NUMBERS:
+            return float(NUMBERS[self.text])
+        try:
+            return float(self.text.replace(",", "."))
+        except ValueError:
+            return None
+
+    @property
+    def is_sign(self) -> bool:
+        """True for punctuation."""
+        return not self.text[0].isalnum() and self.number is None
+
+
+def tokens_of(sentence: str, vocabulary: Iterable[str]) -> tuple[Token, ...]:
+    """Split a sentence into tokens and mend slips of spelling towards a vocabulary.
+
+    Raises:
+        InputError: The text is empty, too long, or not written in Latin letters.
+    """
+    lowered = sentence.lower()
+    if re.search(r"\bminus\b|(?:^|\s)-\s?\d", lowered):
+        raise InputError(f"The text {_shown(sentence)} asks for a negative number. Give counts and sizes above zero.")
+    text = re.sub(r"(?<=\d)x(?=\d)", " x ", lowered.replace("×", " x ").replace("-", " ")).strip()
+    if not text:
+        raise InputError("The text is empty. Describe an object, e.g. 'a cabinet with two doors above three drawers'.")
+    letters = [c for c in text if c.isalpha()]
+    if sum(c.isascii() for c in letters) < 0.8 * len(letters) or not letters:
+        raise InputError(
+            f"The text {_shown(sentence)} is not English as far as can be seen. Describe the object in English."
+        )
+    found = _TOKEN.findall(text)
+    if len(found) > MAX_WORDS:
+        raise InputError(
+            f"The text has {len(found)} words; at most {MAX_WORDS} describe one object. Say the kind of object, what "
+            "it has and how large it is."
+        )
+    known = frozenset(vocabulary)
+    return tuple(Token(text=_mended(singular(word, known), known), given=word) for word in found)
+
+
+def singular(word: str, known: frozenset[str]) -> str:
+    """Return the singular of a plural that the vocabulary has only in the singular."""
+    if word in known or word in STOP_WORDS or word in NUMBERS:
+        return word
+    for candidate in (
+        _IRREGULAR.get(word, ""),
+        word.removesuffix("s"),
+        word.removesuffix("es"),
+        word.removesuffix("ed"),
+    ):
+        if candidate and (candidate in known or candidate in UNITS):
+            return candidate
+    return word
+
+
+def _mended(word: str, known: frozenset[str]) -> str:
+    if word in known or word in STOP_WORDS or word in NUMBERS or word in UNITS or len(word) < 4 or not word.isalpha():
+        return word
+    words = [*known, *(f"{item}s" for item in known), *(n for n in NUMBERS if len(n) > 3)]
+    near = difflib.get_close_matches(word, words, n=1, cutoff=0.82)
+    if not near and len(word) <= 5:
+        near = difflib.get_close_matches(word, words, n=1, cutoff=0.75)
+    return singular(near[0], known) if near else word
+
+
+def _shown(sentence: str) -> str:
+    return repr(sentence if len(sentence) < 80 else sentence[:77] + "...")
