@@ -45,6 +45,10 @@ class Part:
     """Vertex positions in the world frame [m], shape (V, 3). Read-only."""
     faces: IntArray
     """Vertex indices of triangles, shape (F, 3). Read-only."""
+    color: tuple[float, float, float] | None = None
+    """sRGB in [0, 1] where the source knows it; models and pictures choose one otherwise."""
+    density: float | None = None
+    """[kg/m^3] where the source knows it."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))

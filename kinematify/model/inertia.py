@@ -42,7 +42,7 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
         part: The mesh in world coordinates; may be open, flat or inside out.
         origin: Origin of the link frame in the world frame [m], shape (3,).
         thickness: A part that is thinner gets this thickness [m].
-        config: Densities and lower bounds.
+        config: Densities of parts that have none of their own, and lower bounds.
 
     Returns:
         Mass properties with source ``volume`` or ``hull``.
@@ -53,8 +53,8 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
     solid = _closed_volume(part) if len(thick) == len(used) else None
     # Shells that are nested with opposite winding or that overlap can integrate to nonsense; a hull cannot.
     if solid is not None and _plausible(solid, hull, part.bounds):
-        return _inertial(solid, config.solid_density, "volume", origin, config)
-    return _inertial(hull, config.hull_density, "hull", origin, config)
+        return _inertial(solid, part.density or config.solid_density, "volume", origin, config)
+    return _inertial(hull, part.density or config.hull_density, "hull", origin, config)
 
 
 def _closed_volume(part: Part) -> _Solid | None:

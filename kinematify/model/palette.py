@@ -24,7 +24,7 @@ _LMS_TO_RGB = np.array([[4.0767416621, -3.3077115913, 0.2309699292], [-1.2684380
 
 
 def link_colors(model: KinematicModel) -> dict[str, FloatArray]:
-    """Colour of every link: grey for the root, distinct hues of like strength for all others.
+    """Colour of every link: its part's own, else grey for the root and distinct hues of like strength for all others.
 
     Returns:
         Link name -> sRGB in [0, 1], shape (3,).
@@ -34,7 +34,8 @@ def link_colors(model: KinematicModel) -> dict[str, FloatArray]:
     for index, name in enumerate(moving):
         hue = _FIRST_HUE + index * _GOLDEN_ANGLE
         colors[name] = _oklch(float(_LIGHTNESS[index % len(_LIGHTNESS)]), _CHROMA, hue)
-    return colors
+    known = {link.name: np.array(link.part.color) for link in model.links if link.part.color is not None}
+    return {**colors, **known}
 
 
 def _oklch(lightness: float, chroma: float, hue: float) -> FloatArray:

@@ -17,8 +17,8 @@ SEEDS = (None, 0, 1)
 
 def collisions(blueprint: Blueprint) -> set[tuple[str, str]]:
     manager = CollisionManager()
-    for body in blueprint.bodies:
-        manager.add_object(body.name, trimesh.Trimesh(body.part.vertices, body.part.faces, process=False))
+    for body in blueprint.parts:
+        manager.add_object(body.name, trimesh.Trimesh(body.vertices, body.faces, process=False))
     return manager.in_collision_internal(return_names=True)[1]
 
 
@@ -29,8 +29,8 @@ def blueprint(request: pytest.FixtureRequest) -> Blueprint:
 
 
 def test_parts_are_closed_and_in_one_piece(blueprint):
-    for body in blueprint.bodies:
-        mesh = trimesh.Trimesh(body.part.vertices, body.part.faces, process=False)
+    for body in blueprint.parts:
+        mesh = trimesh.Trimesh(body.vertices, body.faces, process=False)
         assert mesh.is_watertight, body.name
         assert mesh.body_count == 1, body.name
 
@@ -41,7 +41,7 @@ def test_joints_make_a_tree_with_parents_first(blueprint):
         assert joint.parent in placed
         assert joint.child not in placed
         placed.add(joint.child)
-    assert placed == {body.name for body in blueprint.bodies}
+    assert placed == {body.name for body in blueprint.parts}
 
 
 def test_limits_hold_the_pose_in_which_it_is_shown(blueprint):
@@ -61,8 +61,8 @@ def test_every_joint_moves_through_its_range_without_a_collision(blueprint):
 @pytest.mark.parametrize("name", FAMILIES)
 def test_a_seed_gives_the_same_object_and_another_seed_another_one(name):
     first, again, other = (build(FAMILIES[name], {}, seed=seed) for seed in (3, 3, 4))
-    for one, two in zip(first.bodies, again.bodies, strict=True):
-        np.testing.assert_array_equal(one.part.vertices, two.part.vertices)
+    for one, two in zip(first.parts, again.parts, strict=True):
+        np.testing.assert_array_equal(one.vertices, two.vertices)
     assert dict(first.parameters) != dict(other.parameters)
 
 

@@ -34,7 +34,7 @@ def wrong(item: dict[str, Any]) -> list[str]:
     found = [f"ignored {word}" for word in meant.ignored]
     found += [f"{k}: {n}" for k, n in item.get("parts", {}).items() if len(bodies(made, k)) != n]
     found += [f"joints {len(made.joints)}" for n in [item.get("joints")] if n is not None and len(made.joints) != n]
-    extents = np.ptp(closed.bodies[0].part.bounds, axis=0)
+    extents = np.ptp(closed.parts[0].bounds, axis=0)
     sizes = item.get("size", {})
     found += [f"size {axis}" for axis, size in sizes.items() if abs(extents["xyz".index(axis)] / size - 1.0) > 0.02]
     for key, axis, sign in (("above", 2, 1.0), ("left_of", 0, -1.0)):
@@ -50,11 +50,11 @@ def wrong(item: dict[str, Any]) -> list[str]:
 
 
 def bodies(made: Blueprint, kind: str) -> list[str]:
-    return [body.name for body in made.bodies if body.name.rstrip("0123456789_") == kind]
+    return [body.name for body in made.parts if body.name.rstrip("0123456789_") == kind]
 
 
 def heights(made: Blueprint, kind: str, axis: int) -> np.ndarray:
-    return np.array([body.part.bounds.mean(axis=0)[axis] for body in made.bodies if body.name.startswith(kind)])
+    return np.array([body.bounds.mean(axis=0)[axis] for body in made.parts if body.name.startswith(kind)])
 
 
 def test_nine_of_ten_sentences_come_out_exactly():
@@ -71,7 +71,7 @@ def test_what_was_understood_and_what_was_not_is_said():
 
 def test_the_colour_reaches_the_bodies():
     meant = understand("a green cabinet with one drawer", FAMILIES)
-    assert build(FAMILIES["cabinet"], meant.values).bodies[0].color == COLORS["green"]
+    assert build(FAMILIES["cabinet"], meant.values).parts[0].color == COLORS["green"]
 
 
 @pytest.mark.parametrize(

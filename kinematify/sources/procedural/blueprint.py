@@ -1,4 +1,4 @@
-"""An object with exact joints: bodies in the configuration that they were built in, and how each of them moves."""
+"""An object with exact joints: parts in the configuration in which it is shown, and how each of them moves."""
 
 from __future__ import annotations
 
@@ -20,24 +20,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
-    """One rigid part with what it is made of."""
-
-    part: Part
-    material: str
-    """E.g. ``wood``, ``steel``, ``plastic``; gives the density."""
-    color: tuple[float, float, float]
-    """Red, green, blue in [0, 1]."""
-
-    @property
-    def name(self) -> str:
-        """Name of the part."""
-        return self.part.name
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class BlueprintJoint:
-    """The exact joint between two bodies; world frame, zero is the configuration of the bodies."""
+    """The exact joint between two parts; world frame, zero is the configuration of the parts."""
 
     parent: str
     child: str
@@ -69,13 +53,14 @@ class BlueprintJoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Blueprint:
-    """An articulated object; the first body is the base link."""
+    """An articulated object; the first part is the base link."""
 
     name: str
     family: str
-    bodies: tuple[Body, ...]
+    parts: tuple[Part, ...]
+    """With colour and density."""
     joints: tuple[BlueprintJoint, ...]
-    """One per body but the first, parents before children."""
+    """One per part but the first, parents before children."""
     parameters: Mapping[str, Any] = field(default_factory=dict)
     """What it was built with, defaults and drawn values included."""
 
@@ -84,24 +69,24 @@ class Blueprint:
 
     @cached_property
     def joint_above(self) -> dict[str, BlueprintJoint]:
-        """Joint that carries a body, keyed by the body's name."""
+        """Joint that carries a part, keyed by the part's name."""
         return {joint.child: joint for joint in self.joints}
 
     @property
     def root(self) -> str:
         """Name of the base link."""
-        return self.bodies[0].name
+        return self.parts[0].name
 
     @cached_property
     def assembly(self) -> Assembly:
         """What an inference is given: the parts alone."""
-        return Assembly(parts=tuple(body.part for body in self.bodies), source=self.name)
+        return Assembly(parts=self.parts, source=self.name)
 
     def moved(self, values: Mapping[str, float]) -> Blueprint:
         """Move the joints; the new configuration is the zero of the result.
 
         Args:
-            values: Child body -> joint value [rad or m]; the others stay.
+            values: Child part -> joint value [rad or m]; the others stay.
         """
         T_new_old = {self.root: np.eye(4)}
         joints = []
@@ -117,9 +102,9 @@ class Blueprint:
                     upper=joint.upper - value,
                 )
             )
-        bodies = tuple(replace(body, part=_placed(body.part, T_new_old[body.name])) for body in self.bodies)
-        return replace(self, bodies=bodies, joints=tuple(joints))
+        parts = tuple(_placed(part, T_new_old[part.name]) for part in self.parts)
+        return replace(self, parts=parts, joints=tuple(joints))
 
 
 def _placed(part: Part, transform: FloatArray) -> Part:
-    return Part(name=part.name, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3], faces=part.faces)
+    return replace(part, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3])

@@ -9,8 +9,8 @@ import numpy as np
 
 from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Part
-from kinematify.sources.procedural.blueprint import Blueprint, BlueprintJoint, Body
-from kinematify.sources.procedural.materials import color_of
+from kinematify.sources.procedural.blueprint import Blueprint, BlueprintJoint
+from kinematify.sources.procedural.materials import MATERIALS, color_of
 from kinematify.sources.procedural.solids import union
 
 if TYPE_CHECKING:
@@ -131,14 +131,19 @@ class Workshop:
         built = Blueprint(
             name=name,
             family=self._family,
-            bodies=tuple(self._made(body) for body in self._solids),
+            parts=tuple(self._made(body) for body in self._solids),
             joints=tuple(self._joints),
             parameters=parameters,
         )
         return built.moved(self._rest)
 
-    def _made(self, name: str) -> Body:
+    def _made(self, name: str) -> Part:
         mesh = self._solids[name].to_mesh64()
-        part = Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
         material, color = self._looks[name]
-        return Body(part=part, material=material, color=color)
+        return Part(
+            name=name,
+            vertices=mesh.vert_properties[:, :3],
+            faces=mesh.tri_verts,
+            color=color,
+            density=MATERIALS[material].density,
+        )

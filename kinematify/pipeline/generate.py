@@ -1,0 +1,77 @@
+"""From a blueprint to files: parts for the inference, and the truth beside them, which it never opens."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from kinematify.assembly.obj_file import write_obj
+from kinematify.joints.candidate import JointEstimate
+from kinematify.model.build import build_model
+from kinematify.model.urdf import write_urdf
+from kinematify.sources.procedural.truth import ground_truth
+from kinematify.topology.tree import KinematicTree
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.config import Config
+    from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.sources.procedural.blueprint import Blueprint
+
+PARTS_FOLDER = "parts"
+TRUTH_FOLDER = "truth"
+
+
+def true_model(blueprint: Blueprint, config: Config) -> KinematicModel:
+    """Return the model with the joints that the blueprint knows; its zero is the configuration that is shown."""
+    index = {part.name: k for k, part in enumerate(blueprint.parts)}
+    parents = [-1] * len(index)
+    for joint in blueprint.joints:
+        parents[index[joint.child]] = index[joint.parent]
+    joints = [
+        JointEstimate(
+            parent=index[joint.parent],
+            child=index[joint.child],
+            kind=joint.kind,
+            axis=joint.axis,
+            pivot=joint.pivot,
+            lower=joint.lower,
+            upper=joint.upper,
+            confidence=1.0,
+        )
+        for joint in blueprint.joints
+    ]
+    tree = KinematicTree(parents=tuple(parents))
+    return build_model(blueprint.assembly, tree, joints, name=blueprint.name, config=config.model)
+
+
+def write_parts(blueprint: Blueprint, folder: Path) -> None:
+    """Write one OBJ per part into a new folder: all that an inference needs.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    folder.mkdir(parents=True)
+    for part in blueprint.parts:
+        write_obj(folder / f"{part.name}.obj", part.vertices, part.faces)
+
+
+def write_truth(blueprint: Blueprint, folder: Path, config: Config) -> KinematicModel:
+    """Write ``model.urdf`` with the exact joints, ``truth.json`` and ``source.json`` into a new folder.
+
+    The folder is one object of a benchmark: `kinematify bench` takes it as it is.
+
+    Returns:
+        The model that was written.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    folder.mkdir(parents=True)
+    model = true_model(blueprint, config)
+    write_urdf(model, folder)
+    (folder / "truth.json").write_text(ground_truth(blueprint).to_json() + "\n", encoding="utf-8")
+    facts = {"kind": "procedural", "category": blueprint.family, "parameters": dict(blueprint.parameters)}
+    (folder / "source.json").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    return model
