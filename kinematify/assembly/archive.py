@@ -7,7 +7,7 @@ import zipfile
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from kinematify.assembly.mesh_file import MESH_SUFFIXES
+from kinematify.assembly.mesh_paths import MESH_SUFFIXES
 from kinematify.errors import AssemblyError
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from lxml import etree
 
 from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.robot import (
@@ -22,6 +21,7 @@ from kinematify.assembly.robot import (
     rest_configuration,
     rigid_groups,
 )
+from kinematify.assembly.urdf_document import parse_description
 from kinematify.assembly.urdf_geometry import geometry_source
 from kinematify.assembly.urdf_numbers import number, origin_transform, vector
 from kinematify.errors import DescriptionError
@@ -51,8 +51,6 @@ __all__ = [
     "rigid_groups",
 ]
 
-MAX_URDF_BYTES = 50_000_000
-"""Larger files hold no robot: the largest known ones stay below 1 MB."""
 _FREE = ("floating", "planar")
 
 
@@ -106,40 +104,6 @@ def describe(robot: _Element, path: Path, source: GeometrySource) -> RobotDescri
     )
     _check_free_joints(description, [item.joint for item in read if item.declared in _FREE])
     return description
-
-
-def parse_description(path: Path) -> _Element:
-    """Return the robot element; entities, DOCTYPE and oversized files are refused before anything is expanded.
-
-    Raises:
-        DescriptionError: The file cannot be read, is not well-formed, or is no URDF.
-    """
-    try:
-        size = path.stat().st_size
-        text = path.read_bytes() if size <= MAX_URDF_BYTES else b""
-    except OSError as error:
-        raise DescriptionError(f"The description {path} cannot be read: {error.strerror}. Check the path.") from error
-    if size > MAX_URDF_BYTES:
-        raise DescriptionError(
-            f"The description {path} has {size} bytes; a URDF has at most {MAX_URDF_BYTES}. Is it a mesh?"
-        )
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
-    )
-    try:
-        robot = etree.fromstring(text, parser)
-    except etree.XMLSyntaxError as error:
-        raise DescriptionError(f"The description {path} is not well-formed XML: {error}. Correct it there.") from error
-    if etree.ElementTree(robot).docinfo.internalDTD is not None:
-        raise DescriptionError(
-            f"The description {path} declares a DOCTYPE, which no URDF needs and which can hide attacks. Remove it."
-        )
-    if robot.tag != "robot":
-        raise DescriptionError(
-            f"The description {path} begins with <{robot.tag}>, not <robot>. Give a URDF; expand xacro files with "
-            "`xacro FILE > robot.urdf`, and convert MJCF or SDF first."
-        )
-    return robot
 
 
 def _link(element: _Element, source: GeometrySource) -> DescribedLink:

@@ -12,6 +12,7 @@ import trimesh
 from trimesh.scene import Scene
 
 from kinematify.assembly.gltf_file import read_gltf
+from kinematify.assembly.mesh_paths import MESH_SUFFIXES
 from kinematify.assembly.obj_file import read_obj
 from kinematify.assembly.weld import without_unused
 from kinematify.errors import AssemblyError
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
 # Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
 # logging still hears it.
 logging.getLogger("trimesh").addHandler(logging.NullHandler())
-
-GLTF_SUFFIXES = (".glb", ".gltf")
-MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.parse import unquote, urlparse
 
 import numpy as np
 import trimesh
 
 from kinematify.assembly.mesh_file import RawMesh, merged, read_meshes
+from kinematify.assembly.mesh_paths import find_mesh
 from kinematify.assembly.robot import LinkMesh
 from kinematify.assembly.urdf_numbers import number, origin_transform, vector
 from kinematify.errors import AssemblyError, DescriptionError
@@ -71,53 +71,12 @@ class GeometrySource:
         return self.cache[path]
 
     def resolved(self, filename: str, where: str) -> Path:
-        """Return the mesh file that a document names.
-
-        Args:
-            filename: As written.
-            where: The link, for messages.
+        """Return the mesh file that a document names; see `kinematify.assembly.mesh_paths.find_mesh`.
 
         Raises:
             DescriptionError: It is nowhere; the message lists the places.
         """
-        candidates = self._candidates(filename, where)
-        found = next((path for path in candidates if path.is_file()), None)
-        if found is None:
-            raise DescriptionError(
-                f"The mesh {filename!r} of {where} is not there: looked at {', '.join(map(str, candidates[:6]))}. "
-                "Put the file there, or name the folder that holds the package with --package-dir."
-            )
-        return found
-
-    def _candidates(self, filename: str, where: str) -> list[Path]:
-        """Places where a mesh may lie, the likeliest first."""
-        address = urlparse(filename)
-        if address.scheme in ("package", "model"):
-            return self._package_candidates(address.netloc, unquote(address.path).lstrip("/"))
-        if address.scheme == "file":
-            return [Path(unquote(address.path))]
-        if not filename or "://" in filename:
-            raise DescriptionError(
-                f"The mesh of {where} names the file {filename!r}. Give a path relative to the URDF, or "
-                "package://NAME/PATH."
-            )
-        # A path on the author's Windows machine still has its separators.
-        return [self.folder / filename.replace("\\", "/")]
-
-    def _package_candidates(self, package: str, inside: str) -> list[Path]:
-        """``--package-dir`` may be the package or its parent; without it, a folder above the URDF is the package."""
-        candidates = []
-        for folder in self.package_dirs:
-            candidates.append(folder / package / inside)
-            if folder.name == package:
-                candidates.append(folder / inside)
-        for folder in (self.folder, *self.folder.parents):
-            if folder.name == package:
-                candidates.append(folder / inside)
-            candidates.append(folder / package / inside)
-        # Single exported robots keep the package's tree but not its name.
-        candidates += [folder / inside for folder in (*self.package_dirs, self.folder)]
-        return candidates
+        return find_mesh(filename, self.folder, self.package_dirs, where)
 
 
 def geometry_source(document: Path, package_dirs: Sequence[Path]) -> GeometrySource:
