@@ -18,37 +18,46 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference, infer, write_inference
     from kinematify.topology.tree import KinematicTree
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.run import validate
 
 __version__ = "0.1.0"
 
 __all__ = [
     "Assembly",
     "ContactGraph",
+    "Finding",
     "Inference",
     "JointCandidate",
     "KinematicModel",
     "KinematicTree",
     "KinematifyError",
     "Part",
+    "ValidationReport",
     "__version__",
     "infer",
     "load_assembly",
     "load_config",
+    "validate",
     "write_inference",
 ]
 
 _HOMES = {
     "Assembly": "kinematify.assembly.part",
     "ContactGraph": "kinematify.contact.graph",
+    "Finding": "kinematify.validation.finding",
     "Inference": "kinematify.pipeline",
     "JointCandidate": "kinematify.joints.candidate",
     "KinematicModel": "kinematify.model.kinematic_model",
     "KinematicTree": "kinematify.topology.tree",
     "KinematifyError": "kinematify.errors",
     "Part": "kinematify.assembly.part",
+    "ValidationReport": "kinematify.validation.report",
     "infer": "kinematify.pipeline",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",
+    "validate": "kinematify.validation.run",
     "write_inference": "kinematify.pipeline",
 }
 

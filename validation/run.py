@@ -52,7 +52,7 @@ def validate(
         path: The URDF file.
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
-        selected: Ids of the checks to run; all if absent. The pre-check always runs.
+        selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
         engines: Of `ENGINES`; checks of the others are reported as skipped.
         suppressions: Findings that do not count.
         workers: Processes at a time; as many as there are cores if absent.
@@ -82,6 +82,10 @@ def validate(
     return run.report(settings, suppressions)
 
 
+_GUARDS = frozenset(check for check in CATALOGUE if check.startswith("KV1"))
+"""Checks of file and meshes: they always run, and their errors always count, since nothing else can run after one."""
+
+
 class _Run:
     """Results as they come in; what has not come in is named with its reason at the end."""
 
@@ -98,13 +102,13 @@ class _Run:
     def all(self, request: StageRequest, engines: Sequence[str], workers: int) -> None:
         """Run everything that can run."""
         start_server()
-        recorder = Recorder(self._take, request.selected)
-        usable = precheck(request, recorder)
+        asset_request = replace(request, selected=request.selected | _GUARDS)
+        usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)
         if not usable:
             self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
             return
-        for end in run_stages([asset_stage()], request, workers=1):
+        for end in run_stages([asset_stage()], asset_request, workers=1):
             self._take_end(end)
         self._progress("meshes and declared physics", 0.15)
         if self._broken_meshes():
@@ -119,7 +123,7 @@ class _Run:
             Status.SKIPPED,
             "the engine was not asked for",
         )
-        agreement.compare(request, recorder)
+        agreement.compare(request, Recorder(self._take, request.selected))
 
     def report(self, settings: ValidationSettings, suppressions: Sequence[Suppression]) -> ValidationReport:
         """Put together what is known."""
@@ -150,12 +154,7 @@ class _Run:
         self._explain(left, status, f"the stage {end.stage.name} {end.failure}")
 
     def _broken_meshes(self) -> bool:
-        return any(
-            finding.severity is Severity.ERROR
-            for (check, _), result in self._results.items()
-            if check.startswith("KV1")
-            for finding in result.findings
-        )
+        return any(check in _GUARDS and _has_error(result) for (check, _), result in self._results.items())
 
     def _missing(self) -> Iterable[CheckKey]:
         return [key for key in keys(list(CATALOGUE.values())) if key not in self._results and key not in self._why]
@@ -169,10 +168,15 @@ class _Run:
             self._why.setdefault(key, (Status.SKIPPED, "it was not asked for") if unwanted else (status, reason))
 
     def _result(self, key: CheckKey) -> CheckResult:
-        if key in self._results:
-            return self._results[key]
-        status, reason = self._why[key]
+        result = self._results.get(key)
+        if result is not None and (key[0] in self.selected or _has_error(result)):
+            return result
+        status, reason = self._why.get(key, (Status.SKIPPED, "it was not asked for"))
         return CheckResult(check=key[0], engine=key[1], status=status, reason=reason)
+
+
+def _has_error(result: CheckResult) -> bool:
+    return any(finding.severity is Severity.ERROR for finding in result.findings)
 
 
 def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:

@@ -1,0 +1,143 @@
+"""`kinematify explain`: what a check verifies, why it matters, how to mend what it finds."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING
+
+import click
+
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.table import format_table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any
+
+    from kinematify.validation.catalogue import Check
+
+_WIDTH = 100
+
+
+@click.command(
+    "explain",
+    short_help="What a check of `validate` verifies, why, and how to mend it.",
+    epilog=examples(
+        "kinematify explain KV301",
+        "kinematify explain kv301 kv401 --json -",
+        "kinematify explain --list",
+        "kinematify explain --markdown > docs/checks.md",
+    ),
+)
+@click.argument("checks", nargs=-1, metavar="[CHECK]...")
+@click.option("--list", "as_list", is_flag=True, help="Table of all checks.")
+@click.option("--markdown", is_flag=True, help="All checks as a page of documentation.")
+@json_option
+def command(*, checks: tuple[str, ...], as_list: bool, markdown: bool, json_to: str | None) -> None:
+    """Explain each CHECK, by its id such as KV301; an unknown one is answered with the nearest.
+
+    Without CHECK, --json writes all of them.
+    """
+    from kinematify.validation.catalogue import CATALOGUE, find_check
+
+    if checks and (as_list or markdown):
+        raise click.UsageError("--list and --markdown show all checks. Leave the ids or the option out.")
+    if not (checks or as_list or markdown or json_to):
+        raise click.UsageError("Give the id of a check, such as KV301, or --list.")
+    chosen = [find_check(name) for name in checks] or list(CATALOGUE.values())
+    if json_to:
+        write_answer({"schema": 1, "checks": [_as_answer(check) for check in chosen]}, json_to)
+    if json_to == "-":
+        return
+    if markdown:
+        click.echo(as_markdown(chosen), nl=False)
+    elif as_list:
+        click.echo(_as_table(chosen))
+    elif checks:
+        click.echo("\n\n".join(map(_describe, chosen)))
+
+
+def as_markdown(checks: Sequence[Check]) -> str:
+    """Return the page `docs/checks.md`."""
+    from kinematify.validation.catalogue import FAMILIES
+
+    lines = [
+        "# Checks of `kinematify validate`",
+        "",
+        "Written by `kinematify explain --markdown > docs/checks.md`; change `validation/catalogue/`, not this page.",
+        "",
+        "An id stays the same for ever. The severity is the worst that a check reports. Words in `this_form` are",
+        "settings of [configs/validation.yaml](../configs/validation.yaml).",
+    ]
+    for prefix, family in FAMILIES.items():
+        members = sorted((check for check in checks if check.id.startswith(prefix)), key=lambda check: check.id)
+        if members:
+            lines += ["", f"## {prefix}xx: {family}", "", *_index(members)]
+            lines += [line for check in members for line in ("", *_section(check))]
+    return "\n".join(lines) + "\n"
+
+
+def _index(checks: Sequence[Check]) -> list[str]:
+    rows = [
+        f"| [{check.id}](#{check.id.lower()}) | {_cell(check.title)} | {check.severity.value} | {check.blame.value} "
+        f"| {_engines(check)} |"
+        for check in checks
+    ]
+    return ["| id | check | severity | blames | engines |", "|---|---|---|---|---|", *rows]
+
+
+def _section(check: Check) -> list[str]:
+    return [
+        f"### {check.id}",
+        "",
+        f"**{check.title}**",
+        "",
+        f"- Verifies: {check.verifies}",
+        f"- Why it matters: {check.matters}",
+        f"- Remedy: {check.remedy}",
+    ]
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _as_table(checks: Sequence[Check]) -> str:
+    rows = [(check.id, check.severity.value, check.blame.value, _engines(check), check.title) for check in checks]
+    return format_table(("id", "severity", "blames", "engines", "check"), sorted(rows))
+
+
+def _describe(check: Check) -> str:
+    from kinematify.validation.catalogue import FAMILIES
+
+    family = f"{check.id[:3]}xx, {FAMILIES[check.id[:3]]}"
+    facts = f"severity {check.severity.value}, blames {check.blame.value}, engines {_engines(check)}"
+    texts = (
+        ("Family", f"{family}; {facts}"),
+        ("Verifies", check.verifies),
+        ("Why it matters", check.matters),
+        ("Remedy", check.remedy),
+    )
+    return "\n".join([f"{check.id}  {check.title}", *(_filled(f"{name}: {text}") for name, text in texts)])
+
+
+def _filled(text: str) -> str:
+    return textwrap.fill(text, _WIDTH, initial_indent="  ", subsequent_indent="  ", break_long_words=False)
+
+
+def _engines(check: Check) -> str:
+    return ", ".join(check.engines) or "-"
+
+
+def _as_answer(check: Check) -> dict[str, Any]:
+    return {
+        "id": check.id,
+        "title": check.title,
+        "severity": check.severity.value,
+        "blame": check.blame.value,
+        "engines": list(check.engines),
+        "verifies": check.verifies,
+        "matters": check.matters,
+        "remedy": check.remedy,
+    }

@@ -1,0 +1,230 @@
+"""What `kinematify validate` says on a terminal: the verdict first, then families, findings and joints."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+import textwrap
+from typing import TYPE_CHECKING
+
+import click
+
+from kinematify.cli.table import format_table
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.text import (
+    FAMILY_HEADINGS,
+    alternative,
+    configuration,
+    family_rows,
+    joint_range,
+    measure,
+    printable,
+    title,
+    where,
+)
+from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.outcome import Outcome
+    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.suppression import Suppression
+
+MANY = 3
+"""From so many findings on that differ in names and numbers only, they are a table."""
+_COLORS = {"pass": "green", "warn": "yellow", "fail": "red", "unusable": "red"}
+_SEVERITY_COLORS = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "blue"}
+_WIDEST = 120
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+
+
+def say(text: str) -> None:
+    """Print on stdout; with colours on a terminal only, and not if the user does not want any."""
+    colored = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    encoding = sys.stdout.encoding or "utf-8"
+    click.echo(text.encode(encoding, "replace").decode(encoding), color=colored)
+
+
+def describe(outcome: Outcome) -> str:
+    """Everything about one model."""
+    if isinstance(outcome, Unusable):
+        return f"{_verdict_line(outcome)}\n{_wrapped(printable(outcome.message))}"
+    blocks = [
+        _verdict_line(outcome),
+        format_table(FAMILY_HEADINGS, family_rows(outcome)),
+        "\n".join(_reasons(outcome)),
+        *(_group_text(group) for group in _groups(outcome.findings)),
+        _joint_table(outcome),
+    ]
+    return "\n\n".join(block for block in blocks if block)
+
+
+def describe_all(outcomes: Sequence[Outcome]) -> str:
+    """Errors and warnings of each of several models in a line each, and a table of all models at the end."""
+    blocks = [_brief(outcome) for outcome in outcomes]
+    rows = [_summary_row(outcome) for outcome in outcomes]
+    headings = ("model", "verdict", "errors", "warnings", "notes", "failed", "skipped", "blocked", "seconds")
+    return "\n\n".join([*blocks, format_table(headings, rows)])
+
+
+def describe_unused(rules: Iterable[Suppression]) -> str:
+    """Name the suppressions that covered nothing; empty if there are none."""
+    names = [f"{rule.check} at {rule.where}" for rule in rules]
+    if not names:
+        return ""
+    return _wrapped(f"Note: these suppressions cover no finding and can go: {', '.join(names)}.")
+
+
+def _verdict_line(outcome: Outcome) -> str:
+    word = click.style(outcome.verdict.upper(), fg=_COLORS[outcome.verdict], bold=True)
+    if isinstance(outcome, Unusable):
+        return f"{word}  {printable(outcome.model)}"
+    severities, statuses = severity_counts(outcome), status_counts(outcome)
+    found = ", ".join(counted_words(severities.get(item, 0), item.value) for item in Severity)
+    ran = statuses.get(Status.PASS, 0) + statuses.get(Status.FAIL, 0)
+    left = [f"{statuses[item]} {item.value}" for item in (Status.SKIPPED, Status.BLOCKED) if statuses.get(item)]
+    suppressed = len(outcome.findings) - len(outcome.counted)
+    parts = [
+        found,
+        *([f"{counted_words(suppressed, 'finding')} suppressed"] if suppressed else []),
+        ", ".join([f"{ran} of {len(outcome.checks)} checks ran", *left]),
+        f"{float(outcome.environment.get('seconds', 0.0)):.1f} s",
+        *(["interrupted: partial"] if outcome.environment.get("interrupted") else []),
+    ]
+    return f"{word}  {printable(outcome.model)}: {'; '.join(parts)}"
+
+
+def _reasons(report: ValidationReport) -> list[str]:
+    """Why checks did not run, a line for each reason."""
+    grouped: dict[tuple[Status, str], list[str]] = {}
+    for check in report.checks:
+        if check.status in (Status.SKIPPED, Status.BLOCKED):
+            grouped.setdefault((check.status, check.reason or "no reason given"), []).append(check.check)
+    return [
+        _wrapped(printable(f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}"), indent=4)
+        for (status, reason), checks in grouped.items()
+    ]
+
+
+def _groups(findings: Sequence[Finding]) -> list[list[Finding]]:
+    """Findings that say the same of different places, in the order of the first of each."""
+    grouped: dict[tuple[object, ...], list[Finding]] = {}
+    for finding in findings:
+        key = (finding.check, finding.engine, finding.severity, finding.blame, finding.suppressed)
+        grouped.setdefault((*key, _pattern(finding)), []).append(finding)
+    return list(grouped.values())
+
+
+def _pattern(finding: Finding) -> str:
+    """Message and remedy without the names and numbers of this finding."""
+    text = f"{finding.message} {finding.remedy}"
+    names = {finding.joint, finding.link, *(finding.pair or ()), *(finding.q or ())} - {None, ""}
+    for name in sorted(map(str, names), key=len, reverse=True):
+        text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", "@", text)
+    return _NUMBER.sub("#", text)
+
+
+def _group_text(group: Sequence[Finding]) -> str:
+    if len(group) < MANY:
+        return "\n\n".join(map(_finding_text, group))
+    first = group[0]
+    table = format_table(("where", "at", "measured", "line"), [_group_row(finding) for finding in group])
+    lines = [
+        _heading(first, f", {len(group)} times"),
+        _wrapped(f"For example: {printable(first.message)}", indent=2),
+        _wrapped(f"Remedy: {printable(first.remedy)}", indent=2),
+        *_suppressed(first),
+        textwrap.indent(table, "  "),
+    ]
+    return "\n".join(lines)
+
+
+def _group_row(finding: Finding) -> tuple[str, ...]:
+    cells = (where(finding), configuration(finding.q), measure(finding), str(finding.line or ""))
+    return tuple(printable(cell) or "-" for cell in cells)
+
+
+def _finding_text(finding: Finding) -> str:
+    at = configuration(finding.q)
+    facts = [
+        where(finding),
+        f"at {at}" if at else "",
+        measure(finding),
+        f"line {finding.line}" if finding.line is not None else "",
+    ]
+    shown = "; ".join(fact for fact in facts if fact)
+    lines = [
+        _heading(finding),
+        *([_wrapped(printable(shown), indent=2)] if shown else []),
+        _wrapped(printable(finding.message), indent=2),
+        _wrapped(f"Remedy: {printable(finding.remedy)}", indent=2),
+        *_suppressed(finding),
+    ]
+    return "\n".join(lines)
+
+
+def _heading(finding: Finding, more: str = "") -> str:
+    severity = click.style(finding.severity.value, fg=_SEVERITY_COLORS[finding.severity], bold=True)
+    return f"{severity} {title(finding)} (blames {finding.blame.value}){more}"
+
+
+def _suppressed(finding: Finding) -> list[str]:
+    if finding.suppressed is None:
+        return []
+    return [_wrapped(f"Suppressed, does not count: {printable(finding.suppressed)}", indent=2)]
+
+
+def _joint_table(report: ValidationReport) -> str:
+    rows = [
+        (
+            printable(joint.joint),
+            joint.kind,
+            joint_range(joint, joint.declared_limits),
+            joint_range(joint, joint.free_travel),
+            alternative(joint),
+        )
+        for joint in report.joints
+    ]
+    headings = ("joint", "type", "declared limits", "free travel", "better alternative")
+    return format_table(headings, rows) if rows else ""
+
+
+def _brief(outcome: Outcome) -> str:
+    if isinstance(outcome, Unusable):
+        return describe(outcome)
+    lines = [_verdict_line(outcome)]
+    for group in _groups([finding for finding in outcome.counted if finding.severity is not Severity.NOTE]):
+        times = f" ({len(group)} times)" if len(group) > 1 else ""
+        about = where(group[0])
+        message = f"{about}: {group[0].message}" if about else group[0].message
+        lines.append(_wrapped(f"{_heading(group[0])}{times}: {printable(message)}", indent=2, hang=4))
+    return "\n".join(lines)
+
+
+def _summary_row(outcome: Outcome) -> tuple[str, ...]:
+    if isinstance(outcome, Unusable):
+        return (printable(outcome.model), outcome.verdict, *([""] * 7))
+    severities, statuses = severity_counts(outcome), status_counts(outcome)
+    return (
+        printable(outcome.model),
+        outcome.verdict,
+        *(str(severities.get(item, 0)) for item in Severity),
+        *(str(statuses.get(item, 0)) for item in (Status.FAIL, Status.SKIPPED, Status.BLOCKED)),
+        f"{float(outcome.environment.get('seconds', 0.0)):.1f}",
+    )
+
+
+def _wrapped(text: str, *, indent: int = 0, hang: int | None = None) -> str:
+    """Fill lines as wide as the terminal; numbers, names and paths are never broken."""
+    return textwrap.fill(
+        text,
+        width=min(shutil.get_terminal_size((_WIDEST, 24)).columns, _WIDEST),
+        initial_indent=" " * (indent if hang is not None else min(indent, 2)),
+        subsequent_indent=" " * (indent if hang is None else hang),
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

@@ -1,0 +1,152 @@
+"""A picture of the declared model, at rest and moved, for the HTML report; drawn in a process of its own."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.part import Part
+from kinematify.assembly.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
+from kinematify.config import load_config
+from kinematify.model.kinematic_model import Inertial, Joint, KinematicModel, Link
+from kinematify.model.preview import render_preview
+from kinematify.validation.isolation import Stage, run_stages
+from kinematify.validation.read import read_model
+from kinematify.validation.stage import StageRequest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.assembly.robot import DescribedJoint, RigidGroup, RobotDescription
+    from kinematify.validation.settings import ValidationSettings
+    from kinematify.validation.stage import Recorder
+
+_FILE = "picture.png"
+_PANEL = {"panel_width": 420, "panel_height": 380, "openness_rays": 3, "subsamples": 2}
+"""A report is looked at on a phone too and must stay small; a panel of this size is drawn in about a second."""
+_NO_INERTIAL = Inertial(mass=1.0, center_of_mass=np.zeros(3), tensor=np.eye(3), source="volume")
+
+
+def picture_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSettings, *, seconds: float) -> bytes:
+    """Draw a model whose file and meshes passed their checks.
+
+    Args:
+        path: The URDF file.
+        package_dirs: Where packages lie.
+        settings: Limits of the process.
+        seconds: Time that it may take.
+
+    Returns:
+        A PNG, empty if it could not be drawn in time: a report stands without its picture.
+    """
+    stage = Stage(name="picture", function="kinematify.validation.formats.picture:run", checks=())
+    with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
+        request = StageRequest(
+            urdf=path.absolute(),
+            package_dirs=tuple(item.absolute() for item in package_dirs),
+            work=Path(folder),
+            settings=settings,
+            selected=frozenset(),
+            deadline=time.time() + seconds,
+        )
+        (end,) = run_stages([stage], request, workers=1)
+        file = Path(folder, _FILE)
+        return file.read_bytes() if end.failure is None and file.is_file() else b""
+
+
+def run(request: StageRequest, _recorder: Recorder) -> None:
+    """Draw the model of a request into its folder; body of the process."""
+    model = shown_model(read_model(request.urdf, package_dirs=request.package_dirs).kinematics)
+    config = load_config("default").preview.model_copy(update=_PANEL)
+    if any(len(link.part.faces) > 1 for link in model.links):
+        render_preview(model, request.work / _FILE, config)
+
+
+@dataclass(frozen=True, eq=False)
+class _Standing:
+    """A robot at rest."""
+
+    robot: RobotDescription
+    rest: dict[str, float]
+    T_world_link: dict[str, FloatArray]
+    top_of: dict[str, str]
+    """Link -> the first of those that it is fixed together with."""
+
+    def place(self, link: str) -> FloatArray:
+        """Origin of a link in the world [m], shape (3,)."""
+        place: FloatArray = self.T_world_link[link][:3, 3]
+        return place
+
+
+def shown_model(robot: RobotDescription) -> KinematicModel:
+    """Return the robot as pictures want it: at rest, links fixed together as one, frames along the world's axes."""
+    rest = rest_configuration(robot)
+    groups = rigid_groups(robot)
+    top_of = {name: group.top for group in groups for name in group.links}
+    standing = _Standing(robot, rest, forward_kinematics(robot, rest), top_of)
+    return KinematicModel(
+        name=robot.name,
+        links=tuple(_link(standing, group) for group in groups),
+        joints=tuple(_joint(standing, joint) for joint in robot.joints if joint.kind is not JointType.FIXED),
+    )
+
+
+def _link(standing: _Standing, group: RigidGroup) -> Link:
+    # A link without shape still carries others: a triangle of no area at its origin stands for it.
+    vertices: list[FloatArray] = [np.tile(standing.place(group.top), (3, 1))]
+    faces: list[IntArray] = [np.array([[0, 1, 2]])]
+    for name in group.links:
+        T_world_link = standing.T_world_link[name]
+        for mesh in standing.robot.link_by_name[name].meshes:
+            faces.append(mesh.faces + sum(map(len, vertices)))
+            vertices.append(mesh.vertices @ T_world_link[:3, :3].T + T_world_link[:3, 3])
+    if group.has_geometry:
+        faces.pop(0)
+    part = Part(name=group.top, vertices=np.concatenate(vertices), faces=np.concatenate(faces))
+    return Link(name=group.top, part=part, T_world_link=_at(standing.place(group.top)), inertial=_NO_INERTIAL)
+
+
+def _joint(standing: _Standing, joint: DescribedJoint) -> Joint:
+    parent = standing.top_of[joint.parent]
+    lower, upper = _range(standing, joint)
+    return Joint(
+        name=joint.name,
+        kind=joint.kind,
+        parent=parent,
+        child=joint.child,
+        T_parent_child=_at(standing.place(joint.child) - standing.place(parent)),
+        axis=standing.T_world_link[joint.child][:3, :3] @ joint.axis,
+        lower=lower,
+        upper=upper,
+        effort=0.0,
+        velocity=0.0,
+    )
+
+
+def _range(standing: _Standing, joint: DescribedJoint) -> tuple[float, float]:
+    """Limits seen from rest; a follower has those that its leader gives it, so that both move by the same share."""
+    at_rest = standing.rest[joint.name]
+    if joint.mimic is None:
+        return joint.lower - at_rest, joint.upper - at_rest
+    leader = joint
+    while leader.mimic is not None:
+        leader = standing.robot.joint_by_name[leader.mimic.joint]
+    if not np.isfinite(leader.upper - leader.lower):
+        return 0.0, 0.0
+    ends = [
+        joint_values(standing.robot, {leader.name: end})[joint.name] - at_rest for end in (leader.lower, leader.upper)
+    ]
+    return min(ends), max(ends)
+
+
+def _at(place: FloatArray) -> FloatArray:
+    transform = np.eye(4)
+    transform[:3, 3] = place
+    return transform

@@ -1,0 +1,169 @@
+"""SARIF 2.1.0 as GitHub code scanning and editors read it: rules from the catalogue, a result per finding."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from kinematify import __version__
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.text import configuration, family, measure, printable, title, where
+from kinematify.validation.outcome import Unusable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.validation.catalogue import Check
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.outcome import Outcome
+    from kinematify.validation.report import ValidationReport
+
+SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "note"}
+_UNUSABLE = "unusable-input"
+
+
+def as_sarif(outcomes: Sequence[Outcome]) -> str:
+    """Return the outcomes as one SARIF run."""
+    reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
+    index = {check: position for position, check in enumerate(CATALOGUE)}
+    run = {
+        "tool": {"driver": _driver()},
+        "columnKind": "utf16CodeUnits",
+        "invocations": [_invocation(outcomes)],
+        "results": [_result(report, finding, index) for report in reports for finding in report.findings],
+    }
+    document = {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
+    return json.dumps(document, indent=2, allow_nan=False) + "\n"
+
+
+def _driver() -> dict[str, Any]:
+    return {
+        "name": "kinematify validate",
+        "version": __version__,
+        "semanticVersion": __version__,
+        "rules": [_rule(check) for check in CATALOGUE.values()],
+        "notifications": [
+            {"id": status.value, "shortDescription": {"text": f"A check was {status.value}."}}
+            for status in (Status.SKIPPED, Status.BLOCKED)
+        ]
+        + [{"id": _UNUSABLE, "shortDescription": {"text": "A file is no URDF at all."}}],
+    }
+
+
+def _rule(check: Check) -> dict[str, Any]:
+    plain = f"{check.verifies}\n\nWhy it matters: {check.matters}\n\nRemedy: {check.remedy}"
+    marked = f"{check.verifies}\n\n**Why it matters:** {check.matters}\n\n**Remedy:** {check.remedy}"
+    return {
+        "id": check.id,
+        "name": "".join(word[:1].upper() + word[1:] for word in _words(check.title)) or check.id,
+        "shortDescription": {"text": check.title},
+        "fullDescription": {"text": check.verifies},
+        "help": {"text": plain, "markdown": marked},
+        "defaultConfiguration": {"level": _LEVELS[check.severity]},
+        "properties": {"tags": [family(check.id), check.blame.value, *check.engines]},
+    }
+
+
+def _words(text: str) -> list[str]:
+    return "".join(letter if letter.isalnum() and letter.isascii() else " " for letter in text).split()
+
+
+def _result(report: ValidationReport, finding: Finding, index: dict[str, int]) -> dict[str, Any]:
+    about = [part for part in (where(finding), configuration(finding.q), measure(finding)) if part]
+    text = printable(" ".join([finding.message, *([f"({'; '.join(about)})"] if about else []), finding.remedy]))
+    result: dict[str, Any] = {
+        "ruleId": finding.check,
+        "ruleIndex": index[finding.check],
+        "level": _LEVELS[finding.severity],
+        "message": {"text": text},
+        "locations": [_location(report.model, finding)],
+        "partialFingerprints": {"kinematify/v1": _fingerprint(finding)},
+        "properties": _properties(finding),
+    }
+    if finding.suppressed is not None:
+        result["suppressions"] = [{"kind": "external", "justification": printable(finding.suppressed)}]
+    return result
+
+
+def _location(model: str, finding: Finding) -> dict[str, Any]:
+    location: dict[str, Any] = {
+        "physicalLocation": {
+            "artifactLocation": {"uri": _uri(model)},
+            # Code scanning shows a result at a line only; what is about the whole model stands at the first.
+            "region": {"startLine": max(finding.line or 1, 1)},
+        }
+    }
+    named = [("joint", finding.joint), ("link", finding.link), *(("link", name) for name in finding.pair or ())]
+    logical = [
+        {"name": printable(name), "fullyQualifiedName": printable(f"{kind}/{name}"), "kind": "element"}
+        for kind, name in dict.fromkeys(named)
+        if name is not None
+    ]
+    return {**location, "logicalLocations": logical} if logical else location
+
+
+def _uri(model: str) -> str:
+    """Relative to the folder of the call where the file lies below it, as code scanning wants, else absolute."""
+    path = os.path.abspath(model)  # noqa: PTH100 - a link stays the file that the repository knows
+    below = Path(path).is_relative_to(Path.cwd())
+    relative = Path(path).relative_to(Path.cwd()).as_posix() if below else path
+    quoted = quote(relative.encode("utf-8", "surrogateescape"))
+    return quoted if below else f"file://{quoted}"
+
+
+def _fingerprint(finding: Finding) -> str:
+    """The same for the same fault in the next run, whatever the numbers and lines are then."""
+    names = (finding.check, finding.engine, finding.joint, finding.link, *(finding.pair or ()))
+    return hashlib.sha256(repr(names).encode("utf-8", "backslashreplace")).hexdigest()[:32]
+
+
+def _properties(finding: Finding) -> dict[str, Any]:
+    values: dict[str, Any] = {
+        "title": title(finding),
+        "blame": finding.blame.value,
+        "engine": finding.engine,
+        "value": finding.value,
+        "limit": finding.limit,
+        "unit": finding.unit,
+        "q": dict(finding.q) if finding.q is not None else None,
+        "remedy": printable(finding.remedy),
+    }
+    return {key: value for key, value in values.items() if value is not None and _is_json(value)}
+
+
+def _is_json(value: Any) -> bool:
+    try:
+        json.dumps(value, allow_nan=False)
+    except ValueError:
+        return False
+    return True
+
+
+def _invocation(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    notes = []
+    for outcome in outcomes:
+        if isinstance(outcome, Unusable):
+            notes.append(_notification(outcome.model, _UNUSABLE, "error", outcome.message))
+            continue
+        notes += [
+            _notification(outcome.model, check.status.value, "note", f"{title(check)}: {check.reason}")
+            for check in outcome.checks
+            if check.status in (Status.SKIPPED, Status.BLOCKED)
+        ]
+    successful = not any(isinstance(o, Unusable) or o.environment.get("interrupted") for o in outcomes)
+    return {"executionSuccessful": successful, "toolExecutionNotifications": notes}
+
+
+def _notification(model: str, name: str, level: str, text: str) -> dict[str, Any]:
+    return {
+        "descriptor": {"id": name},
+        "level": level,
+        "message": {"text": printable(text)},
+        "locations": [{"physicalLocation": {"artifactLocation": {"uri": _uri(model)}}}],
+    }

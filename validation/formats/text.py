@@ -1,0 +1,115 @@
+"""Words and numbers of findings as people read them; shared by all formats and the terminal."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+from kinematify.validation.catalogue import CATALOGUE, FAMILIES
+from kinematify.validation.finding import Status
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.report import JointSummary, ValidationReport
+
+SHOWN_JOINTS = 4
+"""A configuration is shortened to the joints that are farthest from zero."""
+FAMILY_HEADINGS = ("family", "engine", *(status.value for status in Status), "seconds")
+"""Headings of `family_rows`."""
+_UNPRINTABLE = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_TURNING = ("revolute", "continuous")
+
+
+def printable(text: str) -> str:
+    """The text without control characters and halves of characters, which XML and terminals cannot take."""
+    return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
+def where(finding: Finding) -> str:
+    """The joint, the link or the pair that a finding is about; empty if it is about the whole model."""
+    if finding.pair is not None:
+        between = " - ".join(finding.pair)
+        return f"{between} (joint {finding.joint})" if finding.joint else between
+    names = (("joint", finding.joint), ("link", finding.link))
+    return ", ".join(f"{kind} {name}" for kind, name in names if name is not None)
+
+
+def configuration(q: Mapping[str, float] | None) -> str:
+    """The joints that stand away from zero, the farthest first; empty if all are at zero or none is known."""
+    moved = sorted(((name, value) for name, value in (q or {}).items() if value), key=lambda item: -abs(item[1]))
+    shown = ", ".join(f"{name} {number(value)}" for name, value in moved[:SHOWN_JOINTS])
+    hidden = len(moved) - SHOWN_JOINTS
+    return f"{shown} and {hidden} more" if hidden > 0 else shown
+
+
+def measure(finding: Finding) -> str:
+    """What was measured against its limit, with the unit; empty if nothing was."""
+    unit = f" {finding.unit}" if finding.unit else ""
+    if finding.value is None:
+        return "" if finding.limit is None else f"limit {number(finding.limit)}{unit}"
+    measured = f"{number(finding.value)}{unit}"
+    return measured if finding.limit is None else f"{measured}, limit {number(finding.limit)}{unit}"
+
+
+def number(value: float) -> str:
+    """Four digits, without an exponent where that is readable."""
+    return f"{value:.4g}" if math.isfinite(value) else {math.inf: "infinite", -math.inf: "-infinite"}.get(value, "NaN")
+
+
+def joint_range(joint: JointSummary, limits: tuple[float, float] | None) -> str:
+    """A range in degrees or millimetres; a dash if there is none."""
+    if limits is None:
+        return "-"
+    turning = joint.kind in _TURNING
+    low, high = (number(math.degrees(value) if turning else 1000.0 * value) for value in limits)
+    return f"{low} to {high} {'deg' if turning else 'mm'}"
+
+
+def alternative(joint: JointSummary) -> str:
+    """The joint that would explain the geometry better, in a few words; a dash if there is none."""
+    better = joint.best_alternative
+    if not better:
+        return "-"
+    places = [
+        f"{key} ({', '.join(number(float(item)) for item in better[key])})"
+        for key in ("axis", "pivot")
+        if better.get(key) is not None
+    ]
+    kind = [str(better["kind"])] if better.get("kind") else []
+    score = [f"score {number(float(better['score']))}"] if better.get("score") is not None else []
+    return ", ".join([*kind, *places, *score])
+
+
+def figures(check: CheckResult) -> str:
+    """What a check measured, by name."""
+    return ", ".join(f"{name} {number(float(value))}" for name, value in check.measured.items())
+
+
+def family_rows(report: ValidationReport) -> list[tuple[str, ...]]:
+    """Cells of the table of families: title, engine, a count for each status, seconds."""
+    groups: dict[tuple[str, str], list[CheckResult]] = {}
+    for check in report.checks:
+        groups.setdefault((check.check[:3], check.engine or "-"), []).append(check)
+    return [
+        (
+            f"{prefix} {FAMILIES[prefix]}",
+            engine,
+            *(str(sum(check.status is status for check in checks)) for status in Status),
+            f"{sum(check.seconds for check in checks):.2f}",
+        )
+        for (prefix, engine), checks in sorted(groups.items())
+    ]
+
+
+def title(check: CheckResult | Finding) -> str:
+    """Id, title and engine of a check."""
+    engine = f" [{check.engine}]" if check.engine else ""
+    return f"{check.check} {CATALOGUE[check.check].title}{engine}"
+
+
+def family(check: str) -> str:
+    """Title of the family of an id."""
+    return FAMILIES[check[:3]]

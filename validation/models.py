@@ -1,0 +1,89 @@
+"""Which models a user means: files, folders at any depth, and patterns."""
+
+from __future__ import annotations
+
+import difflib
+import glob
+import os
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+SUFFIX = ".urdf"
+_SHOWN_KINDS = 5
+
+
+def find_models(words: Sequence[str]) -> tuple[Path, ...]:
+    """Return the files that `words` stand for, each once, in the order of the words and sorted within a word.
+
+    Args:
+        words: A file is taken as it is, whatever its name; a folder stands for all ``.urdf`` files below it (links to
+            folders are not followed, so that loops of them do no harm); other words are patterns as in a shell, in
+            which ``**`` stands for any folders.
+
+    Raises:
+        InputError: A word stands for nothing, or for something that is neither a file nor a folder.
+    """
+    found = [path for word in words for path in _models_of(word)]
+    once = {os.path.realpath(path): path for path in reversed(found)}
+    return tuple(dict.fromkeys(path for path in found if once[os.path.realpath(path)] is path))
+
+
+def _models_of(word: str) -> list[Path]:
+    path = Path(word)
+    if path.is_dir():
+        return _below(path)
+    if path.is_file():
+        return [path]
+    if path.exists():
+        raise InputError(f"{word} is neither a file nor a folder. Give a URDF file or a folder with URDF files.")
+    if glob.has_magic(word):
+        return _matching(word)
+    raise InputError(_missing(path))
+
+
+def _below(folder: Path) -> list[Path]:
+    files = [Path(where, name) for where, _, names in os.walk(folder) for name in names]
+    models = sorted(file for file in files if file.suffix.lower() == SUFFIX and file.is_file())
+    if not models:
+        raise InputError(f"The folder {folder} holds no {SUFFIX} file at any depth. {_described(files)}")
+    return models
+
+
+def _matching(pattern: str) -> list[Path]:
+    matches = [Path(name) for name in sorted(glob.glob(pattern, recursive=True))]  # noqa: PTH207 - a pattern may be absolute
+    models = [path for path in matches if path.is_file()]
+    folders = [path for path in matches if path.is_dir()]
+    for folder in folders if not models else ():
+        models += [file for file in sorted(folder.rglob("*" + SUFFIX)) if file.is_file()]
+    if not models:
+        raise InputError(
+            f"Nothing matches the pattern {pattern}"
+            + (f" but {len(folders)} folders without any {SUFFIX} file. " if folders else ". ")
+            + "Give the pattern in quotes, with ** for folders at any depth, such as 'models/**/*.urdf'."
+        )
+    return models
+
+
+def _described(files: Iterable[Path]) -> str:
+    """What lies in a folder instead."""
+    kinds = Counter(file.suffix.lower() or "no suffix" for file in files)
+    if not kinds:
+        return "It is empty. Give the folder that holds the models."
+    shown = ", ".join(f"{count} with {kind}" for kind, count in kinds.most_common(_SHOWN_KINDS))
+    xacro = " Expand each .xacro first: xacro FILE.xacro > FILE.urdf." if ".xacro" in kinds else ""
+    return f"It holds {sum(kinds.values())} other files ({shown}).{xacro} Give URDF files or their folder."
+
+
+def _missing(path: Path) -> str:
+    if not os.path.lexists(path):
+        beside = [item.name for item in path.parent.iterdir()] if path.parent.is_dir() else []
+        near = difflib.get_close_matches(path.name, beside, n=1)
+        hint = f"Did you mean {path.parent / near[0]}?" if near else "Check the path."
+        return f"There is no file or folder {path}. {hint}"
+    return f"{path} is a symbolic link that leads nowhere or in a circle. Give the file itself."

@@ -1,0 +1,50 @@
+"""What became of each model of a run over several: a report, or the reason why there is none."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.report import SCHEMA, ValidationReport
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unusable:
+    """A file that is no URDF at all."""
+
+    model: str
+    """Path as it was given."""
+    message: str
+    """What was found and what to do, one paragraph."""
+
+    @property
+    def verdict(self) -> str:
+        """Always ``unusable``."""
+        return "unusable"
+
+    def as_json(self) -> dict[str, Any]:
+        """The same keys as a report's, with the reason under ``error``."""
+        return {"schema": SCHEMA, "model": self.model, "verdict": self.verdict, "error": self.message}
+
+
+Outcome = ValidationReport | Unusable
+
+
+def severity_counts(report: ValidationReport) -> Mapping[Severity, int]:
+    """Findings that count, by severity."""
+    return Counter(finding.severity for finding in report.counted)
+
+
+def status_counts(report: ValidationReport) -> Mapping[Status, int]:
+    """Checks by status; a check in two engines counts twice."""
+    return Counter(check.status for check in report.checks)
+
+
+def counted_words(count: int, noun: str) -> str:
+    """``1 error``, ``2 errors``, ``no errors``."""
+    return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"
