@@ -87,7 +87,7 @@ def command(
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
     with progress_reporter() as progress:
-        _use_one_thread(settings)
+        use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
         inference = infer(given, config=settings, base=base, progress=progress)
@@ -96,10 +96,10 @@ def command(
     if json_to:
         write_answer(_as_answer(inference, out), json_to)
     if json_to != "-":
-        click.echo(_describe(inference, out))
+        click.echo(describe(inference, out))
 
 
-def _use_one_thread(config: Config) -> None:
+def use_one_thread(config: Config) -> None:
     """Keep torch to one thread: DW-CAVL's tensors are small, so that more threads cost time and change last digits."""
     if config.joints.method == "cavl":
         import torch
@@ -139,7 +139,8 @@ def _confidences(inference: Inference) -> dict[str, float]:
     return {names[estimate.child]: estimate.confidence for estimate in inference.joints}
 
 
-def _describe(inference: Inference, out: Path) -> str:
+def describe(inference: Inference, out: Path) -> str:
+    """What was found, as people read it: the joints, what to look at first, and the files."""
     confidences = _confidences(inference)
     rows = [_describe_joint(joint, confidences[joint.child]) for joint in inference.model.joints]
     lines = [

@@ -39,15 +39,22 @@ def write_inference(inference: Inference, out: str | Path, *, overwrite: bool = 
     Raises:
         OutputError: `out` exists and must not be replaced, or cannot be written.
     """
+    write_model_folder(
+        Path(out), lambda folder: write_inference_files(inference, folder, preview=preview), overwrite=overwrite
+    )
 
-    def write(folder: Path) -> None:
-        write_urdf(inference.model, folder)
-        text = json.dumps(inference_record(inference), indent=1, allow_nan=False)
-        (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
-        if preview:
-            render_preview(inference.model, folder / "preview.png", inference.config.preview)
 
-    write_model_folder(Path(out), write, overwrite=overwrite)
+def write_inference_files(inference: Inference, folder: Path, *, preview: bool = True) -> None:
+    """Write what belongs to a model folder into an existing folder.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    write_urdf(inference.model, folder)
+    text = json.dumps(inference_record(inference), indent=1, allow_nan=False)
+    (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
+    if preview:
+        render_preview(inference.model, folder / "preview.png", inference.config.preview)
 
 
 def inference_record(inference: Inference) -> dict[str, Any]:

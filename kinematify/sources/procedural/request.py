@@ -1,0 +1,72 @@
+"""What to build, from a sentence or from a category with settings."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+from kinematify.sources.procedural.families import FAMILIES
+from kinematify.sources.procedural.family import build
+from kinematify.sources.procedural.language.understand import understand
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.sources.procedural.blueprint import Blueprint
+    from kinematify.sources.procedural.family import Family, Value
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """A family with what was asked for."""
+
+    family: str
+    values: Mapping[str, Value]
+    understood: tuple[str, ...] = ()
+    """Short phrases, for a sentence."""
+    ignored: tuple[str, ...] = ()
+    """Words of a sentence that mean nothing here."""
+
+    def build(self, *, seed: int | None = None) -> Blueprint:
+        """Build the object; a seed draws what was not asked for.
+
+        Raises:
+            InputError: A value is out of its bounds.
+        """
+        return build(FAMILIES[self.family], self.values, seed=seed)
+
+
+def from_text(sentence: str) -> Request:
+    """Read a sentence.
+
+    Raises:
+        InputError: It cannot be understood; see `understand`.
+    """
+    meant = understand(sentence, FAMILIES)
+    return Request(family=meant.family, values=meant.values, understood=meant.understood, ignored=meant.ignored)
+
+
+def from_category(name: str, settings: Mapping[str, str]) -> Request:
+    """Take a category with settings as they are typed.
+
+    Raises:
+        InputError: There is no such category; the message names the nearest.
+    """
+    return Request(family=find_family(name).name, values=dict(settings))
+
+
+def find_family(name: str) -> Family:
+    """Return the family of a name, in any letter case, with spaces or underscores.
+
+    Raises:
+        InputError: There is none; the message names the nearest.
+    """
+    wanted = name.strip().lower().replace(" ", "_").replace("-", "_")
+    words = {word.replace(" ", "_"): name for name, family in FAMILIES.items() for word in (name, *family.words)}
+    if wanted in words:
+        return FAMILIES[words[wanted]]
+    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=3, cutoff=0.5)]
+    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"There are {', '.join(FAMILIES)}."
+    raise InputError(f"There is no category {name!r}. {hint}")
