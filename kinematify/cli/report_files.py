@@ -105,9 +105,10 @@ def _write(option: str, path: Path, text: str) -> None:
         if replaced:
             target.replace(path.resolve())
     except OSError as error:
-        if replaced:
-            target.unlink(missing_ok=True)
         raise OutputError(
             f"The report of {option} cannot be written to {path}: {error.strerror}. Give a file in a folder that "
             "exists and is writable."
         ) from error
+    finally:
+        if replaced:
+            target.unlink(missing_ok=True)

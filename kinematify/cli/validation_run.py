@@ -1,0 +1,119 @@
+"""One call of `kinematify validate`: models one after the other, and what is said about them at the end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import click
+
+from kinematify.cli.verdict import describe, describe_all, describe_unused, say
+from kinematify.errors import InputError
+from kinematify.validation.finding import Severity
+from kinematify.validation.outcome import Unusable
+from kinematify.validation.run import validate
+from kinematify.validation.suppression_file import unused_suppressions
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.cli.progress import Reporter
+    from kinematify.validation.outcome import Outcome
+    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.settings import ValidationSettings
+    from kinematify.validation.suppression import Suppression
+
+PICTURES_AT_MOST = 12
+"""With more models an HTML report shows none: it would take long to make and to load."""
+PICTURE_SECONDS = 15.0
+"""A picture that takes longer is left out [s]; known robots take 1 to 3."""
+_FOUND_ERRORS, _UNUSABLE_INPUT, _INTERRUPTED = 1, 2, 130
+
+
+@dataclass(kw_only=True)
+class ValidationRun:
+    """What was asked for, and what has come of it so far."""
+
+    models: tuple[Path, ...]
+    package_dirs: tuple[Path, ...]
+    selected: frozenset[str]
+    engines: tuple[str, ...]
+    rules: tuple[Suppression, ...]
+    settings: ValidationSettings
+    workers: int
+    with_pictures: bool
+    outcomes: list[Outcome] = field(default_factory=list)
+    pictures: dict[str, bytes] = field(default_factory=dict)
+    interrupted: bool = False
+
+    def all(self, progress: Reporter) -> None:
+        """Validate one model after the other; each has all processes for itself."""
+        for number, model in enumerate(self.models):
+            label = f"{model.parent.name}/{model.name} ({number + 1} of {len(self.models)}): "
+            prefix = label if len(self.models) > 1 else ""
+
+            def tell(stage: str, fraction: float, done: int = number, prefix: str = prefix) -> None:
+                progress(prefix + stage, (done + fraction) / len(self.models))
+
+            self._one(model, tell)
+            if self.interrupted:
+                return
+
+    def _one(self, model: Path, progress: Reporter) -> None:
+        try:
+            report = validate(
+                model,
+                package_dirs=self.package_dirs,
+                settings=self.settings,
+                selected=self.selected,
+                engines=self.engines,
+                suppressions=self.rules,
+                workers=self.workers,
+                progress=progress,
+            )
+        except InputError as error:
+            self.outcomes.append(Unusable(model=str(model), message=str(error)))
+            return
+        self.outcomes.append(report)
+        self.interrupted = bool(report.environment.get("interrupted"))
+        if self.with_pictures and len(self.models) <= PICTURES_AT_MOST and _can_be_drawn(report):
+            progress("picture", 0.97)
+            self.pictures[report.model] = self._picture(model)
+
+    def _picture(self, model: Path) -> bytes:
+        from kinematify.validation.formats.picture import picture_of
+
+        return picture_of(model, self.package_dirs, self.settings, seconds=PICTURE_SECONDS)
+
+    @property
+    def exit_status(self) -> int:
+        """130 after Ctrl-C, else the worst of the models."""
+        if self.interrupted:
+            return _INTERRUPTED
+        verdicts = {outcome.verdict for outcome in self.outcomes}
+        if "unusable" in verdicts:
+            return _UNUSABLE_INPUT
+        return _FOUND_ERRORS if "fail" in verdicts else 0
+
+    def say(self, *, quiet: bool) -> None:
+        """Tell the user: the report on stdout unless a machine reads that, what is no result on stderr."""
+        reports = [outcome for outcome in self.outcomes if not isinstance(outcome, Unusable)]
+        if len(self.models) > 1 and not quiet:
+            say(describe_all(self.outcomes))
+        elif reports and not quiet:
+            say(describe(reports[0]))
+        else:
+            for outcome in self.outcomes:
+                if isinstance(outcome, Unusable):
+                    click.echo(f"Error: {outcome.message}", err=True)
+        if self.interrupted:
+            done = f"{len(self.outcomes)} of {len(self.models)} models"
+            click.echo(f"Interrupted. What is known by now was reported ({done}, the last one in part).", err=True)
+        elif unused := describe_unused(unused_suppressions(self.rules, reports)):
+            click.echo(unused, err=True)
+
+
+def _can_be_drawn(report: ValidationReport) -> bool:
+    """True if the file and its meshes can be read and nobody waits for the end."""
+    broken = any(item.check.startswith("KV1") and item.severity is Severity.ERROR for item in report.findings)
+    return not broken and not report.environment.get("interrupted")
