@@ -105,7 +105,7 @@ def _reasons(report: ValidationReport) -> list[str]:
         if check.status in (Status.SKIPPED, Status.BLOCKED):
             grouped.setdefault((check.status, check.reason or "no reason given"), []).append(check.check)
     return [
-        _wrapped(printable(f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}"), indent=4)
+        _wrapped(printable(f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}"), 2, 4)
         for (status, reason), checks in grouped.items()
     ]
 
@@ -135,8 +135,8 @@ def _group_text(group: Sequence[Finding]) -> str:
     table = format_table(("where", "at", "measured", "line"), [_group_row(finding) for finding in group])
     lines = [
         _heading(first, f", {len(group)} times"),
-        _wrapped(f"For example: {printable(first.message)}", indent=2),
-        _wrapped(f"Remedy: {printable(first.remedy)}", indent=2),
+        _wrapped(f"For example: {printable(first.message)}", 2, 2),
+        _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
         *_suppressed(first),
         textwrap.indent(table, "  "),
     ]
@@ -159,9 +159,9 @@ def _finding_text(finding: Finding) -> str:
     shown = "; ".join(fact for fact in facts if fact)
     lines = [
         _heading(finding),
-        *([_wrapped(printable(shown), indent=2)] if shown else []),
-        _wrapped(printable(finding.message), indent=2),
-        _wrapped(f"Remedy: {printable(finding.remedy)}", indent=2),
+        *([_wrapped(printable(shown), 2, 2)] if shown else []),
+        _wrapped(printable(finding.message), 2, 2),
+        _wrapped(f"Remedy: {printable(finding.remedy)}", 2, 2),
         *_suppressed(finding),
     ]
     return "\n".join(lines)
@@ -175,7 +175,7 @@ def _heading(finding: Finding, more: str = "") -> str:
 def _suppressed(finding: Finding) -> list[str]:
     if finding.suppressed is None:
         return []
-    return [_wrapped(f"Suppressed, does not count: {printable(finding.suppressed)}", indent=2)]
+    return [_wrapped(f"Suppressed, does not count: {printable(finding.suppressed)}", 2, 2)]
 
 
 def _joint_table(report: ValidationReport) -> str:
@@ -201,7 +201,7 @@ def _brief(outcome: Outcome) -> str:
         times = f" ({len(group)} times)" if len(group) > 1 else ""
         about = where(group[0])
         message = f"{about}: {group[0].message}" if about else group[0].message
-        lines.append(_wrapped(f"{_heading(group[0])}{times}: {printable(message)}", indent=2, hang=4))
+        lines.append(_wrapped(f"{_heading(group[0])}{times}: {printable(message)}", 2, 4))
     return "\n".join(lines)
 
 
@@ -218,13 +218,13 @@ def _summary_row(outcome: Outcome) -> tuple[str, ...]:
     )
 
 
-def _wrapped(text: str, *, indent: int = 0, hang: int | None = None) -> str:
-    """Fill lines as wide as the terminal; numbers, names and paths are never broken."""
+def _wrapped(text: str, first: int = 0, rest: int = 0) -> str:
+    """Fill lines as wide as the terminal, indented by `first` and `rest`; no number, name or path is broken."""
     return textwrap.fill(
         text,
         width=min(shutil.get_terminal_size((_WIDEST, 24)).columns, _WIDEST),
-        initial_indent=" " * (indent if hang is not None else min(indent, 2)),
-        subsequent_indent=" " * (indent if hang is None else hang),
+        initial_indent=" " * first,
+        subsequent_indent=" " * rest,
         break_long_words=False,
         break_on_hyphens=False,
     )

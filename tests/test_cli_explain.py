@@ -1,0 +1,72 @@
+"""`kinematify explain`, and the page of checks that it writes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from kinematify.cli.app import run
+from kinematify.validation.catalogue import CATALOGUE, FAMILIES
+from tests.reports import add_checks
+
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "checks.md"
+
+
+def said(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    assert run(["explain", *words]) == 0
+    return capsys.readouterr().out
+
+
+def test_a_check_is_explained_in_any_case(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    add_checks(monkeypatch)
+    text = said(capsys, "kv496")
+    for part in (
+        "KV496  Doors & drawers of KV496",
+        FAMILIES["KV4"],
+        "error",
+        "kinematics",
+        "mujoco",
+        "It jams.",
+        "Move it.",
+    ):
+        assert part in text
+
+
+def test_unknown_ids_are_answered_with_the_nearest(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    add_checks(monkeypatch)
+    assert run(["explain", "KV397"]) == 2
+    assert "KV396" in capsys.readouterr().err
+
+
+def test_list_has_every_check(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = said(capsys, "--list").splitlines()[2:]
+    assert sorted(line.split()[0] for line in lines) == sorted(CATALOGUE)
+
+
+def test_json_has_every_field(capsys: pytest.CaptureFixture[str]) -> None:
+    answer = json.loads(said(capsys, "--json", "-"))
+    assert [check["id"] for check in answer["checks"]] == list(CATALOGUE)
+    assert all(check["verifies"] and check["matters"] and check["remedy"] for check in answer["checks"])
+
+
+@pytest.mark.parametrize("words", [[], ["KV150", "--list"], ["KV150", "--markdown"]])
+def test_words_that_make_no_sense_end_with_2(words: list[str]) -> None:
+    assert run(["explain", *words]) == 2
+
+
+def test_every_check_belongs_to_a_family_and_is_written_out() -> None:
+    for check in CATALOGUE.values():
+        assert check.id[:3] in FAMILIES
+        assert check.title.strip() == check.title
+        assert all(text.endswith((".", "?", ")")) for text in (check.verifies, check.matters, check.remedy)), check.id
+
+
+def test_the_page_of_checks_is_up_to_date(capsys: pytest.CaptureFixture[str]) -> None:
+    text = said(capsys, "--markdown")
+    assert PAGE.read_text(encoding="utf-8") == text, (
+        "docs/checks.md is older than the catalogue: kinematify explain --markdown > docs/checks.md"
+    )
