@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -369,3 +370,16 @@ def test_python_works_in_a_plain_script(chest: Path) -> None:
 def test_python_raises_for_what_is_no_urdf(tmp_path: Path) -> None:
     with pytest.raises(InputError):
         kinematify.validate(tmp_path / "none.urdf")
+
+
+@pytest.mark.parametrize(("variable", "colored"), [("", True), ("1", False)])
+def test_colours_are_for_terminals_of_those_who_want_them(variable: str, colored: bool) -> None:
+    code = "import click\nfrom kinematify.cli.verdict import say\nsay(click.style('FAIL', fg='red'))"
+    ours, theirs = pty.openpty()
+    words = [sys.executable, "-c", code]
+    subprocess.run(words, stdout=theirs, check=True, timeout=60, env={**os.environ, "NO_COLOR": variable})
+    os.close(theirs)
+    shown = os.read(ours, 10_000).decode()
+    os.close(ours)
+    assert "FAIL" in shown
+    assert ("\x1b[31m" in shown) is colored
