@@ -24,6 +24,51 @@ class BudgetSettings(StageConfig):
 class FileSettings(StageConfig):
     """KV1xx: the file, the tree and the meshes."""
 
+    max_elements: int
+    """XML elements of a file."""
+    max_links: int
+    """Links, and joints, of a model."""
+    max_depth: int
+    """Joints one below the other."""
+    max_mimic_chain: int
+    """Followers of followers."""
+    max_line_bytes: int
+    """Longer lines are a warning [bytes]."""
+    max_name: int
+    """Longer names are a warning [characters]."""
+    max_number: float
+    """Largest absolute value of any number, in its own unit."""
+    max_angle: float
+    """Larger roll, pitch and yaw are a warning [rad]."""
+    zero_axis: float
+    """Axes of this length or shorter have no direction."""
+    unit_axis_tolerance: float
+    """Deviation of the length of an axis from one that is not mentioned."""
+    rounded_axis_tolerance: float
+    """Deviation that is only a note."""
+    zero_scale: float
+    """Absolute factors of a mesh scale up to here leave nothing."""
+    max_mesh_bytes: int
+    """Larger mesh files are not opened [bytes]."""
+    max_faces: int
+    """Triangles of all mesh files together."""
+    stl_faces: int
+    """Triangles that MuJoCo reads from an STL; meshes with more are a warning."""
+    flat: float
+    """Thickness of a mesh that counts as flat, fraction of its diagonal."""
+    degenerate_share: float
+    """Share of triangles without area that is a warning."""
+    tiny: float
+    """Diagonal below which the unit of a model is wrong [m]."""
+    small: float
+    """Diagonal below which it is suspicious [m]."""
+    large: float
+    """Diagonal above which it is suspicious [m]."""
+    huge: float
+    """Diagonal above which the unit of a model that moves is wrong [m]."""
+    slip: float
+    """Ratio between sizes that belong together that can only be a slip of units."""
+
 
 class PhysicsSettings(StageConfig):
     """KV2xx: declared physics."""
@@ -39,6 +84,11 @@ class GeometrySettings(StageConfig):
 
 class EvidenceSettings(StageConfig):
     """KV34x to KV36x: agreement of the declared joint with the contact geometry."""
+
+    same_deg: float
+    """Lines closer than this in direction and in position are one [deg]."""
+    same_distance: float
+    """The same for their distance, fraction of the child's diagonal."""
 
 
 class EngineSettings(StageConfig):

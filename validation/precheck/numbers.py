@@ -1,0 +1,179 @@
+"""KV132 and KV133: every number is there, finite, and of a size that a machine can have."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.validation.finding import Severity
+from kinematify.validation.precheck.problem import Problem, blame_of, line_of, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from lxml.etree import _Element
+
+    from kinematify.validation.precheck.urdf import Urdf
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_Counts = dict[str, dict[str, tuple[int, ...]]]
+"""Tag -> attribute -> counts of numbers that are right, the usual one first."""
+
+_ORIGIN: dict[str, tuple[int, ...]] = {"xyz": (3,), "rpy": (3,)}
+_JOINT: _Counts = {
+    "origin": _ORIGIN,
+    "axis": {"xyz": (3,)},
+    "limit": {"lower": (1,), "upper": (1,), "effort": (1,), "velocity": (1,)},
+    "mimic": {"multiplier": (1,), "offset": (1,)},
+    "dynamics": {"damping": (1,), "friction": (1,)},
+}
+_INERTIAL: _Counts = {
+    "origin": _ORIGIN,
+    "mass": {"value": (1,)},
+    "inertia": dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), (1,)),
+}
+_SHAPES: _Counts = {
+    "box": {"size": (3,)},
+    "sphere": {"radius": (1,)},
+    "cylinder": {"radius": (1,), "length": (1,)},
+    "capsule": {"radius": (1,), "length": (1,)},
+    "mesh": {"scale": (3, 1)},  # some exporters write one factor for all axes
+}
+_COLOR: _Counts = {"color": {"rgba": (4,)}}
+_DRIVE = ("effort", "velocity", "damping", "friction")
+_COUNTS = {1: "one finite number", 3: "three finite numbers", 4: "four finite numbers"}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Field:
+    """An attribute that holds numbers."""
+
+    element: _Element
+    attribute: str
+    counts: tuple[int, ...]
+    joint: str | None
+    link: str | None
+
+    @property
+    def text(self) -> str:
+        return self.element.get(self.attribute) or ""
+
+    @property
+    def called(self) -> str:
+        owner = f"the joint {self.joint}" if self.joint is not None else f"the link {self.link}"
+        return f"{self.attribute}={shown(self.text)} of <{self.element.tag}> of {owner}"
+
+
+def unreadable_numbers(urdf: Urdf) -> Iterator[Problem]:
+    """KV132."""
+    for field in _fields(urdf):
+        values = finite_numbers(field.text)
+        if values is not None and len(values) in field.counts:
+            continue
+        yield Problem(
+            message=f"{field.called} is {_what(field.text, values)}; expected {_COUNTS[field.counts[0]]}.",
+            remedy=_remedy(field.text),
+            severity=Severity.WARNING if field.element.tag == "color" else None,
+            blame=blame_of(field.element),
+            joint=field.joint,
+            link=field.link,
+            line=line_of(field.element),
+        )
+
+
+def finite_numbers(text: str) -> list[float] | None:
+    """The numbers of an attribute as every reader understands them; None if one is no finite number."""
+    words = text.split()
+    if not all(_NUMBER.fullmatch(word) for word in words):
+        return None
+    values = [float(word) for word in words]
+    return values if all(map(math.isfinite, values)) else None
+
+
+def _what(text: str, values: list[float] | None) -> str:
+    if values is not None:
+        return f"{len(values)} numbers" if values else "empty"
+    return "not finite" if re.search(r"nan|inf|e\+?\d{3}", text, re.IGNORECASE) else "no number that readers agree on"
+
+
+def _remedy(text: str) -> str:
+    if "$" in text:
+        return "This is an expression of xacro: expand the file with `xacro FILE > robot.urdf`."
+    if "," in text:
+        return "Separate numbers by spaces and write decimals with a point."
+    return "Write plain numbers separated by spaces, such as 0 0.5 1e-3; find out why the exporter failed here."
+
+
+def implausible_numbers(urdf: Urdf) -> Iterator[Problem]:
+    """KV133."""
+    settings = urdf.settings
+    for field in _fields(urdf):
+        values = finite_numbers(field.text)
+        if not values or field.element.tag == "color":
+            continue
+        largest = max(values, key=abs)
+        if abs(largest) > settings.max_number:
+            yield _huge(field, largest, settings.max_number)
+        elif field.attribute == "rpy" and abs(largest) > settings.max_angle:
+            yield Problem(
+                message=f"{field.called} turns by {largest:g} rad, more than a whole turn; it looks like degrees.",
+                remedy=f"Write {math.radians(largest):.6g} if degrees were meant.",
+                severity=Severity.WARNING,
+                blame=blame_of(field.element),
+                value=abs(largest),
+                limit=settings.max_angle,
+                unit="rad",
+                joint=field.joint,
+                link=field.link,
+                line=line_of(field.element),
+            )
+
+
+def _huge(field: _Field, value: float, limit: float) -> Problem:
+    bound = field.attribute in ("lower", "upper")
+    drive = field.attribute in _DRIVE
+    return Problem(
+        message=f"{field.called} is {value:g}; above {limit:g} engines lose all digits and simulations turn into NaN.",
+        remedy=(
+            'Write type="continuous" where a hinge has no limit.'
+            if bound
+            else "Write what the motor can do."
+            if drive
+            else "Write the true value; all lengths are in metres."
+        ),
+        severity=Severity.WARNING if drive else None,
+        blame=blame_of(field.element),
+        joint=field.joint,
+        link=field.link,
+        value=value,
+        limit=limit,
+        line=line_of(field.element),
+    )
+
+
+PROBES = {"KV132": unreadable_numbers, "KV133": implausible_numbers}
+
+
+def _fields(urdf: Urdf) -> Iterator[_Field]:
+    """Every attribute with numbers that is there; absent ones have defaults or checks of their own."""
+    for joint in urdf.joints:
+        yield from _below(joint.element, _JOINT, joint=joint.name)
+    for link in urdf.links:
+        name = link.get("name") or ""
+        for inertial in link.findall("inertial"):
+            yield from _below(inertial, _INERTIAL, link=name)
+    for name, shape in urdf.shapes():
+        yield from _below(shape, {"origin": _ORIGIN}, link=name)
+        for geometry in shape.findall("geometry"):
+            yield from _below(geometry, _SHAPES, link=name)
+        for material in shape.findall("material"):
+            yield from _below(material, _COLOR, link=name)
+
+
+def _below(parent: _Element, table: _Counts, *, joint: str | None = None, link: str | None = None) -> Iterator[_Field]:
+    for child in parent:
+        for attribute, counts in table.get(str(child.tag), {}).items():
+            if child.get(attribute) is not None:
+                yield _Field(element=child, attribute=attribute, counts=counts, joint=joint, link=link)

@@ -1,0 +1,154 @@
+"""KV141 to KV144: the mesh files that the document names, not opened yet."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from kinematify.assembly.mesh_paths import MESH_SUFFIXES, find_mesh
+from kinematify.errors import DescriptionError
+from kinematify.validation.finding import Severity
+from kinematify.validation.precheck.problem import Problem, line_of, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.validation.precheck.urdf import Urdf
+
+_BY_ENGINES = (".obj", ".stl")
+_DRIVE = re.compile(r"[A-Za-z]:[\\/]")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Reference:
+    """A mesh element."""
+
+    link: str
+    filename: str
+    line: int
+    path: Path | None
+    """None where there is no such file."""
+    fault: str
+    """Why there is none."""
+
+
+def missing_files(urdf: Urdf) -> Iterator[Problem]:
+    """KV141."""
+    for reference in _references(urdf):
+        if reference.path is None:
+            yield Problem(
+                message=reference.fault,
+                remedy=_remedy(reference.filename, urdf.folder),
+                link=reference.link,
+                line=reference.line,
+            )
+
+
+def _remedy(filename: str, folder: Path) -> str:
+    if "$(" in filename or "${" in filename:
+        return "This is an expression of xacro: expand the file with `xacro FILE > robot.urdf`."
+    if filename.startswith(("package://", "model://")):
+        package = filename.split("/")[2]
+        return f"Name the folder of the package {package}, or the one that holds it, with --package-dir."
+    if filename.startswith(("http://", "https://")):
+        return "Download the mesh and write its path relative to the URDF."
+    if _DRIVE.match(filename):
+        return "This path is on the drive of a Windows machine: copy the mesh and write its path relative to the URDF."
+    if filename.startswith(("/", "file:")):
+        return "Absolute paths hold on one machine only: write the path relative to the URDF."
+    near = _same_but_for_case(folder / filename.replace("\\", "/"))
+    return f"Did you mean {near.name}? Every letter counts." if near else "Put the file there, or correct the path."
+
+
+def _same_but_for_case(path: Path) -> Path | None:
+    try:
+        return next((item for item in path.parent.iterdir() if item.name.lower() == path.name.strip().lower()), None)
+    except (OSError, ValueError):
+        return None
+
+
+def unknown_formats(urdf: Urdf) -> Iterator[Problem]:
+    """KV142."""
+    converted: dict[str, list[_Reference]] = defaultdict(list)
+    for reference in _references(urdf):
+        suffix = PurePosixPath(reference.filename.replace("\\", "/")).suffix.lower()
+        if suffix not in MESH_SUFFIXES:
+            yield Problem(
+                message=f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can "
+                "be read.",
+                remedy=f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
+                link=reference.link,
+                line=reference.line,
+            )
+        elif suffix not in _BY_ENGINES:
+            converted[suffix].append(reference)
+    for suffix, references in converted.items():
+        yield Problem(
+            message=f"{len(references)} meshes are {suffix} files, which MuJoCo does not read (OBJ and binary STL "
+            "only). They are converted for the checks.",
+            remedy="Export OBJ or binary STL as well if MuJoCo is to load the file itself.",
+            severity=Severity.NOTE,
+            value=len(references),
+            line=references[0].line,
+        )
+
+
+def repeated_base_names(urdf: Urdf) -> Iterator[Problem]:
+    """KV143, one note for all of them."""
+    found: dict[str, dict[Path, _Reference]] = defaultdict(dict)
+    for reference in _references(urdf):
+        if reference.path is not None:
+            found[reference.path.stem].setdefault(reference.path, reference)
+    repeated = {name: list(references.values()) for name, references in found.items() if len(references) > 1}
+    if repeated:
+        name, (first, second, *_) = next(iter(repeated.items()))
+        yield Problem(
+            message=f"{len(repeated)} names stand for several mesh files each, the first is {shown(name)} "
+            f"({shown(first.filename)} and {shown(second.filename)}); MuJoCo names meshes after their files and takes "
+            "one for the other when it strips the paths.",
+            remedy="Give every mesh file a name of its own. Here they are renamed for the engines.",
+            link=second.link,
+            value=len(repeated),
+            line=second.line,
+        )
+
+
+def bound_paths(urdf: Urdf) -> Iterator[Problem]:
+    """KV144, one note for all of them."""
+    bound = [reference for reference in _references(urdf) if _is_bound(reference.filename)]
+    if bound:
+        yield Problem(
+            message=f"{len(bound)} meshes have paths that hold on one machine or system only, the first is "
+            f"{shown(bound[0].filename)}.",
+            remedy="Write paths relative to the URDF with forward slashes, or package://NAME/PATH.",
+            value=len(bound),
+            link=bound[0].link,
+            line=bound[0].line,
+        )
+
+
+PROBES = {"KV141": missing_files, "KV142": unknown_formats, "KV143": repeated_base_names, "KV144": bound_paths}
+
+
+def _is_bound(filename: str) -> bool:
+    return filename.startswith(("/", "file:")) or "\\" in filename or _DRIVE.match(filename) is not None
+
+
+def _references(urdf: Urdf) -> Iterator[_Reference]:
+    """Mesh elements with a file name; those without have a check of their own."""
+    for link, element in urdf.shapes():
+        for mesh in element.iterfind("geometry/mesh"):
+            filename = mesh.get("filename") or ""
+            if filename.strip():
+                path, fault = _found(filename, link, urdf)
+                yield _Reference(link=link, filename=filename, line=line_of(mesh), path=path, fault=fault)
+
+
+def _found(filename: str, link: str, urdf: Urdf) -> tuple[Path | None, str]:
+    try:
+        return find_mesh(filename, urdf.folder, urdf.package_dirs, f"link {link}"), ""
+    except DescriptionError as error:
+        return None, str(error)
