@@ -121,6 +121,14 @@ def fit_edge(
     )
 
 
+def score_line(
+    surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, *, diagonal: float, config: BearingConfig
+) -> BearingLine:
+    """Score one given line as a bearing of a contact edge, as `fit_edge` scores its own, without refining it."""
+    sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
+    return _scored(sides, line, contact_centroid(sides), diagonal, config)
+
+
 def _rank(
     sides: Sides, proposals: Lines, centroid: FloatArray, diagonal: float, config: BearingConfig
 ) -> list[BearingLine]:

@@ -1,0 +1,135 @@
+"""The bodies of a model at rest, and what is derived from them once: surfaces, contacts, bearings, declared tree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kinematify.assembly.erase import erase
+from kinematify.contact.build import build_contact_graph, exact_gap
+from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearing import fit_edge, score_line
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.assembly.robot import RobotDescription
+    from kinematify.assembly.truth import GroundTruth
+    from kinematify.config import Config
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.geometry.surface import PartSurface
+    from kinematify.joints.bearing import BearingLine, EdgeBearing
+    from kinematify.joints.line import Line
+
+Pair = tuple[int, int]
+"""Two bodies, the lower index first."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeclaredTree:
+    """Which body carries which, as the file says; body i is part i of the assembly (`joints.rooted.RootedTree`)."""
+
+    parents: tuple[int, ...]
+    """Parent of every body; -1 for the root."""
+
+    @property
+    def root(self) -> int:
+        """Index of the base body."""
+        return self.parents.index(-1)
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """Children of every body in ascending order."""
+        everything = range(len(self.parents))
+        return tuple(tuple(child for child in everything if self.parents[child] == body) for body in everything)
+
+    @cached_property
+    def depths(self) -> tuple[int, ...]:
+        """Joints between every body and the root."""
+        depths = [0] * len(self.parents)
+        for parent, child in self.edges():
+            depths[child] = depths[parent] + 1
+        return tuple(depths)
+
+    def edges(self) -> Iterator[Pair]:
+        """Yield (parent, child), parents before children."""
+        queue = [self.root]
+        for body in queue:
+            for child in self.children[body]:
+                yield body, child
+                queue.append(child)
+
+    def subtree(self, body: int) -> frozenset[int]:
+        """A body and everything that it carries."""
+        found = [body]
+        for item in found:
+            found.extend(self.children[item])
+        return frozenset(found)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bodies:
+    """A model in its rest configuration; links that fixed joints hold together are one body."""
+
+    assembly: Assembly
+    truth: GroundTruth
+    """The declared joints between the bodies, world frame at rest."""
+    links: tuple[str, ...]
+    """First link with geometry of every body."""
+    tree: DeclaredTree
+    surfaces: Sequence[PartSurface]
+    graph: ContactGraph
+    bearings: Mapping[Pair, EdgeBearing]
+    config: Config
+
+    @property
+    def diagonal(self) -> float:
+        """Diagonal of the model [m]."""
+        return self.assembly.diagonal
+
+    def gap(self, pair: Pair) -> float:
+        """Exact distance of two bodies [m]."""
+        edge = self.graph.by_pair.get(pair)
+        return exact_gap(self.surfaces, pair) if edge is None else edge.gap
+
+    def score_line(self, pair: Pair, line: Line) -> BearingLine:
+        """How well the contact of two bodies, which must touch, turns into itself about a line."""
+        edge = self.graph.by_pair[pair]
+        return score_line(self.surfaces, edge, line, diagonal=self.diagonal, config=self.config.bearing)
+
+
+def read_bodies(description: RobotDescription, config: Config, *, seed: int) -> Bodies | None:
+    """Pose the bodies at rest and find their contacts; None where fewer than two bodies have geometry.
+
+    Args:
+        description: Links, meshes and joints as declared.
+        config: How evidence is gathered.
+        seed: Seed of all samples.
+    """
+    if not any(link.has_geometry for link in description.links):
+        return None
+    erased = erase(description, shuffle=False)
+    if len(erased.parts) < 2 or -1 in (joint.parent for joint in erased.truth.joints):
+        return None
+    assembly = erased.assembly
+    surfaces = part_surfaces(assembly, config=config.surface)
+    graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=seed)
+    bearings = {
+        pair: fit_edge(surfaces, edge, diagonal=assembly.diagonal, config=config.bearing, seed=seed)
+        for pair, edge in graph.by_pair.items()
+    }
+    return Bodies(
+        assembly=assembly,
+        truth=erased.truth,
+        links=tuple(
+            next(link for link in links if description.link_by_name[link].has_geometry)
+            for links in erased.truth.part_links
+        ),
+        tree=DeclaredTree(parents=erased.truth.parents),
+        surfaces=surfaces,
+        graph=graph,
+        bearings=bearings,
+        config=config,
+    )

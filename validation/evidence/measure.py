@@ -1,0 +1,251 @@
+"""What the contact geometry says of every declared joint, in figures; `judge` decides what they mean.
+
+Candidates are those that the inference would weigh (`joints.decide.weigh_joints`); the declared joint stands among
+them, and its parent among all bodies that the child touches.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.joints.decide import weigh_joints
+from kinematify.joints.line import Line
+from kinematify.joints.panels import GIVEN
+from kinematify.joints.quality import edge_quality
+from kinematify.joints.scene import part_frames
+from kinematify.joints.workspace import PartCache
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.truth import TrueJoint
+    from kinematify.config import JointsConfig
+    from kinematify.joints.decide import WeighedJoints
+    from kinematify.validation.evidence.bodies import Bodies, Pair
+    from kinematify.validation.settings import EvidenceSettings
+
+    BoolArray = NDArray[np.bool_]
+
+
+_BALL = 0.08  # spread of the radii; a sphere of 20 triangles has 0.07, a cube 0.16
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ParentEvidence:
+    """How the child hangs on its declared parent, beside the other bodies that it touches."""
+
+    touches: bool
+    """The declared parent touches the child."""
+    gap: float
+    """Distance of the two, fraction of the model's diagonal."""
+    quality: float
+    """How well the best joint of the declared pair explains their contact, in [0, 1]; 0 where they do not touch."""
+    best: int | None
+    """Body with the best contact, without the declared parent and what the child carries; None if there is none."""
+    best_quality: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LineEvidence:
+    """Where the declared line lies among those that the geometry of the two bodies knows."""
+
+    angle: float
+    """Smallest angle to a known direction [deg]."""
+    distance: float
+    """Smallest distance to a known line along nearly the same direction, fraction of the child's diagonal; inf if there
+    is none."""
+    deficit: float
+    """Score of the best candidate of the declared type less that of the declared joint; 0 if it is the best."""
+    best_axis: FloatArray
+    """Of the best candidate of the declared type, shape (3,)."""
+    best_pivot: FloatArray
+    """World frame at rest [m], shape (3,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RoomEvidence:
+    """Where the child can go about or along the declared line before it meets its parent."""
+
+    forward: float
+    """Free motion towards + [rad or m], at most `reach`."""
+    backward: float
+    """Free motion towards - [rad or m]."""
+    outward: float
+    """Cosine between the first motion towards + and the way out of the parent, 0 where that is undecided."""
+    reach: float
+    """How far was swept [rad or m]."""
+    length: float
+    """Size of the child along the declared line [m]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointMeasures:
+    """Everything that is measured of one declared joint."""
+
+    joint: TrueJoint
+    """As declared, in the world frame at rest."""
+    parent: ParentEvidence
+    line: LineEvidence
+    room: RoomEvidence
+    odds_against: float
+    """Log odds of the other type against the declared one."""
+    bearing: float
+    """Score of the best bearing line of the contact; 0 without one that is beyond doubt."""
+    own_bearing: float
+    """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
+    weighed: WeighedJoints
+
+    @property
+    def slides(self) -> bool:
+        """The joint is declared prismatic."""
+        return self.joint.kind is JointType.PRISMATIC
+
+    @property
+    def anchor(self) -> FloatArray:
+        """Where a slide's axis is drawn: the centroid of the contact, else the part's centre, world frame [m], (3,)."""
+        scene = self.weighed.scene
+        return scene.contact.centroid if len(scene.contact.points) else scene.centre
+
+    @property
+    def alone(self) -> bool:
+        """It is the only joint between the two bodies; others share one contact, which then tells of no single one."""
+        return self.joint.chain_length == 1
+
+
+def measure_joints(
+    bodies: Bodies, settings: EvidenceSettings, *, seed: int, joints: Sequence[TrueJoint] | None = None
+) -> Iterator[JointMeasures]:
+    """Measure every joint between two bodies, in the order of the description.
+
+    Args:
+        bodies: The model at rest.
+        settings: What counts as the same line.
+        seed: Seed of the surface samples.
+        joints: Those to measure; all if absent.
+    """
+    config = bodies.config.joints
+    cache = PartCache(bodies.assembly, bodies.graph, samples=config.samples, seed=seed)
+    frames = part_frames(cache, bodies.tree, config)
+    for joint in bodies.truth.joints if joints is None else joints:
+        edge = (joint.parent, joint.child)
+        pair = _pair(*edge)
+        line = Line(axis=joint.axis, point=joint.pivot)
+        bearing = bodies.bearings.get(pair)
+        weighed = weigh_joints(cache, bodies.tree, frames, edge, bearing, config=config, given=(line,))
+        gated = bearing if weighed.scene.gated else None
+        odds = weighed.decision.odds
+        yield JointMeasures(
+            joint=joint,
+            parent=_parent_evidence(bodies, joint),
+            line=_line_evidence(weighed, joint, settings),
+            room=_room_evidence(weighed, joint, config),
+            odds_against=-odds if joint.kind is JointType.PRISMATIC else odds,
+            bearing=0.0 if gated is None else gated.lines[0].score,
+            own_bearing=0.0 if gated is None else bodies.score_line(pair, line).score,
+            weighed=weighed,
+        )
+
+
+def _parent_evidence(bodies: Bodies, joint: TrueJoint) -> ParentEvidence:
+    carried = bodies.tree.subtree(joint.child)
+    others = [body for body in bodies.graph.neighbours[joint.child] if body not in carried and body != joint.parent]
+    quality = {body: _quality(bodies, joint.child, body) for body in (*others, joint.parent)}
+    best = max(others, key=lambda body: quality[body], default=None)
+    edge = bodies.graph.by_pair.get(_pair(joint.child, joint.parent))
+    return ParentEvidence(
+        touches=edge is not None and not edge.bridge,
+        gap=bodies.gap(_pair(joint.child, joint.parent)) / bodies.diagonal,
+        quality=quality[joint.parent],
+        best=best,
+        best_quality=0.0 if best is None else quality[best],
+    )
+
+
+def _quality(bodies: Bodies, child: int, body: int) -> float:
+    edge = bodies.graph.by_pair.get(_pair(child, body))
+    if edge is None or edge.bridge:
+        return 0.0
+    return edge_quality(edge, bodies.bearings[_pair(child, body)], bodies.config.quality)
+
+
+def _pair(first: int, second: int) -> Pair:
+    return min(first, second), max(first, second)
+
+
+def _line_evidence(weighed: WeighedJoints, joint: TrueJoint, settings: EvidenceSettings) -> LineEvidence:
+    turns = joint.kind is not JointType.PRISMATIC
+    angle = 0.0 if _is_ball(weighed) else float(_angles(joint.axis, _known_directions(weighed)).min())
+    axes, pivots, scores, given = _candidates(weighed, turns)
+    aligned = _angles(joint.axis, axes) < settings.same_deg
+    away = np.linalg.norm(np.cross(pivots - joint.pivot, joint.axis), axis=1) / weighed.scene.frame.diagonal
+    away = away if turns else np.zeros(len(away))
+    same = aligned & (away < settings.same_distance)
+    own = max(float(scores[given].max()), float(scores[same].max(initial=-np.inf)))
+    best = int(np.argmax(np.where(given, -np.inf, scores)))
+    return LineEvidence(
+        angle=angle,
+        distance=float(away[aligned & ~given].min(initial=np.inf)),
+        deficit=max(0.0, float(scores[best]) - own),
+        best_axis=axes[best],
+        best_pivot=pivots[best],
+    )
+
+
+def _candidates(weighed: WeighedJoints, turns: bool) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Axes (c, 3), pivots (c, 3), scores (c,) and whether each was given (c,), of one type."""
+    if turns:
+        ranked = weighed.turns
+        given = np.array(ranked.lines.sources) == GIVEN
+        return ranked.lines.axes, ranked.lines.pivots, ranked.scores, given
+    contact = weighed.scene.contact
+    anchor = contact.centroid if len(contact.points) else weighed.scene.centre
+    slides = weighed.slides
+    return slides.axes, np.tile(anchor, (len(slides.axes), 1)), slides.scores, np.array(slides.sources) == GIVEN
+
+
+def _known_directions(weighed: WeighedJoints) -> FloatArray:
+    """Directions that the geometry of the two bodies shows, whatever the type, shape (d, 3)."""
+    scene = weighed.scene
+    found = [weighed.turns.proposed.lines.axes, weighed.slides.proposed.axes, scene.frame.axes, scene.parent_frame.axes]
+    if scene.bearing is not None:
+        found += [line.axis[None] for line in scene.bearing.lines]
+        found += [] if scene.bearing.rail is None else [scene.bearing.rail.axis[None]]
+    return np.concatenate(found)
+
+
+def _is_ball(weighed: WeighedJoints) -> bool:
+    """The child has no direction at all."""
+    points = weighed.scene.cache.samples(weighed.scene.child).points
+    radii = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    return bool(radii.std() < _BALL * radii.mean())
+
+
+def _angles(axis: FloatArray, axes: FloatArray) -> FloatArray:
+    """Angle between a direction and others, signs apart [deg], shape (n,)."""
+    return np.asarray(np.degrees(np.arccos(np.clip(np.abs(axes @ axis), 0.0, 1.0))))
+
+
+def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfig) -> RoomEvidence:
+    scene = weighed.scene
+    slides = joint.kind is JointType.PRISMATIC
+    reach = config.slides.sweep * scene.diagonal if slides else np.radians(config.panels.sweep_deg)
+    length = float(np.ptp(scene.cache.samples(scene.child).points @ joint.axis))
+    if slides:
+        row = weighed.slides.sources.index(GIVEN)
+        forward, backward = weighed.slides.free_parent[row] * scene.diagonal
+        away = scene.centre - scene.parent_frame.centre
+        outward = float(away @ joint.axis) / max(float(np.linalg.norm(away)), 1e-12)
+    else:
+        row = weighed.turns.lines.sources.index(GIVEN)
+        forward, backward = weighed.turns.free_parent[row]
+        outward = float(weighed.turns.outward[row])
+    return RoomEvidence(
+        forward=float(forward), backward=float(backward), outward=outward, reach=float(reach), length=length
+    )
