@@ -89,6 +89,41 @@ class EvidenceSettings(StageConfig):
     """Lines closer than this in direction and in position are one [deg]."""
     same_distance: float
     """The same for their distance, fraction of the child's diagonal."""
+    far_gap: float
+    """A child that touches another body counts as detached beyond this gap, fraction of the model's diagonal."""
+    weak_contact: float
+    """A parent is doubtful below this share of the quality of the best other contact."""
+    unknown_deg: float
+    """Angle to every direction that the two bodies show, beyond which an axis is unexplained [deg]."""
+    wrong_deg: float
+    """The same, beyond which it is an error if another joint is also clearly better [deg]."""
+    clearly_better: float
+    """Lead in the score from which another joint is clearly better."""
+    unknown_distance: float
+    """Distance to every line that the two bodies show, beyond which an axis is unexplained, fraction of the child's
+    diagonal."""
+    linkage_distance: float
+    """The same in linkages, whose bearings are often left out of the meshes."""
+    better: float
+    """Lead in the score from which another joint of the same type is worth a warning, for doors, drawers and the like."""
+    linkage_better: float
+    """The same in linkages, together with `bearing_lead` or with `blocked`."""
+    bearing_lead: float
+    """Score of a bearing on both bodies over that of the declared line from which the bearing contradicts it."""
+    blocked: float
+    """Share of the declared range that the parent blocks, from which a joint of a linkage is doubtful."""
+    type_odds: float
+    """Log odds from which the other type is worth a warning."""
+    one_sided: float
+    """A range is one-sided if its shorter side is below this fraction of its longer one."""
+    shut: float
+    """A permitted side that is free over less than this share of its range leads into the parent."""
+    open: float
+    """The other side is open from this share on."""
+    button_outward: float
+    """Cosine from which the permitted motion of a small sliding part leads away from its parent."""
+    travel: float
+    """Travel of a drawer over its own length beyond which it has left its guides."""
 
 
 class EngineSettings(StageConfig):
