@@ -38,8 +38,28 @@ def read_model(path: Path, *, package_dirs: Sequence[Path] = ()) -> DeclaredMode
     Raises:
         DescriptionError: It cannot be read or is no tree of single-axis joints; the message says where and what to do.
     """
+    return read_parsed(parse_description(path), path, geometry_source(path, package_dirs))
+
+
+def read_without_geometry(path: Path) -> DeclaredModel:
+    """Read what `read_model` reads but for the geometry, for what needs the tree only: no mesh file is opened.
+
+    Raises:
+        DescriptionError: As for `read_model`.
+    """
     robot = parse_description(path)
-    source = geometry_source(path, package_dirs)
+    for link in robot.findall("link"):
+        for shape in [*link.findall("visual"), *link.findall("collision")]:
+            link.remove(shape)
+    return read_parsed(robot, path, geometry_source(path, ()))
+
+
+def read_parsed(robot: _Element, path: Path, source: GeometrySource) -> DeclaredModel:
+    """Do the work of `read_model` on a parsed document with a source that may have opened the mesh files already.
+
+    Raises:
+        DescriptionError: As for `read_model`.
+    """
     kinematics = describe(robot, path, source)
     return DeclaredModel(
         path=path.resolve(),

@@ -58,6 +58,12 @@ class FileSettings(StageConfig):
     """Thickness of a mesh that counts as flat, fraction of its diagonal."""
     degenerate_share: float
     """Share of triangles without area that is a warning."""
+    oversize: float
+    """Size of a link over that of the largest other link that only a slip of units explains."""
+    undersize: float
+    """Size of the largest link over that of one with a mesh file that only a slip of units explains."""
+    apart: float
+    """Distance between a link and its parent over the sum of their sizes that only a slip of units explains."""
     tiny: float
     """Diagonal below which the unit of a model is wrong [m]."""
     small: float
@@ -66,8 +72,6 @@ class FileSettings(StageConfig):
     """Diagonal above which it is suspicious [m]."""
     huge: float
     """Diagonal above which the unit of a model that moves is wrong [m]."""
-    slip: float
-    """Ratio between sizes that belong together that can only be a slip of units."""
 
 
 class PhysicsSettings(StageConfig):

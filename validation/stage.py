@@ -65,13 +65,14 @@ class OpenCheck:
         joint: str | None = None,
         link: str | None = None,
         pair: tuple[str, str] | None = None,
+        engine: str | None = None,
         q: dict[str, float] | None = None,
         value: float | None = None,
         limit: float | None = None,
         unit: str | None = None,
         line: int | None = None,
     ) -> None:
-        """Add a finding; severity and blame are the catalogue's unless given, see `Finding` for the rest."""
+        """Add a finding; severity, blame and engine are the check's unless given, see `Finding` for the rest."""
         check = CATALOGUE[self.id]
         self.findings.append(
             Finding(
@@ -83,7 +84,7 @@ class OpenCheck:
                 joint=joint,
                 link=link,
                 pair=pair,
-                engine=self.engine,
+                engine=engine or self.engine,
                 q=q,
                 value=None if value is None else float(value),
                 limit=None if limit is None else float(limit),

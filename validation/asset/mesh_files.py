@@ -1,0 +1,108 @@
+"""Opening every mesh file of a document once, and telling what is wrong with each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.mesh_file import merged, read_meshes
+from kinematify.errors import AssemblyError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lxml.etree import _Element
+
+    from kinematify.assembly.mesh_file import RawMesh
+    from kinematify.assembly.urdf_geometry import GeometrySource
+    from kinematify.validation.settings import FileSettings
+
+_MEGABYTE = 1_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshUse:
+    """A mesh element of the document."""
+
+    link: str
+    tag: str
+    """``visual`` or ``collision``."""
+    line: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeshFile:
+    """A mesh file with what uses it."""
+
+    path: Path
+    uses: tuple[MeshUse, ...]
+    mesh: RawMesh | None
+    """As it stands in the file; None where it cannot be read."""
+    fault: str
+    """Why it cannot be read."""
+    units: frozenset[str]
+    """Units that the file states and that were not converted."""
+
+    @property
+    def first(self) -> MeshUse:
+        """The use that a finding names: a collision where there is one, because more depends on it."""
+        return min(self.uses, key=lambda use: use.tag != "collision")
+
+    @property
+    def collides(self) -> bool:
+        """True if a collision element uses it."""
+        return any(use.tag == "collision" for use in self.uses)
+
+    @property
+    def called(self) -> str:
+        """Its name with the links that use it, for messages."""
+        links = list(dict.fromkeys(use.link for use in self.uses))
+        more = f" and {len(links) - 3} more" if len(links) > 3 else ""
+        return f"{self.path.name} ({self.first.tag} of {', '.join(links[:3])}{more})"
+
+
+def open_mesh_files(robot: _Element, source: GeometrySource, settings: FileSettings) -> tuple[MeshFile, ...]:
+    """Open every mesh file once; those that can be read also go into the cache of `source`.
+
+    Args:
+        robot: The document; the pre-check has found all its mesh files.
+        source: Where its meshes are looked up.
+        settings: Caps.
+    """
+    uses: dict[Path, list[MeshUse]] = {}
+    for link in robot.findall("link"):
+        name = link.get("name") or ""
+        for tag in ("visual", "collision"):
+            for element in link.iterfind(f"{tag}/geometry/mesh"):
+                path = source.resolved(element.get("filename") or "", f"link {name}")
+                use = MeshUse(link=name, tag=tag, line=int(str(element.sourceline)))
+                uses.setdefault(path, []).append(use)
+    return tuple(_opened(path, tuple(users), source, settings) for path, users in uses.items())
+
+
+def _opened(path: Path, uses: tuple[MeshUse, ...], source: GeometrySource, settings: FileSettings) -> MeshFile:
+    mesh, fault, units = None, "", frozenset[str]()
+    try:
+        size = path.stat().st_size
+        if size > settings.max_mesh_bytes:
+            raise AssemblyError(
+                f"The mesh file {path} has {size / _MEGABYTE:.0f} MB; at most "
+                f"{settings.max_mesh_bytes / _MEGABYTE:.0f} MB are opened. Simplify it."
+            )
+        parts = read_meshes(path)
+    except AssemblyError as error:
+        fault = str(error)
+    except OSError as error:
+        fault = f"The mesh file {path} cannot be opened: {error.strerror}. Check who may read it."
+    else:
+        mesh = merged(parts, path.stem)
+        units = frozenset(part.unit for part in parts if part.unit)
+        source.cache[path] = mesh
+    return MeshFile(path=path, uses=uses, mesh=mesh, fault=fault, units=units)
+
+
+def worst_coordinate(mesh: RawMesh) -> float:
+    """The largest absolute coordinate, NaN where one is not a number."""
+    return float(np.abs(mesh.vertices).max(initial=0.0))

@@ -1,0 +1,87 @@
+"""What the triangles of one mesh file are like as a surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.weld import welded
+
+if TYPE_CHECKING:
+    from kinematify.assembly.mesh_file import RawMesh
+    from kinematify.assembly.part import FloatArray, IntArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class SurfaceQuality:
+    """Figures of one mesh, equal corners merged."""
+
+    faces: int
+    """Triangles in the file."""
+    degenerate: int
+    """Of them without area."""
+    diagonal: float
+    """Of the bounding box, in the unit of the file."""
+    thickness: float
+    """Extent along the direction in which it is thinnest, same unit."""
+    open_edges: int
+    """Edges with one triangle."""
+    branched_edges: int
+    """Edges with more than two triangles."""
+    opposed_edges: int
+    """Edges at which two triangles face opposite sides."""
+    volume: float
+    """Signed volume, same unit cubed; negative where a closed mesh is inside out."""
+
+    @property
+    def closed(self) -> bool:
+        """True if it encloses a volume."""
+        return self.open_edges == 0 and self.faces > self.degenerate
+
+
+def surface_quality(mesh: RawMesh) -> SurfaceQuality:
+    """Measure a mesh whose coordinates are finite."""
+    vertices, faces = welded(mesh.vertices, mesh.faces, 0.0)
+    open_edges, branched, opposed = _edges(faces, len(vertices))
+    return SurfaceQuality(
+        faces=len(mesh.faces),
+        degenerate=len(mesh.faces) - len(faces),
+        diagonal=float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))),
+        thickness=_thickness(vertices),
+        open_edges=open_edges,
+        branched_edges=branched,
+        opposed_edges=opposed,
+        volume=_volume(vertices, faces),
+    )
+
+
+def _edges(faces: IntArray, count: int) -> tuple[int, int, int]:
+    """Edges with one triangle, with more than two, and with two that run along it in the same direction."""
+    if not len(faces):
+        return 0, 0, 0
+    starts, ends = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    keys = np.minimum(starts, ends) * count + np.maximum(starts, ends)
+    order = np.argsort(keys)
+    first = np.flatnonzero(np.diff(keys[order], prepend=-1))
+    uses = np.diff(first, append=len(keys))
+    balance = np.add.reduceat(np.where(starts < ends, 1, -1)[order], first)
+    opposed = (uses == 2) & (balance != 0)
+    return int((uses == 1).sum()), int((uses > 2).sum()), int(opposed.sum())
+
+
+def _thickness(vertices: FloatArray) -> float:
+    """Extent along the eigenvector of the covariance with the smallest eigenvalue."""
+    if not len(vertices):
+        return 0.0
+    centred = vertices - vertices.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    return float(np.ptp(centred @ axes[:, 0]))
+
+
+def _volume(vertices: FloatArray, faces: IntArray) -> float:
+    if not len(faces):
+        return 0.0
+    a, b, c = (vertices[faces[:, k]] - vertices[0] for k in range(3))
+    return float(np.einsum("fi,fi->", a, np.cross(b, c)) / 6.0)
