@@ -4,10 +4,31 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.families import cabinet
+from kinematify.sources.procedural.families import (
+    cabinet,
+    gantry,
+    gripper,
+    hand,
+    quadruped,
+    scara,
+    serial_arm,
+    snake,
+)
 
 if TYPE_CHECKING:
     from kinematify.sources.procedural.family import Family
 
-FAMILIES: dict[str, Family] = {family.name: family for family in (cabinet.FAMILY,)}
+FAMILIES: dict[str, Family] = {
+    module.FAMILY.name: module.FAMILY
+    for module in (
+        cabinet,
+        serial_arm,
+        scara,
+        gantry,
+        gripper,
+        hand,
+        quadruped,
+        snake,
+    )
+}
 """Keyed by name."""

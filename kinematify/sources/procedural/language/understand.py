@@ -254,7 +254,7 @@ def _counts(reading: _Reading) -> None:
     """`two doors`, `3 small drawers`, `no handle`, `a grid of 3 by 2 drawers`, `half a dozen knobs`."""
     counted = [p for p in reading.family.parameters if isinstance(p.default, int)]
     for parameter in counted:
-        for noun in _nouns(parameter):
+        for noun in sorted(_nouns(parameter), key=len, reverse=True):
             words = tuple(noun.split())
             for k in range(len(reading.tokens) - len(words) + 1):
                 where = range(k, k + len(words))

@@ -1,0 +1,89 @@
+"""Robots on four legs: a trunk and legs of two or three joints on flanged stubs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.sources.procedural.family import Family, Parameter
+from kinematify.sources.procedural.pieces.limbs import leg_solids
+from kinematify.sources.procedural.solids import box, cylinder, off
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from manifold3d import Manifold
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.sources.procedural.family import Values
+    from kinematify.sources.procedural.workshop import Workshop
+
+_LEGS = {"front_left": (1, 1), "front_right": (1, -1), "rear_left": (-1, 1), "rear_right": (-1, -1)}
+
+
+def _build(values: Values, workshop: Workshop) -> None:
+    half, wide, radius = 0.5 * values.number("length"), 0.5 * values.number("width"), values.number("joint_radius")
+    lengths = values.number("thigh"), values.number("shank")
+    high = lengths[0] + lengths[1] + 0.5 * radius
+    workshop.body(
+        "trunk",
+        box((-half, -wide, high - 1.3 * radius), (half, wide, high + 1.7 * radius)),
+        box((half - 0.05, -0.03, high + radius), (half + 0.03, 0.03, high + 2.7 * radius)),
+    )
+    for leg, side in _LEGS.items():
+        hip = np.array([side[0] * (half + 0.02), side[1] * (wide - radius), high])
+        boss, hole, links, pivots = leg_solids(hip, side, radius, lengths, values.number("clearance"))
+        workshop.add("trunk", boss)
+        workshop.cut("trunk", hole)
+        _add_leg(workshop, leg, links, pivots, side, radius=radius, three=values.count("joints") > 2)
+
+
+def _add_leg(
+    workshop: Workshop,
+    leg: str,
+    links: Mapping[str, Manifold],
+    pivots: Sequence[FloatArray],
+    side: tuple[int, int],
+    *,
+    radius: float,
+    three: bool,
+) -> None:
+    above = "trunk"
+    if three:
+        workshop.body(f"{leg}_hip", links["hip"])
+        workshop.turns(f"{leg}_hip", "trunk", (1, 0, 0), pivots[0], (-0.2, 0.5) if side[1] > 0 else (-0.5, 0.2))
+        above = f"{leg}_hip"
+    else:
+        hip = pivots[0]
+        workshop.add("trunk", links["hip"], cylinder(radius, off(hip, -radius, 0, 0), off(hip, radius, 0, 0)))
+    workshop.body(f"{leg}_thigh", links["thigh"])
+    workshop.turns(f"{leg}_thigh", above, (0, 1, 0), pivots[1], (-0.8, 1.0))
+    workshop.body(f"{leg}_shank", links["shank"])
+    workshop.turns(f"{leg}_shank", f"{leg}_thigh", (0, 1, 0), pivots[2], (-1.2, 1.2))
+
+
+FAMILY = Family(
+    name="quadruped",
+    title="robot on four legs",
+    words=("quadruped", "robot dog", "dog robot", "dog", "four legged robot", "quadruped robot"),
+    material="metal",
+    parameters=(
+        Parameter(
+            name="joints",
+            default=3,
+            bounds=(2, 3),
+            usual=(2, 3),
+            words=("joint", "joint per leg", "dof"),
+            help="Of every leg.",
+        ),
+        Parameter(name="length", default=0.4, unit="m", bounds=(0.25, 2.0), usual=(0.3, 0.7), help="Of the trunk."),
+        Parameter(name="width", default=0.18, unit="m", bounds=(0.14, 1.0), usual=(0.16, 0.3), help="Of the trunk."),
+        Parameter(name="thigh", default=0.2, unit="m", bounds=(0.15, 0.6), usual=(0.16, 0.28), help="Its length."),
+        Parameter(name="shank", default=0.2, unit="m", bounds=(0.12, 0.6), usual=(0.16, 0.28), help="Its length."),
+        Parameter(
+            name="joint_radius", default=0.03, unit="m", bounds=(0.02, 0.05), usual=(0.024, 0.034), help="Of the stubs."
+        ),
+    ),
+    build=_build,
+)

@@ -1,0 +1,67 @@
+"""Robot arms: a foot and any number of joints that turn about the upright and across it in turn."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.sources.procedural.family import Family, Parameter
+from kinematify.sources.procedural.pieces.bearings import stub
+from kinematify.sources.procedural.solids import box, cylinder, off
+
+if TYPE_CHECKING:
+    from kinematify.sources.procedural.family import Values
+    from kinematify.sources.procedural.workshop import Workshop
+
+
+def _build(values: Values, workshop: Workshop) -> None:
+    joints, size, clearance = values.count("joints"), values.number("radius"), values.number("clearance")
+    reach = values.number("length") / max(joints, 1) - 3.0 * size
+    parent, side = "foot", 1.0
+    workshop.body(
+        parent,
+        box((-3 * size, -2 * size, 0), (2 * size, 2 * size, 0.02)),
+        cylinder(size, (0, 0, 0.01), (0, 0, 0.02 + 1.1 * size)),
+    )
+    tip = np.array([0.0, 0.0, 0.02 + size])
+    for k in range(joints):
+        name = f"link_{k + 1}"
+        upright = k % 2 == 0
+        pivot = off(tip, 0, 0, size) if upright else off(tip, 0, side * size, 0.5 * size)
+        axis = np.array([0.0, 0.0, 1.0] if upright else [0.0, side, 0.0])
+        boss, hole, rotor = stub(pivot, axis, size, clearance, length=size if upright else 2 * size)
+        workshop.add(parent, boss)
+        workshop.cut(parent, hole)
+        tip = pivot + (size + clearance) * axis
+        solids = [rotor]
+        if not upright:
+            solids.append(cylinder(size, tip, tip + size * axis))
+            side = -side
+        end = off(tip, 0, 0, max(reach, 2.5 * size))
+        workshop.body(name, *solids, cylinder(0.75 * size, tip, end))
+        limits = (-2.8, 2.8) if upright else (-1.7, 1.7)
+        workshop.turns(name, parent, (0, 0, 1) if upright else (0, 1, 0), pivot, limits)
+        tip, parent = end, name
+    workshop.add(parent, box(tip - 0.8 * size, off(tip, 1.2 * size, 0.8 * size, 0.2 * size)))
+
+
+FAMILY = Family(
+    name="serial_arm",
+    title="robot arm",
+    words=("robot arm", "arm", "manipulator", "robotic arm", "serial arm", "articulated arm", "industrial robot"),
+    material="metal",
+    parameters=(
+        Parameter(
+            name="joints",
+            default=6,
+            bounds=(1, 12),
+            usual=(3, 7),
+            words=("joint", "dof", "axis", "degree of freedom", "degrees of freedom"),
+            help="Joints in series.",
+        ),
+        Parameter(name="length", default=0.9, unit="m", bounds=(0.2, 3.0), usual=(0.5, 1.5), help="Sum of the links."),
+        Parameter(name="radius", default=0.04, unit="m", bounds=(0.01, 0.15), usual=(0.03, 0.06), help="Of joints."),
+    ),
+    build=_build,
+)
