@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from kinematify.errors import KinematifyError
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline import Inference, infer, write_inference
+    from kinematify.pipeline.infer import Inference, infer
+    from kinematify.pipeline.record import write_inference
     from kinematify.topology.tree import KinematicTree
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport

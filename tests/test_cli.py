@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pty
+import shlex
 import signal
 import subprocess
 import sys
@@ -102,7 +103,7 @@ def test_wrong_arguments_end_with_2(words: list[str], text: str, capsys: pytest.
 def test_help_has_examples_that_parse(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run([command, "--help"]) == 0
     text = capsys.readouterr().out
-    shown = [line.split()[1:] for line in text.splitlines() if line.startswith("    kinematify ")]
+    shown = [shlex.split(line)[1:] for line in text.splitlines() if line.startswith("    kinematify ")]
     assert shown
     for words in shown:
         assert words[0] == command
