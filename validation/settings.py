@@ -94,7 +94,7 @@ class EvidenceSettings(StageConfig):
     same_distance: float
     """The same for their distance, fraction of the child's diagonal."""
     far_gap: float
-    """A child that touches another body counts as detached beyond this gap, fraction of the model's diagonal."""
+    """A child counts as detached beyond this gap, fraction of the model's diagonal."""
     weak_contact: float
     """A parent is doubtful below this share of the quality of the best other contact."""
     unknown_deg: float
@@ -109,7 +109,7 @@ class EvidenceSettings(StageConfig):
     linkage_distance: float
     """The same in linkages, whose bearings are often left out of the meshes."""
     better: float
-    """Lead in the score from which another joint of the same type is worth a warning, for doors, drawers and the like."""
+    """Lead in the score from which another joint of the same type is worth a warning, outside linkages."""
     linkage_better: float
     """The same in linkages, together with `bearing_lead` or with `blocked`."""
     bearing_lead: float
@@ -126,8 +126,6 @@ class EvidenceSettings(StageConfig):
     """The other side is open from this share on."""
     button_outward: float
     """Cosine from which the permitted motion of a small sliding part leads away from its parent."""
-    travel: float
-    """Travel of a drawer over its own length beyond which it has left its guides."""
 
 
 class EngineSettings(StageConfig):

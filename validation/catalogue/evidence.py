@@ -76,12 +76,13 @@ CHECKS: tuple[Check, ...] = (
     ),
     Check(
         id="KV347",
-        title="travel stays within the part's length",
+        title="a slide stays with its parent",
         severity=Severity.WARNING,
         blame=Blame.KINEMATICS,
-        verifies="A part of furniture that slides travels by no more than evidence.travel times its own length along "
-        "the axis; beyond, it has left its guides.",
+        verifies="At the end of its range, a part that slides by more than its own length along the axis is not "
+        "evidence.far_gap of the model's size farther away from its parent than at rest; beyond, it has left its "
+        "guides.",
         matters="A drawer that travels twice its length hangs in the air.",
-        remedy="Reduce the limits to about four fifths of the part's length.",
+        remedy="Reduce the limits, for a drawer to about four fifths of its length.",
     ),
 )

@@ -276,19 +276,17 @@ def _opening(case: _Case) -> Doubt | None:
 
 def _travel(case: _Case) -> Doubt | None:
     joint, room = case.measures.joint, case.measures.room
-    if not case.measures.slides or case.linkage or case.small:
-        return None
     travel = max(abs(joint.lower), abs(joint.upper))
-    limit = case.settings.travel * room.length
-    if not np.isfinite(travel) or travel <= limit:
+    limit = case.settings.far_gap * case.bodies.diagonal
+    if not case.measures.slides or room.parted <= limit or travel <= room.length:
         return None
     return Doubt(
         check=TRAVEL,
         severity=Severity.WARNING,
         message=f"{case.child} travels by {travel:.3g} m, more than its own length of {room.length:.3g} m along the "
-        f"axis: it leaves {case.parent}.",
+        f"axis, and is {room.parted:.3g} m away from {case.parent} at the end.",
         remedy=f"Reduce the range to about {0.8 * room.length:.3g} m, four fifths of its length.",
-        value=travel,
+        value=room.parted,
         limit=limit,
         unit="m",
     )

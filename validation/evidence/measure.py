@@ -83,6 +83,8 @@ class RoomEvidence:
     """How far was swept [rad or m]."""
     length: float
     """Size of the child along the declared line [m]."""
+    parted: float
+    """How much farther a slide is from its parent at the end of its range than at rest [m]; 0 for a turn."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -247,5 +249,20 @@ def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfi
         forward, backward = weighed.turns.free_parent[row]
         outward = float(weighed.turns.outward[row])
     return RoomEvidence(
-        forward=float(forward), backward=float(backward), outward=outward, reach=float(reach), length=length
+        forward=float(forward),
+        backward=float(backward),
+        outward=outward,
+        reach=float(reach),
+        length=length,
+        parted=_parted(weighed, joint) if slides else 0.0,
     )
+
+
+def _parted(weighed: WeighedJoints, joint: TrueJoint) -> float:
+    scene = weighed.scene
+    points = scene.cache.samples(scene.child).points
+    way = joint.upper if abs(joint.upper) >= abs(joint.lower) else joint.lower
+    if not np.isfinite(way):
+        return 0.0
+    gaps = [float(scene.cache.distances(scene.parent, points + step * joint.axis).min()) for step in (0.0, way)]
+    return gaps[1] - gaps[0]
