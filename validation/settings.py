@@ -81,6 +81,25 @@ class PhysicsSettings(StageConfig):
 class PrepareSettings(StageConfig):
     """The file that engines are given: decomposition of concave collision meshes."""
 
+    thickness: float
+    """Thickness that flat geometry is given, fraction of its diagonal."""
+    directions: int
+    """Vertices of a convex piece at most."""
+    convex_gap: float
+    """A mesh whose hull reaches less far beyond its surface is convex, fraction of the link's diagonal."""
+    frame_mass: float
+    """Of links that add nothing to the body that they are fixed to [kg]."""
+    dummy_mass: float
+    """Of bodies without geometry and without mass [kg]."""
+    ball_radius: float
+    """Radius of gyration of what has a mass and no geometry [m]."""
+    moment_slack: float
+    """How far the largest principal moment may exceed the sum of the others, fraction of that sum."""
+    effort: float
+    """Of joints that state none [N m or N]."""
+    velocity: float
+    """Of joints that state none [rad/s or m/s]."""
+
 
 class GeometrySettings(StageConfig):
     """KV30x to KV33x: collision along the motion."""

@@ -1,1 +1,1 @@
-"""The file that engines are given: same kinematics, collision geometry that they can use."""
+"""The file that engines are given: convex collision geometry, masses everywhere, one tag per line."""

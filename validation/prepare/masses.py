@@ -1,0 +1,139 @@
+"""A mass and an inertia for every link: as declared where engines can use them, made up from the geometry elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.part import Part
+from kinematify.assembly.robot import rigid_groups
+from kinematify.config import load_config
+from kinematify.model.inertia import inertial_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.validation.declared import DeclaredInertial, DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.validation.settings import PrepareSettings
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PreparedInertial:
+    """What is written for a link."""
+
+    mass: float
+    """[kg]."""
+    center_of_mass: FloatArray
+    """Link frame [m], shape (3,)."""
+    tensor: FloatArray
+    """About the centre of mass, axes of the link frame [kg m^2], shape (3, 3)."""
+    mass_added: bool
+    inertia_added: bool
+
+
+def prepared_inertials(model: DeclaredModel, settings: PrepareSettings) -> dict[str, PreparedInertial]:
+    """Return mass properties for every link.
+
+    A link without a usable mass that is fixed to links with one adds nothing, as its author meant it. Where no link of
+    a rigid group has one, each link with geometry weighs what its volume suggests; frames without geometry weigh next
+    to nothing.
+    """
+    found: dict[str, PreparedInertial] = {}
+    for group in rigid_groups(model.kinematics):
+        links = [model.link_by_name[name] for name in group.links]
+        weighed = any(usable_mass(link.inertial) for link in links)
+        for link in links:
+            found[link.name] = _inertial(link, weighed=weighed, settings=settings)
+        if not weighed and not group.has_geometry:
+            found[group.top] = _ball(settings.dummy_mass, settings)
+    return found
+
+
+def usable_mass(inertial: DeclaredInertial | None) -> bool:
+    """True if there is a mass above zero."""
+    return inertial is not None and inertial.mass > 0.0
+
+
+def usable_tensor(tensor: FloatArray, slack: float) -> bool:
+    """True if a tensor is positive definite and its principal moments can be those of a body, within a relative slack.
+
+    Args:
+        tensor: Shape (3, 3), symmetric.
+        slack: How far the largest moment may exceed the sum of the others, fraction of that sum.
+    """
+    low, middle, high = np.linalg.eigvalsh(tensor)
+    return bool(low > 0.0 and high <= (low + middle) * (1.0 + slack))
+
+
+def _inertial(link: DeclaredLink, *, weighed: bool, settings: PrepareSettings) -> PreparedInertial:
+    declared = link.inertial
+    if declared is None or not usable_mass(declared):
+        part = None if weighed else link_part(link)
+        return _ball(settings.frame_mass, settings) if part is None else _from_geometry(part)
+    if usable_tensor(declared.tensor, settings.moment_slack):
+        return PreparedInertial(
+            mass=declared.mass,
+            center_of_mass=declared.center_of_mass,
+            tensor=declared.tensor,
+            mass_added=False,
+            inertia_added=False,
+        )
+    return _with_made_up_tensor(link, declared, settings)
+
+
+def _with_made_up_tensor(link: DeclaredLink, declared: DeclaredInertial, settings: PrepareSettings) -> PreparedInertial:
+    """Keep mass and centre; the tensor is that of the geometry, or of a small ball where there is none."""
+    part = link_part(link)
+    if part is None:
+        tensor = np.eye(3) * declared.mass * settings.ball_radius**2
+    else:
+        guess = _from_geometry(part)
+        tensor = guess.tensor * (declared.mass / guess.mass)
+    return PreparedInertial(
+        mass=declared.mass,
+        center_of_mass=declared.center_of_mass,
+        tensor=tensor,
+        mass_added=False,
+        inertia_added=True,
+    )
+
+
+def _from_geometry(part: Part) -> PreparedInertial:
+    config = load_config().model
+    solid = inertial_of(part, np.zeros(3), thickness=config.min_thickness * part.diagonal, config=config)
+    return PreparedInertial(
+        mass=solid.mass,
+        center_of_mass=solid.center_of_mass,
+        tensor=solid.tensor,
+        mass_added=True,
+        inertia_added=True,
+    )
+
+
+def _ball(mass: float, settings: PrepareSettings) -> PreparedInertial:
+    return PreparedInertial(
+        mass=mass,
+        center_of_mass=np.zeros(3),
+        tensor=np.eye(3) * mass * settings.ball_radius**2,
+        mass_added=True,
+        inertia_added=True,
+    )
+
+
+def link_part(link: DeclaredLink) -> Part | None:
+    """All solid geometry of a link as one mesh: the visual one, which shows the true shape, else the collision one."""
+    shapes = link.visuals or link.collisions
+    return merged_part(link.name, shapes) if shapes else None
+
+
+def merged_part(name: str, shapes: Sequence[DeclaredShape]) -> Part:
+    """Put shapes together in the link frame."""
+    starts = np.cumsum([0, *(len(shape.mesh.vertices) for shape in shapes)])
+    return Part(
+        name=name,
+        vertices=np.concatenate([shape.mesh.vertices for shape in shapes]),
+        faces=np.concatenate([shape.mesh.faces + start for shape, start in zip(shapes, starts, strict=False)]),
+    )
