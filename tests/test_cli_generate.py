@@ -1,0 +1,109 @@
+"""`kinematify generate`: sentences, categories, corpora, and that the inference lives without the truth."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.assembly.description import read_description
+from kinematify.assembly.truth import GroundTruth
+from kinematify.benchmark.datasets import find_objects
+from kinematify.cli.app import run
+
+SENTENCE = "a cabinet with one door above two drawers, 60 cm wide"
+
+
+@pytest.fixture(scope="module")
+def generated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
+    folder = tmp_path_factory.mktemp("generated")
+    answer = folder / "answer.json"
+    assert run(["generate", "--text", SENTENCE, "-o", str(folder / "cabinet"), "--json", str(answer)]) == 0
+    return folder / "cabinet", json.loads(answer.read_text())
+
+
+def test_a_sentence_becomes_parts_a_model_and_the_truth(generated):
+    out, answer = generated
+    assert sorted(path.stem for path in (out / "parts").iterdir()) == ["body", "door_1", "drawer_1", "drawer_2"]
+    assert {path.name for path in out.iterdir()} >= {"model.urdf", "inference.json", "preview.png", "meshes", "truth"}
+    assert answer["category"] == "cabinet"
+    assert answer["ignored"] == []
+    assert answer["accuracy"]["types_right"] == answer["accuracy"]["joints"] == 3
+    assert answer["accuracy"]["largest_axis_angle_deg"] < 1.0
+
+
+def test_the_truth_describes_the_same_object(generated):
+    out, _ = generated
+    truth = GroundTruth.from_json((out / "truth" / "truth.json").read_text())
+    described = read_description(out / "truth" / "model.urdf")
+    assert sorted(truth.part_names) == sorted(link.name for link in described.links)
+    by_child = {joint.child: joint for joint in described.joints}
+    for joint in truth.joints:
+        named = by_child[truth.part_names[joint.child]]
+        assert named.kind is joint.kind
+        np.testing.assert_allclose(named.axis, joint.axis, atol=1e-9)
+        assert (named.lower, named.upper) == pytest.approx((joint.lower, joint.upper))
+
+
+def test_the_inference_gives_the_same_model_where_the_truth_is_deleted(generated, tmp_path):
+    out, _ = generated
+    shutil.copytree(out / "parts", tmp_path / "parts")
+    assert run(["infer", str(tmp_path / "parts"), "-o", str(tmp_path / "again"), "--no-preview"]) == 0
+    one, two = (read_description(folder / "model.urdf") for folder in (out, tmp_path / "again"))
+    for first, second in zip(one.joints, two.joints, strict=True):
+        assert (first.name, first.kind, first.parent) == (second.name, second.kind, second.parent)
+        np.testing.assert_allclose(first.axis, second.axis, atol=1e-9)
+
+
+def test_a_category_takes_settings_and_a_seed(tmp_path, capsys):
+    command = ["generate", "--category", "gripper", "--set", "fingers=3", "--seed", "4", "-o", str(tmp_path / "one")]
+    assert run([*command, "--no-preview"]) == 0
+    assert "Against the known joints: 3 of 3 types right" in capsys.readouterr().out
+
+
+def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):
+    out = tmp_path / "corpus"
+    assert run(["generate", "--corpus", "2", "--seed", "1", "-o", str(out)]) == 0
+    first = {item.name: item.urdf.read_bytes() for item in find_objects(out)}
+    assert len(first) == 2
+    assert run(["generate", "--corpus", "3", "--seed", "1", "-o", str(out)]) == 0
+    more = {item.name: item.urdf.read_bytes() for item in find_objects(out)}
+    assert len(more) == 3
+    assert {name: more[name] for name in first} == first
+    assert {item.kind for item in find_objects(out)} == {"procedural"}
+    assert run(["generate", "--corpus", "3", "--seed", "2", "-o", str(out)]) == 2
+    assert "seed 1, not 2" in capsys.readouterr().err
+
+
+def test_the_categories_and_their_parameters_are_listed(capsys):
+    assert run(["generate", "--list"]) == 0
+    assert "serial_arm" in capsys.readouterr().out
+    assert run(["generate", "--list", "--category", "wardrobe"]) == 0
+    assert "0.1 to 5 m" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["--text", ""], "empty"),
+        (["--text", "a flying carpet"], "names nothing"),
+        (["--category", "cabnet"], "Did you mean cabinet"),
+        (["--category", "cabinet", "--set", "drawer=2"], "Did you mean drawers"),
+        (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 12"),
+        (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
+        (["--text", "a cabinet", "--category", "cabinet"], "either --text or --category"),
+        ([], "either --text or --category"),
+    ],
+)
+def test_bad_requests_end_with_status_two_and_a_reason(arguments, reason, tmp_path, capsys):
+    assert run(["generate", *arguments, "-o", str(tmp_path / "out")]) == 2
+    assert reason in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_without_a_place_for_the_result_it_says_so(capsys):
+    assert run(["generate", "--text", "a cabinet"]) == 2
+    assert "-o" in capsys.readouterr().err
