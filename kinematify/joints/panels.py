@@ -434,7 +434,7 @@ def _shape_cues(scene: JointScene, lines: Lines, near: FloatArray) -> dict[str, 
         values, vectors = np.linalg.eigh(tensor)
         normal = np.abs(lines.axes @ vectors[:, 2]) * float(values[2])
     return {
-        "thin_along": thin * (1.0 - turned),
+        "thin_along": thin * (1.0 - turned) * (1.0 - scene.mechanism),
         "length_along": along,
         "half_way": (place == HALF_WAY).astype(np.float64),
         "centre_line": (place == CENTRE).astype(np.float64),
