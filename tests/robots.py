@@ -14,8 +14,6 @@ from tests.known import KnownJoint, KnownObject, known_object, moved, rotation, 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-
 UP = np.array([0.0, 0.0, 1.0])
 QUARTER = rotation(UP, 0.5 * np.pi)
 """Turns a fork about x into a fork about y."""
