@@ -59,7 +59,8 @@ CHECKS: tuple[Check, ...] = (
         blame=Blame.KINEMATICS,
         verifies="Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity "
         "slide, round parts with a bearing turn, small caps are pressed. Log odds above evidence.type_odds are a "
-        "warning.",
+        "warning; a slide of a linkage must also have a bearing, a better direction (evidence.better) or a parent in "
+        "the way (evidence.blocked), and a continuous joint is taken as meant.",
         matters="A drawer that turns and a door that slides are useless for training, and nothing else reports them.",
         remedy="Write the other type with limits in its unit, or accept the finding with a reason.",
     ),

@@ -221,7 +221,7 @@ def _blocked(case: _Case) -> float:
 def _type(case: _Case) -> Doubt | None:
     measures, settings = case.measures, case.settings
     odds = measures.odds_against
-    if odds <= settings.type_odds:
+    if odds <= settings.type_odds or not _type_open(case):
         return None
     declared, other = ("slide", "turn") if measures.slides else ("turn", "slide")
     cues = {name: value for name, value in measures.weighed.decision.cues.items() if value > 0.0}
@@ -238,6 +238,20 @@ def _type(case: _Case) -> Doubt | None:
     )
 
 
+def _type_open(case: _Case) -> bool:
+    """False where the odds are no more than habit: few joints of linkages slide, but those that do are meant to.
+
+    They count against a slide only where something else does too: a bearing, a better slide, a parent in the way. Nor
+    does anybody write that a part turns without end by mistake.
+    """
+    if case.measures.joint.kind is JointType.CONTINUOUS:
+        return False
+    if not case.linkage or not case.measures.slides:
+        return True
+    better = case.measures.line.deficit > case.settings.better
+    return better or case.measures.bearing > 0.0 or _blocked(case) > case.settings.blocked
+
+
 def _opening(case: _Case) -> Doubt | None:
     joint, room, settings = case.measures.joint, case.measures.room, case.settings
     short, long = sorted((abs(joint.lower), abs(joint.upper)))
@@ -249,29 +263,36 @@ def _opening(case: _Case) -> Doubt | None:
     wanted = min(long, room.reach)
     unit = "m" if case.measures.slides else "rad"
     remedy = "Turn the axis round (or swap the limits with their signs), so that the permitted motion opens."
-    if free < settings.shut * wanted and other > settings.open * wanted:
-        return Doubt(
-            check=OPENING,
-            severity=Severity.WARNING,
-            message=f"The permitted motion of {case.child} leads into {case.parent} after {free:.3g} {unit} of "
-            f"{long:.3g} {unit}, while the other way is free for {other:.3g} {unit}.",
-            remedy=remedy,
-            value=free,
-            limit=settings.shut * wanted,
-            unit=unit,
-        )
-    button = case.measures.slides and case.small and not case.linkage
-    if button and outward > settings.button_outward:
-        return Doubt(
-            check=OPENING,
-            severity=Severity.WARNING,
-            message=f"{case.child} is a small part on {case.parent} and moves out of it; buttons go in.",
-            remedy=remedy,
-            value=outward,
-            limit=settings.button_outward,
-            unit=None,
-        )
-    return None
+    if case.measures.slides and case.small and not case.linkage:
+        # Pressed parts sink into what they stand on: only the way out is wrong.
+        return _button_opening(case, outward, remedy)
+    if free >= settings.shut * wanted or other <= settings.open * wanted:
+        return None
+    return Doubt(
+        check=OPENING,
+        severity=Severity.WARNING,
+        message=f"The permitted motion of {case.child} leads into {case.parent} after {free:.3g} {unit} of "
+        f"{long:.3g} {unit}, while the other way is free for {other:.3g} {unit}.",
+        remedy=remedy,
+        value=free,
+        limit=settings.shut * wanted,
+        unit=unit,
+    )
+
+
+def _button_opening(case: _Case, outward: float, remedy: str) -> Doubt | None:
+    limit = case.settings.button_outward
+    if outward <= limit:
+        return None
+    return Doubt(
+        check=OPENING,
+        severity=Severity.WARNING,
+        message=f"{case.child} is a small part on {case.parent} and moves out of it; buttons go in.",
+        remedy=remedy,
+        value=outward,
+        limit=limit,
+        unit=None,
+    )
 
 
 def _travel(case: _Case) -> Doubt | None:

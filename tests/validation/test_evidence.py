@@ -1,0 +1,206 @@
+"""Each fault of a joint is told from the geometry alone, and a good joint is left in peace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.sources.procedural.solids import box
+from kinematify.validation.catalogue.evidence import CHECKS
+from kinematify.validation.finding import Blame, CheckResult, Severity, Status
+from kinematify.validation.report import JointSummary
+from tests.household import (
+    barrel_hinge_door,
+    button,
+    drawer,
+    edge_door,
+    hinge_pin,
+    knob,
+    laptop,
+    lever,
+    nested_drawer,
+    sliding_lid,
+)
+from tests.known import KnownObject, known_object, posed, rotation, sliding, with_yaw
+from tests.robots import aligned_arm
+from tests.validation.planted import (
+    findings,
+    flipped,
+    joint_of,
+    judged,
+    shifted,
+    swapped,
+    told,
+    turned,
+    with_joint,
+    write,
+)
+
+Build = Callable[[], KnownObject]
+GOOD: tuple[Build, ...] = (barrel_hinge_door, button, drawer, edge_door, hinge_pin, knob, laptop, nested_drawer)
+
+
+def found(known: KnownObject, folder: Path) -> set[str]:
+    """Ids of the checks that found something in the only joint that was changed."""
+    return {finding.check for finding in findings(judged(known, folder))}
+
+
+@pytest.mark.parametrize("build", GOOD)
+def test_good_joints_have_no_finding(build: Build, tmp_path: Path) -> None:
+    results = judged(build(), tmp_path)
+    assert [finding.message for finding in findings(results)] == []
+    assert {result.check for result in results if isinstance(result, CheckResult)} == {check.id for check in CHECKS}
+    assert all(result.status is Status.PASS for result in results if isinstance(result, CheckResult))
+
+
+@pytest.mark.parametrize(
+    ("build", "child", "about"),
+    [
+        (barrel_hinge_door, "door", (1.0, 0.3, 0.0)),
+        (edge_door, "door", (1.0, 1.0, 0.0)),
+        (drawer, "drawer", (0.2, 0.0, 1.0)),
+        (knob, "knob", (1.0, 0.0, 0.4)),
+        (hinge_pin, "bored_leaf", (0.5, 1.0, 0.0)),
+    ],
+)
+def test_an_axis_turned_by_20_deg_is_off_every_direction(
+    build: Build, child: str, about: tuple[float, float, float], tmp_path: Path
+) -> None:
+    (finding,) = findings(judged(turned(build(), child, 20.0, about), tmp_path))
+    assert (finding.check, finding.joint, finding.blame) == ("KV342", f"{child}_joint", Blame.KINEMATICS)
+    assert finding.value == pytest.approx(20.0, abs=0.5)
+    assert finding.severity in (Severity.ERROR, Severity.WARNING)
+
+
+@pytest.mark.parametrize(
+    ("build", "child", "about"),
+    [
+        (barrel_hinge_door, "door", (1, 0, 0)),
+        (barrel_hinge_door, "door", (0, 1, 0)),
+        (edge_door, "door", (1, 0, 0)),
+        (edge_door, "door", (0, 1, 0)),
+        (drawer, "drawer", (0, 0, 1)),
+        (drawer, "drawer", (1, 0, 0)),
+        (knob, "knob", (1, 0, 0)),
+        (lever, "lever", (0, 0, 1)),
+    ],
+)
+def test_an_axis_turned_by_90_deg_has_a_better_alternative(
+    build: Build, child: str, about: tuple[float, float, float], tmp_path: Path
+) -> None:
+    good = build()
+    results = judged(turned(good, child, 90.0, about), tmp_path)
+    assert {finding.joint for finding in findings(results)} == {f"{child}_joint"}
+    (summary,) = [result for result in results if isinstance(result, JointSummary)]
+    assert summary.best_alternative is not None
+    # A better joint is one of the object as it is, whatever was written.
+    assert abs(np.dot(summary.best_alternative["axis"], joint_of(good, child).axis)) > np.cos(np.radians(1.0))
+
+
+@pytest.mark.parametrize(
+    ("build", "child", "way"),
+    [
+        (barrel_hinge_door, "door", (1, 0, 0)),
+        (barrel_hinge_door, "door", (0, 1, 0)),
+        (edge_door, "door", (1, 0, 0)),
+        (edge_door, "door", (0, -1, 0)),
+        (knob, "knob", (1, 0, 1)),
+        (hinge_pin, "bored_leaf", (1, 1, 0)),
+        (lever, "lever", (0, 0, 1)),
+    ],
+)
+def test_a_pivot_moved_by_a_fifth_of_the_part_is_told(
+    build: Build, child: str, way: tuple[float, float, float], tmp_path: Path
+) -> None:
+    checks = found(shifted(build(), child, way), tmp_path)
+    assert checks & {"KV343", "KV344"}
+
+
+def test_a_pivot_moved_along_the_axis_is_the_same_joint(tmp_path: Path) -> None:
+    assert found(shifted(barrel_hinge_door(), "door", (0, 0, 1)), tmp_path) == set()
+
+
+@pytest.mark.parametrize(
+    ("build", "child", "limits"),
+    [
+        (drawer, "drawer", (0.0, 1.0)),
+        (edge_door, "door", (0.0, 0.3)),
+        (barrel_hinge_door, "door", (0.0, 0.4)),
+        (button, "button", (0.0, 0.5)),
+        (sliding_lid, "lid", (0.0, 1.5)),
+    ],
+)
+def test_a_swapped_type_is_told(build: Build, child: str, limits: tuple[float, float], tmp_path: Path) -> None:
+    assert found(swapped(build(), child, limits), tmp_path) & {"KV343", "KV344", "KV345"}
+
+
+@pytest.mark.parametrize(("build", "child"), [(drawer, "drawer"), (edge_door, "door"), (sliding_lid, "lid")])
+def test_what_opens_inwards_is_told(build: Build, child: str, tmp_path: Path) -> None:
+    (finding,) = findings(judged(flipped(build(), child), tmp_path))
+    assert (finding.check, finding.joint) == ("KV346", f"{child}_joint")
+
+
+def test_a_mirrored_range_that_opens_the_same_way_is_fine(tmp_path: Path) -> None:
+    good = flipped(drawer(), "drawer")
+    joint = joint_of(good, "drawer")
+    assert found(with_joint(good, "drawer", lower=-joint.upper, upper=0.0), tmp_path) == set()
+
+
+def doorbell() -> KnownObject:
+    """A small button on a wide plate, without a stop either way."""
+    plate, cap = box((-0.2, -0.15, -0.01), (0.2, 0.15, 0.0)), box((0.05, 0.02, 0.0), (0.07, 0.04, 0.006))
+    return known_object(
+        "doorbell", {"plate": plate, "cap": cap}, sliding("plate", "cap", (0, 0, -1), (0, 0, 0), (0, 0.004))
+    )
+
+
+def test_a_button_that_comes_out_is_told(tmp_path: Path) -> None:
+    assert found(doorbell(), tmp_path / "good") == set()
+    assert found(flipped(doorbell(), "cap"), tmp_path / "bad") == {"KV346"}
+
+
+def test_a_drawer_that_leaves_its_carcass_is_told(tmp_path: Path) -> None:
+    good = drawer()
+    assert found(with_joint(good, "drawer", upper=2.0 * joint_of(good, "drawer").upper), tmp_path) == {"KV347"}
+
+
+def test_a_wrong_parent_is_told_and_nothing_else(tmp_path: Path) -> None:
+    (finding,) = findings(judged(with_joint(nested_drawer(), "tray", parent="carcass"), tmp_path))
+    assert (finding.check, finding.joint) == ("KV341", "tray_joint")
+    assert "drawer" in finding.message
+
+
+def test_only_the_broken_joint_of_a_chain_is_named(tmp_path: Path) -> None:
+    arm = aligned_arm()
+    child = arm.joints[2].child
+    broken = turned(arm, child, 20.0, (0.3, 0.2, 1.0) if abs(arm.joints[2].axis[2]) < 0.9 else (1.0, 0.2, 0.0))
+    assert {finding.joint for finding in findings(judged(broken, tmp_path))} == {f"{child}_joint"}
+
+
+def test_the_answer_does_not_depend_on_where_the_object_stands(tmp_path: Path) -> None:
+    bad = turned(edge_door(), "door", 20.0, (1.0, 1.0, 0.0))
+    shift = np.eye(4)
+    shift[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), 0.7)
+    shift[:3, 3] = (12.0, -3.0, 0.4)
+    here, there = found(bad, tmp_path / "here"), found(posed(bad, shift), tmp_path / "there")
+    assert here == there == {"KV342"}
+    assert found(with_yaw(drawer(), 0.6), tmp_path / "good") == set()
+
+
+def test_one_body_has_nothing_to_judge(tmp_path: Path) -> None:
+    urdf = tmp_path / "one.urdf"
+    urdf.write_text(
+        '<robot name="one"><link name="a"><visual><geometry><box size="1 1 1"/></geometry></visual></link>'
+        '<link name="b"/><joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>'
+    )
+    results = [result for result in told(urdf, tmp_path) if isinstance(result, CheckResult)]
+    assert {result.status for result in results} == {Status.SKIPPED}
+
+
+def test_late_stages_say_what_they_left_out(tmp_path: Path) -> None:
+    results = told(write(nested_drawer(), tmp_path), tmp_path, seconds=0.0)
+    checks = [result for result in results if isinstance(result, CheckResult)]
+    assert all(check.status is Status.SKIPPED and "1 of the joints" in (check.reason or "") for check in checks)
