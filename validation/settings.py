@@ -144,7 +144,7 @@ class EvidenceSettings(StageConfig):
     open: float
     """The other side is open from this share on."""
     button_outward: float
-    """Cosine from which the permitted motion of a small sliding part leads away from its parent."""
+    """How far out on its parent, from 0 in the middle to 1 at the side, a small part may be that moves farther out."""
 
 
 class EngineSettings(StageConfig):

@@ -78,7 +78,8 @@ class RoomEvidence:
     backward: float
     """Free motion towards - [rad or m]."""
     outward: float
-    """Cosine between the first motion towards + and the way out of the parent, 0 where that is undecided."""
+    """Of a turn, the cosine between the first motion towards + and the way out of the parent. Of a slide, where the
+    child is along it: 1 at the far side of the parent or beyond, -1 at the near side, 0 in the middle."""
     reach: float
     """How far was swept [rad or m]."""
     length: float
@@ -242,8 +243,7 @@ def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfi
     if slides:
         row = weighed.slides.sources.index(GIVEN)
         forward, backward = weighed.slides.free_parent[row] * scene.diagonal
-        away = scene.centre - scene.parent_frame.centre
-        outward = float(away @ joint.axis) / max(float(np.linalg.norm(away)), 1e-12)
+        outward = _side(weighed, joint.axis)
     else:
         row = weighed.turns.lines.sources.index(GIVEN)
         forward, backward = weighed.turns.free_parent[row]
@@ -256,6 +256,13 @@ def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfi
         length=length,
         parted=_parted(weighed, joint) if slides else 0.0,
     )
+
+
+def _side(weighed: WeighedJoints, axis: FloatArray) -> float:
+    scene = weighed.scene
+    child, parent = (scene.cache.samples(part).points @ axis for part in (scene.child, scene.parent))
+    apart = 0.5 * float(child.min() + child.max() - parent.min() - parent.max())
+    return apart / max(0.5 * float(np.ptp(child) + np.ptp(parent)), 1e-12)
 
 
 def _parted(weighed: WeighedJoints, joint: TrueJoint) -> float:
