@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 from lxml import etree
 
 from kinematify.errors import DescriptionError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     from lxml.etree import _Element
@@ -58,10 +59,25 @@ def parse_text(text: bytes) -> _Element:
     Raises:
         lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.
     """
-    parser = etree.XMLParser(
+    return etree.fromstring(with_plain_declaration(text), _parser())
+
+
+def syntax_errors(text: bytes) -> list[tuple[int, str]]:
+    """Return line and message of everything that keeps `parse_text` from reading a text."""
+    parser = _parser()
+    try:
+        etree.fromstring(with_plain_declaration(text), parser)
+    except etree.XMLSyntaxError as error:
+        # The log of the exception holds the errors of earlier documents too; that of the parser does not.
+        log = cast("Iterable[Any]", parser.error_log)
+        return [(entry.line, entry.message.strip()) for entry in log] or [(error.lineno or 1, str(error))]
+    return []
+
+
+def _parser() -> etree.XMLParser:
+    return etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
     )
-    return etree.fromstring(with_plain_declaration(text), parser)
 
 
 def has_doctype(root: _Element) -> bool:

@@ -46,9 +46,12 @@ def check_unit_slips(model: DeclaredModel, settings: FileSettings, check: OpenCh
     extents = _extents(model)
     for name, extent in extents.items():
         others = max((other.diagonal for key, other in extents.items() if key != name), default=0.0)
-        if 0.0 < others * settings.oversize < extent.diagonal:
+        # Of two sizes that do not go together, the one that no part of a machine has is the wrong one.
+        too_large = 0.0 < others * settings.oversize < extent.diagonal
+        too_small = extent.has_file and 0.0 < extent.diagonal * settings.undersize < others
+        if too_large and (extent.diagonal > settings.large or others >= settings.tiny):
             _tell_out_of_proportion(check, extent, others, settings.oversize)
-        elif extent.has_file and 0.0 < extent.diagonal * settings.undersize < others:
+        elif too_small and others <= settings.large:
             _tell_out_of_proportion(check, extent, others, 1.0 / settings.undersize)
     for joint, gap, size in _gaps(model, extents):
         if gap > settings.apart * size:

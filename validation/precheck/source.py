@@ -7,15 +7,14 @@ import os
 import re
 import stat
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.assembly.urdf_document import MAX_URDF_BYTES, parse_text
+from kinematify.assembly.urdf_document import MAX_URDF_BYTES, parse_text, syntax_errors
 from kinematify.errors import DescriptionError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from pathlib import Path
 
     from lxml.etree import _Element
@@ -69,11 +68,9 @@ def read_text(path: Path) -> UrdfText:
     text = _bytes(path)
     try:
         robot = parse_text(text)
-    except etree.XMLSyntaxError as error:
+    except etree.XMLSyntaxError:
         _refuse_foreign_text(path, text)
-        log = cast("Iterable[Any]", error.error_log)  # the stubs of lxml do not know that it is one
-        errors = [(entry.line, entry.message.strip()) for entry in log]
-        return UrdfText(text=text, robot=None, syntax_errors=tuple(errors) or ((error.lineno or 1, str(error)),))
+        return UrdfText(text=text, robot=None, syntax_errors=tuple(syntax_errors(text)))
     _refuse_foreign_tree(path, robot)
     return UrdfText(text=text, robot=robot)
 
