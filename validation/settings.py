@@ -65,11 +65,11 @@ class FileSettings(StageConfig):
     apart: float
     """Distance between a link and its parent over the sum of their sizes that only a slip of units explains."""
     tiny: float
-    """Diagonal below which the unit of a model is wrong [m]."""
+    """Diagonal of the largest link below which the unit of a model is wrong [m]."""
     small: float
-    """Diagonal below which it is suspicious [m]."""
+    """Diagonal of a model below which its unit is suspicious [m]."""
     large: float
-    """Diagonal above which it is suspicious [m]."""
+    """Diagonal of a model above which its unit is suspicious [m]."""
     huge: float
     """Diagonal above which the unit of a model that moves is wrong [m]."""
 

@@ -196,6 +196,15 @@ def test_a_whole_model_in_another_unit_is_found(factor: float, severity: Severit
     assert [(f.check, f.severity) for f in bad(results)] == [("KV158", severity)]
 
 
+def test_meshes_that_shrank_between_origins_in_metres_blame_no_joint(cupboard: Path) -> None:
+    for name in ("body.obj", "door.stl"):
+        mesh = trimesh.load_mesh(cupboard.parent / name)
+        mesh.apply_scale(0.001)
+        mesh.export(cupboard.parent / name)
+    _, results = check_model(cupboard)
+    assert [(f.check, f.joint, f.severity) for f in bad(results)] == [("KV158", None, Severity.ERROR)]
+
+
 def test_a_unit_that_a_file_states_is_named(cupboard: Path) -> None:
     scene = trimesh.Scene(trimesh.creation.box(extents=(0.8, 0.8, 1.0)))
     scene.export(cupboard.parent / "body.3mf")

@@ -53,6 +53,8 @@ def check_unit_slips(model: DeclaredModel, settings: FileSettings, check: OpenCh
             _tell_out_of_proportion(check, extent, others, settings.oversize)
         elif too_small and others <= settings.large:
             _tell_out_of_proportion(check, extent, others, 1.0 / settings.undersize)
+    if max((extent.diagonal for extent in extents.values()), default=0.0) < settings.tiny:
+        return  # all meshes are in another unit, which the size of the model tells; no origin is to blame
     for joint, gap, size in _gaps(model, extents):
         if gap > settings.apart * size:
             check.find(
@@ -101,9 +103,11 @@ def check_model_size(model: DeclaredModel, settings: FileSettings, check: OpenCh
     check.measured["diagonal_m"] = size
     largest = max(extents.values(), key=lambda extent: extent.diagonal)
     moves = any(joint.joint.kind != "fixed" for joint in model.joints)
-    if size < settings.small or size > settings.large:
-        certain = size < settings.tiny or (size > settings.huge and moves)
-        too_large = size > settings.large
+    # Joints in metres hold even the tiniest meshes apart, so that the largest link tells whether all are too small.
+    shrunken = largest.diagonal < settings.tiny
+    if shrunken or size < settings.small or size > settings.large:
+        certain = shrunken or (size > settings.huge and moves)
+        too_large = size > settings.large and not shrunken
         check.find(
             f"The model measures {size:.4g} m across; its largest link is {largest.link.name} with "
             f"{largest.diagonal:.4g} m. URDF lengths are metres.",
@@ -112,8 +116,8 @@ def check_model_size(model: DeclaredModel, settings: FileSettings, check: OpenCh
             else "Leave out the scale of meshes that are in metres already, or export in metres.",
             severity=Severity.ERROR if certain else Severity.WARNING,
             link=largest.link.name,
-            value=size,
-            limit=settings.large if too_large else settings.small,
+            value=largest.diagonal if shrunken else size,
+            limit=settings.large if too_large else settings.tiny if shrunken else settings.small,
             unit="m",
             line=largest.line,
         )

@@ -110,8 +110,8 @@ CHECKS: tuple[Check, ...] = (
         severity=Severity.ERROR,
         blame=Blame.ASSET,
         verifies=(
-            "The diagonal of the model at zero lies between `small` and `large`; below `tiny`, or above `huge` if "
-            "it has joints that move, it is an error."
+            "The diagonal of the model at zero lies between `small` and `large`; above `huge` it is an error if the "
+            "model has joints that move, and so is a largest link below `tiny`."
         ),
         matters=(
             "Gravity, friction and contact parameters of engines are made for metres: a cabinet of 2 km falls in "
