@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -78,6 +78,14 @@ class Finding:
     def __post_init__(self) -> None:
         if self.q is not None:
             object.__setattr__(self, "q", MappingProxyType(dict(self.q)))
+
+    # Findings come from other processes, and a read-only view cannot be sent.
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "q": None if self.q is None else dict(self.q)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self.__post_init__()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ from kinematify.sources.procedural.solids import box
 from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Severity, Status
 from kinematify.validation.report import JointSummary
+from kinematify.validation.run import validate
 from tests.household import (
     barrel_hinge_door,
     button,
@@ -204,3 +205,12 @@ def test_late_stages_say_what_they_left_out(tmp_path: Path) -> None:
     results = told(write(nested_drawer(), tmp_path), tmp_path, seconds=0.0)
     checks = [result for result in results if isinstance(result, CheckResult)]
     assert all(check.status is Status.SKIPPED and "1 of the joints" in (check.reason or "") for check in checks)
+
+
+def test_findings_reach_the_report(tmp_path: Path) -> None:
+    urdf = write(flipped(drawer(), "drawer"), tmp_path)
+    report = validate(urdf, selected={check.id for check in CHECKS}, engines=())
+    (finding,) = [finding for finding in report.findings if finding.check.startswith("KV34")]
+    assert (finding.check, finding.joint, dict(finding.q or {})) == ("KV346", "drawer_joint", {"drawer_joint": 0.0})
+    (summary,) = [joint for joint in report.joints if joint.joint == "drawer_joint"]
+    assert summary.kind == "prismatic"
