@@ -34,10 +34,9 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(evidence.CHECKS)),
     ]
     for engine in chosen:
-        checks = tuple(key for key in keys(engines.CHECKS) if key[1] == engine)
+        checks = tuple(key for key in keys(engines.CHECKS + agreement.CHECKS) if key[1] == engine)
         function = f"kinematify.validation.engines.{engine}_stage:run"
-        after = () if engine == "pinocchio" else ("prepare",)
-        stages.append(Stage(name=engine, function=function, checks=checks, after=after))
+        stages.append(Stage(name=engine, function=function, checks=checks, after=("prepare",)))
     return stages
 
 

@@ -77,6 +77,71 @@ class FileSettings(StageConfig):
 class PhysicsSettings(StageConfig):
     """KV2xx: declared physics."""
 
+    tiny_mass: float
+    """Lighter bodies are a warning [kg]."""
+    huge_mass: float
+    """Heavier bodies are a warning [kg]."""
+    dense: float
+    """Denser hulls are a warning [kg/m^3]."""
+    impossibly_dense: float
+    """Denser hulls are an error [kg/m^3]."""
+    light: float
+    """Less dense solids are a warning [kg/m^3]."""
+    mass_ratio: float
+    """Mass of a body over that of the body that carries it."""
+    moment_rounding: float
+    """Largest principal moment over the sum of the others that rounding explains."""
+    moment_ratio: float
+    """The same, beyond which it is an error."""
+    gyration_large: float
+    """Largest radius of gyration over the distance of the outermost point."""
+    gyration_small: float
+    """Smallest value of the same."""
+    centre_outside: float
+    """Centres of mass may lie so far outside the hull, fraction of the body's diagonal."""
+    centre_far: float
+    """Beyond this it is an error, fraction of the body's diagonal."""
+    full_turn: float
+    """Wider ranges of hinges are a warning unless they are round numbers of degrees [rad]."""
+    widest_turn: float
+    """Wider ranges are an error [rad]."""
+    widest_wrist: float
+    """Wider ranges are an error even with round limits [rad]."""
+    endless: float
+    """Wider ranges mean that there is no limit [rad]."""
+    widest_slide: float
+    """Longer ranges of slides are a warning [m]."""
+    slide_sizes: float
+    """The same, fraction of the model's diagonal."""
+    slide_wrong: float
+    """Longer ranges are an error, fraction of the model's diagonal."""
+    mimic_slack: float
+    """Followers may go so far beyond their limits, fraction of their range, at least of 1 rad or m."""
+    damping: float
+    """Larger damping or friction is a warning [N m s/rad, N s/m, N m or N]."""
+    margin: float
+    """Effort over the largest weight at a joint below which it is mentioned; below 1 it is a warning."""
+    load_doublings: int
+    """Two to this power configurations are sampled for the weight."""
+    bare_share: float
+    """A link without collision is small below this fraction of its body's diagonal."""
+    shift: float
+    """Displacement of the collision geometry, fraction of the visual diagonal."""
+    shift_same: float
+    """The same where both are of the same size."""
+    shift_wrong: float
+    """The same, beyond which it is an error."""
+    same_size: float
+    """Extents that differ less are the same, fraction of the visual diagonal."""
+    beyond: float
+    """How far collision geometry may reach beyond the visual one, fraction of the visual diagonal."""
+    inflation: float
+    """Volume of a hull over that of its mesh."""
+    collision_shapes: int
+    """More shapes per link are a note."""
+    collision_faces: int
+    """More triangles per link are a note."""
+
 
 class PrepareSettings(StageConfig):
     """The file that engines are given: decomposition of concave collision meshes."""
@@ -162,6 +227,20 @@ class AgreementSettings(StageConfig):
     """Configurations with mass matrix and gravity torques."""
     dynamic_numbers: int
     """Entries of all mass matrices together at most; large models have fewer configurations."""
+    position: float
+    """Distance between two engines' poses of one link that is an error, fraction of the model's size."""
+    angle: float
+    """The same for the angle between them [rad]."""
+    mass_error: float
+    """Relative difference of a mass that is an error."""
+    mass_matrix: float
+    """Relative difference of an entry of the mass matrix that is a warning."""
+    gravity: float
+    """Relative difference of a gravity torque that is a warning."""
+    contact_depth: float
+    """Overlap in one engine that the other should see too [m]."""
+    contact_share: float
+    """The same as a fraction of the model's size; the larger of the two counts."""
 
 
 class ValidationSettings(StageConfig):
