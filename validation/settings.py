@@ -97,6 +97,8 @@ class PhysicsSettings(StageConfig):
     """Largest radius of gyration over the distance of the outermost point."""
     gyration_small: float
     """Smallest value of the same."""
+    listed: int
+    """More links with such an inertia are one finding."""
     centre_outside: float
     """Centres of mass may lie so far outside the hull, fraction of the body's diagonal."""
     centre_far: float

@@ -9,7 +9,7 @@ import igl
 import numpy as np
 
 from kinematify.assembly.weld import welded
-from kinematify.validation.prepare.convex import ConvexPiece, convex_piece, reach, signed_volume
+from kinematify.validation.convex import ConvexPiece, convex_piece, reach, signed_volume
 from kinematify.validation.prepare.prepared import Method
 
 if TYPE_CHECKING:

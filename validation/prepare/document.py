@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
     from kinematify.assembly.robot import DescribedJoint
+    from kinematify.validation.convex import ConvexPiece
     from kinematify.validation.declared import DeclaredJoint, DeclaredShape
-    from kinematify.validation.prepare.convex import ConvexPiece
     from kinematify.validation.prepare.masses import PreparedInertial
     from kinematify.validation.settings import PrepareSettings
 

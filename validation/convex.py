@@ -42,9 +42,15 @@ def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> Co
     """
     vertices, faces = convex_hull(thickened(points, thickness))
     if len(vertices) > directions:
-        outermost = np.unique(np.argmax(_directions(directions) @ (vertices - vertices.mean(axis=0)).T, axis=1))
-        vertices, faces = convex_hull(thickened(vertices[outermost], thickness))
+        vertices, faces = convex_hull(thickened(outermost(vertices, directions), thickness))
     return ConvexPiece(vertices=vertices, faces=faces)
+
+
+def outermost(points: FloatArray, directions: int) -> FloatArray:
+    """Return the points that lie farthest out in each of so many directions, shape (k, 3): their hull, nearly."""
+    if not len(points):
+        return points
+    return np.asarray(points[np.unique(np.argmax(_directions(directions) @ (points - points[0]).T, axis=1))])
 
 
 def _directions(count: int) -> FloatArray:

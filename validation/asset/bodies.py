@@ -1,0 +1,188 @@
+"""What the checks of declared physics measure once: rigid bodies with their mass, and the room that links take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from kinematify.assembly.robot import forward_kinematics, rigid_groups
+from kinematify.geometry.hull import thickened
+from kinematify.validation.convex import outermost, signed_volume
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.robot import LinkMesh
+    from kinematify.validation.declared import DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.validation.settings import PhysicsSettings
+
+_DIRECTIONS = 200
+"""The hull of the outermost points in so many directions leaves 1 % of a ball's volume out."""
+_THINNEST = 1e-4
+"""Flat geometry counts as this thick, fraction of its diagonal."""
+_CLOSED = 1e-6
+"""Sum of the area vectors of a closed surface, fraction of its area."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Room:
+    """The room that some geometry takes, in the frame of a link."""
+
+    points: FloatArray
+    """Its outermost points [m], shape (k, 3)."""
+    solid: float | None
+    """Volume inside its surfaces [m^3]; None where one of them is open."""
+
+    @cached_property
+    def low(self) -> FloatArray:
+        """Lower corner of the bounding box [m], shape (3,)."""
+        return np.asarray(self.points.min(axis=0))
+
+    @cached_property
+    def high(self) -> FloatArray:
+        """Upper corner."""
+        return np.asarray(self.points.max(axis=0))
+
+    @cached_property
+    def diagonal(self) -> float:
+        """[m]."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    @cached_property
+    def hull(self) -> ConvexHull:
+        """Convex hull of the points, with a little thickness where they are flat."""
+        return ConvexHull(thickened(self.points, max(_THINNEST * self.diagonal, 1e-9)))
+
+    def outside(self, point: FloatArray) -> float:
+        """How far a point lies outside the hull at least [m], negative inside."""
+        return float((self.hull.equations[:, :3] @ point + self.hull.equations[:, 3]).max())
+
+
+def room_of(shapes: Sequence[DeclaredShape]) -> Room | None:
+    """Measure shapes; None where there is nothing to measure."""
+    meshes = [shape.mesh for shape in shapes if len(shape.mesh.faces)]
+    if not meshes:
+        return None
+    points = np.concatenate([outermost(mesh.vertices[np.unique(mesh.faces)], _DIRECTIONS) for mesh in meshes])
+    volumes = [closed_volume(mesh) for mesh in meshes]
+    known = [volume for volume in volumes if volume is not None]
+    return Room(points=points, solid=sum(known) if len(known) == len(volumes) else None)
+
+
+def closed_volume(mesh: LinkMesh) -> float | None:
+    """Volume inside a surface [m^3]; None where it is open or encloses nothing."""
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    areas = 0.5 * np.cross(b - a, c - a)
+    if np.linalg.norm(areas.sum(axis=0)) > _CLOSED * float(np.linalg.norm(areas, axis=1).sum()):
+        return None
+    volume = abs(signed_volume(mesh.vertices, mesh.faces))
+    return volume or None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """Links that fixed joints hold together."""
+
+    links: tuple[DeclaredLink, ...]
+    """The link nearest the root first."""
+    T_body_link: dict[str, FloatArray]
+    """Pose of each link in the frame of the first."""
+    joint: str | None
+    """The joint that moves it; None for the body of the root."""
+    rooms: dict[str, Room]
+    """Room of each link that has geometry, in the link's own frame, visual and collision geometry together."""
+
+    @property
+    def moves(self) -> bool:
+        """False for the body of the root."""
+        return self.joint is not None
+
+    @property
+    def called(self) -> str:
+        """Name of the link that says where it is: the largest, or the first where none has geometry."""
+        return max(self.rooms, key=lambda name: self.rooms[name].diagonal) if self.rooms else self.links[0].name
+
+    @cached_property
+    def mass(self) -> float:
+        """Sum of the masses above zero [kg]."""
+        return sum(link.inertial.mass for link in self.links if link.inertial is not None and link.inertial.mass > 0.0)
+
+    @cached_property
+    def heaviest(self) -> DeclaredLink:
+        """The link that a wrong mass is most likely written at."""
+        return max(self.links, key=lambda link: 0.0 if link.inertial is None else link.inertial.mass)
+
+    @cached_property
+    def room(self) -> Room | None:
+        """Room of all links together, in the frame of the first."""
+        if not self.rooms:
+            return None
+        placed = [
+            room.points @ self.T_body_link[name][:3, :3].T + self.T_body_link[name][:3, 3]
+            for name, room in self.rooms.items()
+        ]
+        solids = [room.solid for room in self.rooms.values() if room.solid is not None]
+        return Room(points=np.concatenate(placed), solid=sum(solids) if len(solids) == len(self.rooms) else None)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Physics:
+    """A model with what was measured of it."""
+
+    model: DeclaredModel
+    settings: PhysicsSettings
+    bodies: tuple[Body, ...]
+    """The root's first, parents before children."""
+    visual: dict[str, Room]
+    """Room of the visual geometry of each link that has some, in the link's frame."""
+    collision: dict[str, Room]
+    """The same for the collision geometry."""
+
+    @cached_property
+    def body_of(self) -> dict[str, Body]:
+        """Body of every link."""
+        return {link.name: body for body in self.bodies for link in body.links}
+
+    @cached_property
+    def diagonal(self) -> float:
+        """Of the model at zero [m]; 0 without geometry."""
+        poses = forward_kinematics(self.model.kinematics, {})
+        placed = [
+            body.room.points @ poses[body.links[0].name][:3, :3].T + poses[body.links[0].name][:3, 3]
+            for body in self.bodies
+            if body.room is not None
+        ]
+        return float(np.linalg.norm(np.ptp(np.concatenate(placed), axis=0))) if placed else 0.0
+
+
+def measure(model: DeclaredModel, settings: PhysicsSettings) -> Physics:
+    """Measure every link once."""
+    visual = {link.name: room for link in model.links if (room := room_of(link.visuals)) is not None}
+    collision = {link.name: room for link in model.links if (room := room_of(link.collisions)) is not None}
+    poses = forward_kinematics(model.kinematics, {})
+    bodies = []
+    for group in rigid_groups(model.kinematics):
+        above = model.kinematics.joint_above.get(group.top)
+        T_body_world = np.linalg.inv(poses[group.top])
+        bodies.append(
+            Body(
+                links=tuple(model.link_by_name[name] for name in group.links),
+                T_body_link={name: T_body_world @ poses[name] for name in group.links},
+                joint=None if above is None else above.name,
+                rooms={name: room for name in group.links if (room := _both(name, visual, collision)) is not None},
+            )
+        )
+    return Physics(model=model, settings=settings, bodies=tuple(bodies), visual=visual, collision=collision)
+
+
+def _both(name: str, visual: dict[str, Room], collision: dict[str, Room]) -> Room | None:
+    """Visual and collision geometry together; the volume is that of the visual one, which shows the true shape."""
+    seen, felt = visual.get(name), collision.get(name)
+    if seen is None or felt is None:
+        return seen or felt
+    return Room(points=np.concatenate([seen.points, felt.points]), solid=seen.solid)
