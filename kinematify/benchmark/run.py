@@ -199,7 +199,7 @@ def _line(result: JobResult) -> str:
 def _header(request: BenchmarkRequest, results: Sequence[JobResult]) -> dict[str, Any]:
     seeds = {condition.seed for condition in CONDITIONS if condition.name in request.conditions}
     return {
-        "command": shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]]),
+        "command": _command(),
         "date": datetime.datetime.now(tz=datetime.UTC).date().isoformat(),
         "code": code_version()[:12],
         "objects": len({result.object for result in results}),
@@ -211,6 +211,12 @@ def _header(request: BenchmarkRequest, results: Sequence[JobResult]) -> dict[str
         "python": platform.python_version(),
         "packages": {name: _installed(name) for name in ("kinematify", "numpy", "scipy", "torch", "trimesh", "libigl")},
     }
+
+
+def _command() -> str:
+    """The command that is running, as a user types it, also where it was started as `python -m kinematify`."""
+    program = Path(sys.argv[0]).name
+    return shlex.join(["kinematify" if program == "__main__.py" else program, *sys.argv[1:]])
 
 
 def _processor() -> str:

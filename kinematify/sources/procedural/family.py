@@ -11,6 +11,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.sources.procedural.materials import COLORS, MATERIALS
+from kinematify.sources.procedural.styles import STYLES
 from kinematify.sources.procedural.workshop import Workshop
 
 if TYPE_CHECKING:
@@ -97,6 +98,7 @@ COMMON = (
         usual=(0.0002, 0.003),
         help="Gap between parts that move past each other.",
     ),
+    Parameter(name="style", default="clean", choices=STYLES, help="Of the meshes: as drawn, or as from elsewhere."),
     Parameter(name="material", default="", choices=("", *MATERIALS), help="What the base is made of."),
     Parameter(name="color", default="", choices=("", *COLORS), help="Colour of what names no material of its own."),
 )
@@ -126,7 +128,13 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
         family.name, material=str(values["material"]) or family.material, color=str(values["color"]) or None
     )
     family.build(Values(values, rng), workshop)
-    return workshop.finish(name or family.name, {"seed": seed, **values})
+    return workshop.finish(
+        name or family.name,
+        {"seed": seed, **values},
+        style=str(values["style"]),
+        clearance=float(values["clearance"]),
+        rng=np.random.default_rng(seed),
+    )
 
 
 def _drawn(parameter: Parameter, rng: np.random.Generator) -> Value:

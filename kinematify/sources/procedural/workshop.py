@@ -12,6 +12,7 @@ from kinematify.assembly.part import Part
 from kinematify.sources.procedural.blueprint import Blueprint, BlueprintJoint
 from kinematify.sources.procedural.materials import MATERIALS, color_of
 from kinematify.sources.procedural.solids import union
+from kinematify.sources.procedural.styles import styled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -126,8 +127,19 @@ class Workshop:
         if math.isfinite(joint.upper):
             self._rest[joint.child] = rest * joint.upper
 
-    def finish(self, name: str, parameters: Mapping[str, Any]) -> Blueprint:
-        """Return the object in the configuration in which it is shown."""
+    def finish(
+        self, name: str, parameters: Mapping[str, Any], *, style: str, clearance: float, rng: np.random.Generator
+    ) -> Blueprint:
+        """Return the object in the configuration in which it is shown.
+
+        Args:
+            name: Of the object.
+            parameters: What it was built with, for the record.
+            style: Of its meshes.
+            clearance: Gap that the style must keep open [m].
+            rng: Draws what the style leaves open.
+        """
+        self._solids = {k: styled(solid, style, clearance=clearance, rng=rng) for k, solid in self._solids.items()}
         built = Blueprint(
             name=name,
             family=self._family,
