@@ -8,7 +8,6 @@ import platform
 import shlex
 import sys
 from dataclasses import dataclass, field, replace
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -209,7 +208,7 @@ def _header(request: BenchmarkRequest, results: Sequence[JobResult]) -> dict[str
         "workers": request.workers,
         "processor": _processor(),
         "python": platform.python_version(),
-        "packages": {name: _installed(name) for name in ("kinematify", "numpy", "scipy", "torch", "trimesh", "libigl")},
+        "packages": package_versions(("kinematify", "numpy", "scipy", "torch", "trimesh", "libigl")),
     }
 
 
@@ -227,10 +226,3 @@ def _processor() -> str:
         lines = facts.read_text(encoding="utf-8").splitlines()
         model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), model)
     return f"{os.cpu_count()} x {model}"
-
-
-def _installed(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"
