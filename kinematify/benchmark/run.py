@@ -17,6 +17,7 @@ from kinematify.benchmark.ledger import Ledger, code_version
 from kinematify.benchmark.workers import run_jobs
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
+from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
