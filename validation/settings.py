@@ -217,6 +217,57 @@ class EvidenceSettings(StageConfig):
 class EngineSettings(StageConfig):
     """KV4xx and KV5xx: behaviour in engines."""
 
+    time_step: float
+    """[s]."""
+    same: float
+    """Difference of an axis, limit, mass or inertia that an importer may make, fraction of the value."""
+    pose_distance: float
+    """Difference of a link's position, fraction of the model's size."""
+    pose_deg: float
+    """Difference of a link's orientation [deg]."""
+    contact_depth: float
+    """Overlap that does not count, fraction of the model's size."""
+    sweep_samples: int
+    """Configurations of a joint from end to end."""
+    servo_frequency: float
+    """Of the servo of a joint, the others held [Hz]; it is critically damped."""
+    servo_margin: float
+    """How much stronger a servo is than its motion needs."""
+    drive_seconds: float
+    """From rest to one end [s]."""
+    settle_seconds: float
+    """Waiting at the end [s]."""
+    reach: float
+    """Distance from the end at which a joint has arrived, fraction of the range."""
+    tracking: float
+    """Lag behind the commanded motion, fraction of the way."""
+    push: float
+    """How far beyond its limit a joint is commanded, fraction of the range."""
+    push_seconds: float
+    """For how long [s]."""
+    escape: float
+    """How far beyond its limit a joint may get, fraction of the range."""
+    sag: float
+    """Of a held joint under gravity, fraction of the range."""
+    passive_seconds: float
+    """Free motion from rest, and holding at rest [s]."""
+    explosion: float
+    """Speed, as a multiple of that of a fall from the height of the model, that is no motion any more."""
+    energy: float
+    """Growth of energy, fraction of the largest kinetic energy."""
+    drop: float
+    """Height above the floor [m]."""
+    drop_seconds: float
+    """From letting go to rest [s]."""
+    sink: float
+    """Depth in the floor [m]."""
+    rest_speed: float
+    """Speed of the fastest link that counts as rest [m/s]."""
+    step_seconds: float
+    """Free motion that is repeated with a quarter of the time step [s]."""
+    step_difference: float
+    """Difference between the two motions, fraction of the larger one."""
+
 
 class AgreementSettings(StageConfig):
     """KV6xx: agreement of engines."""

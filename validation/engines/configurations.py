@@ -18,6 +18,7 @@ from kinematify.assembly.part import read_only
 from kinematify.assembly.robot import joint_values, rest_configuration
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from kinematify.assembly.part import FloatArray, IntArray
@@ -99,7 +100,7 @@ def agreement_configurations(description: RobotDescription, settings: AgreementS
     leaders = [joint for joint in description.joints if joint.kind != "fixed" and joint.mimic is None]
     rest = rest_configuration(description)
     middle = np.array([rest[joint.name] for joint in leaders])
-    lower, upper = _ends(leaders)
+    lower, upper = joint_ends(leaders)
     values = np.vstack(
         [
             np.zeros((1, len(leaders))),
@@ -117,7 +118,7 @@ def agreement_configurations(description: RobotDescription, settings: AgreementS
     )
 
 
-def _ends(leaders: list[DescribedJoint]) -> tuple[FloatArray, FloatArray]:
+def joint_ends(leaders: Sequence[DescribedJoint]) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest value of each joint [rad or m], shape (m,) each; unlimited ones turn once."""
     widest = np.array([_WIDEST_TURN if joint.kind.turns else _WIDEST_SLIDE for joint in leaders])
     lower = np.array([joint.lower if np.isfinite(joint.lower) else -_UNLIMITED_TURN for joint in leaders])

@@ -1,0 +1,145 @@
+"""What a drive through the ranges needs to know of a tree: which joints lead, how far they go, what each one moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.robot import joint_values, rest_configuration, rigid_groups
+from kinematify.validation.engines.configurations import joint_ends
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.assembly.robot import RobotDescription
+
+    BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Travel:
+    """The way of a joint that leads: unlimited joints turn by half a turn either way."""
+
+    joint: str
+    turns: bool
+    limited: bool
+    """False where the ends are none of the model's."""
+    lower: float
+    """[rad or m]."""
+    rest: float
+    """[rad or m]."""
+    upper: float
+    """[rad or m]."""
+
+    @property
+    def range(self) -> float:
+        """[rad or m]."""
+        return self.upper - self.lower
+
+    @property
+    def unit(self) -> str:
+        """Of its values."""
+        return "rad" if self.turns else "m"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mechanism:
+    """A tree, its leading joints and its bodies (links held together by fixed joints)."""
+
+    description: RobotDescription
+
+    @cached_property
+    def travels(self) -> tuple[Travel, ...]:
+        """Of every joint that is neither fixed nor a follower, in the order of the document."""
+        leaders = [j for j in self.description.joints if j.kind is not JointType.FIXED and j.mimic is None]
+        rest = rest_configuration(self.description)
+        lower, upper = joint_ends(leaders)
+        return tuple(
+            Travel(
+                joint=joint.name,
+                turns=joint.kind.turns,
+                limited=bool(np.isfinite([joint.lower, joint.upper]).all()),
+                lower=float(low),
+                rest=rest[joint.name],
+                upper=float(high),
+            )
+            for joint, low, high in zip(leaders, lower, upper, strict=True)
+        )
+
+    @cached_property
+    def links(self) -> tuple[str, ...]:
+        """In the order of the document."""
+        return tuple(link.name for link in self.description.links)
+
+    @cached_property
+    def joints(self) -> tuple[str, ...]:
+        """Every joint that is not fixed, followers included, in the order of the document."""
+        return tuple(joint.name for joint in self.description.joints if joint.kind is not JointType.FIXED)
+
+    @cached_property
+    def body_of_link(self) -> IntArray:
+        """Index of the rigid body of each link, shape (L,); the root's is 0."""
+        bodies = {name: k for k, group in enumerate(rigid_groups(self.description)) for name in group.links}
+        return np.array([bodies[name] for name in self.links], dtype=np.int64)
+
+    @cached_property
+    def neighbours(self) -> frozenset[tuple[int, int]]:
+        """Pairs of bodies that a joint connects, smaller index first."""
+        body = dict(zip(self.links, self.body_of_link.tolist(), strict=True))
+        ends = [sorted((body[joint.parent], body[joint.child])) for joint in self.description.joints]
+        return frozenset((a, b) for a, b in ends if a != b)
+
+    @cached_property
+    def moved(self) -> BoolArray:
+        """Which bodies a leader moves, its followers' included, shape (leaders, bodies)."""
+        row = {name: np.abs(self.leads[k]) > 0.0 for k, name in enumerate(self.joints)}
+        body = dict(zip(self.links, self.body_of_link.tolist(), strict=True))
+        moved = np.zeros((int(self.body_of_link.max()) + 1, len(self.travels)), dtype=bool)
+        for joint in self.description.joints_downward:
+            moved[body[joint.child]] |= moved[body[joint.parent]] | row.get(joint.name, np.False_)
+        return moved.T
+
+    @cached_property
+    def leads(self) -> FloatArray:
+        """Motion of every joint per motion of each leader (mimic multipliers), shape (joints, leaders)."""
+        return (self._followed(np.eye(len(self.travels))) - self._at_zero).T
+
+    @cached_property
+    def rest(self) -> FloatArray:
+        """Values of the leaders at rest [rad or m], shape (leaders,)."""
+        return np.array([travel.rest for travel in self.travels])
+
+    def all_values(self, leaders: FloatArray) -> FloatArray:
+        """Return the values of all `joints` [rad or m], shape (n, joints), for rows of leaders (n, leaders)."""
+        values: FloatArray = self._at_zero + leaders @ self.leads.T
+        return values
+
+    def sweep(self, samples: int) -> FloatArray:
+        """Rows of leaders: rest, then each leader from end to end while the others rest.
+
+        Returns:
+            Shape (1 + leaders * samples, leaders) [rad or m].
+        """
+        rows = np.tile(self.rest, (1 + len(self.travels) * samples, 1))
+        for k, travel in enumerate(self.travels):
+            rows[sweep_rows(k, samples), k] = np.linspace(travel.lower, travel.upper, samples)
+        return rows
+
+    @cached_property
+    def _at_zero(self) -> FloatArray:
+        return self._followed(np.zeros((1, len(self.travels))))[0]
+
+    def _followed(self, leaders: FloatArray) -> FloatArray:
+        names = [travel.joint for travel in self.travels]
+        rows = [joint_values(self.description, dict(zip(names, row.tolist(), strict=True))) for row in leaders]
+        return np.array([[row[name] for name in self.joints] for row in rows]).reshape(len(leaders), len(self.joints))
+
+
+def sweep_rows(leader: int, samples: int) -> slice:
+    """Where the sweep of a leader stands among the rows of `Mechanism.sweep`."""
+    return slice(1 + leader * samples, 1 + (leader + 1) * samples)

@@ -1,0 +1,227 @@
+"""`prepared.urdf` in MuJoCo: the model for measuring, in which everything collides, and those for simulating."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+from lxml import etree
+
+from kinematify.validation.engines.configurations import GRAVITY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.validation.engines.touching import Touching
+
+_RESERVED = "world"
+"""MuJoCo's name of the outside; a link of this name is loaded under another one."""
+FLOOR = "kinematify floor"
+
+
+class Refused(Exception):
+    """MuJoCo does not load the file; the text is its own message."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MujocoModel:
+    """A compiled model and where the links and joints of the document stand in it."""
+
+    model: mujoco.MjModel
+    body: IntArray
+    """Body of each link, -1 for lost ones, shape (L,)."""
+    joint: IntArray
+    """MuJoCo joint of each of `Mechanism.joints`, -1 for lost ones, shape (J,)."""
+    balanced: bool
+    """True if MuJoCo refused an inertia tensor, and all such were replaced by balanced ones."""
+
+    @property
+    def complete(self) -> bool:
+        """True if no link and no joint was lost."""
+        return bool((self.body >= 0).all() and (self.joint >= 0).all())
+
+    @property
+    def qpos(self) -> IntArray:
+        """Address of each joint in `qpos`, shape (J,)."""
+        return np.asarray(self.model.jnt_qposadr, dtype=np.int64)[self.joint]
+
+    @property
+    def dof(self) -> IntArray:
+        """Address of each joint in `qvel`, shape (J,)."""
+        return np.asarray(self.model.jnt_dofadr, dtype=np.int64)[self.joint]
+
+    @property
+    def link_of_body(self) -> IntArray:
+        """Link of each body, -1 for what is no link, shape (bodies,)."""
+        links = np.full(self.model.nbody, -1, dtype=np.int64)
+        links[self.body] = np.arange(len(self.body))
+        return links
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Source:
+    """A parsed file, from which variants are compiled."""
+
+    spec: mujoco.MjSpec
+    names: tuple[str, ...]
+    """Names of the links in the document's order, as MuJoCo knows them."""
+    mechanism: Mechanism
+    step: float
+    """Time step [s]."""
+
+
+def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> Source:
+    """Parse a prepared file.
+
+    Raises:
+        Refused: MuJoCo cannot.
+    """
+    robot = etree.parse(str(urdf)).getroot()
+    stand_in = _free_name(mechanism.links)
+    for element in robot.iter("link", "parent", "child"):
+        key = "name" if element.tag == "link" else "link"
+        if element.get(key) == _RESERVED:
+            element.set(key, stand_in)
+    try:
+        spec = mujoco.MjSpec.from_string(etree.tostring(robot, encoding="unicode", pretty_print=True))
+    except ValueError as error:
+        raise Refused(_sentence(error)) from error
+    spec.compiler.fusestatic = False
+    spec.option.timestep = step
+    spec.option.gravity = [0.0, 0.0, -GRAVITY]
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    # Contacts between a body and its parent count; what is there from the start is allowed pair by pair.
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
+    for number, geom in enumerate(spec.geoms):
+        geom.name = f"kinematify geom {number}"
+    names = tuple(stand_in if name == _RESERVED else name for name in mechanism.links)
+    return Source(spec=spec, names=names, mechanism=mechanism, step=step)
+
+
+def compiled(source: Source) -> MujocoModel:
+    """Compile a variant; where MuJoCo refuses an inertia tensor, a second time with balanced ones.
+
+    Raises:
+        Refused: It refuses something else.
+    """
+    balanced = bool(source.spec.compiler.balanceinertia)
+    try:
+        model = source.spec.compile()
+    except ValueError as error:
+        if balanced or "inertia" not in str(error):
+            raise Refused(_sentence(error)) from error
+        source.spec.compiler.balanceinertia = True
+        return compiled(source)
+    names = source.mechanism.joints
+    return MujocoModel(
+        model=model,
+        body=_ids(model, mujoco.mjtObj.mjOBJ_BODY, source.names),
+        joint=_ids(model, mujoco.mjtObj.mjOBJ_JOINT, names),
+        balanced=balanced,
+    )
+
+
+def _ids(model: mujoco.MjModel, kind: mujoco.mjtObj, names: Iterable[str]) -> IntArray:
+    return np.array([mujoco.mj_name2id(model, kind, name) for name in names], dtype=np.int64)
+
+
+def _free_name(names: Iterable[str]) -> str:
+    name = f"{_RESERVED} link"
+    while name in names:
+        name += "_"
+    return name
+
+
+def _sentence(error: Exception) -> str:
+    return " ".join(str(error).split())
+
+
+def with_servos(source: Source) -> Source:
+    """Return a copy with one servo for each leading joint, in their order; its gains are set after compiling."""
+    spec = source.spec.copy()
+    for number, travel in enumerate(source.mechanism.travels):
+        servo = spec.add_actuator(
+            name=f"kinematify servo {number}", target=travel.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+        )
+        servo.set_to_position(kp=1.0)
+    return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+
+
+def with_allowances(source: Source, measured: MujocoModel, touching: Touching, *, only: bool) -> Source:
+    """Return a copy in which pairs of bodies act on each other only beyond what they are allowed.
+
+    Args:
+        source: The file, with servos.
+        measured: The same file compiled as it is.
+        touching: The pairs that touch in the sweep.
+        only: True: no other pairs act than those that get deeper than allowed in the sweep. Others cannot meet while
+            one joint moves, and to look for their contacts would cost most of the time.
+    """
+    spec = source.spec.copy()
+    bodies = source.mechanism.body_of_link
+    geoms = _geoms_of_bodies(measured, bodies)
+    deep = {tuple(pair): allowed for pair, allowed in zip(touching.bodies.tolist(), touching.allowed, strict=True)}
+    acting = {tuple(touching.bodies[index].tolist()) for index in touching.meet} if only else set(deep)
+    if only:
+        for geom in spec.geoms:
+            geom.contype = geom.conaffinity = 0
+    else:
+        _exclude(spec, source.names, bodies, acting)
+        for geom in spec.geoms:
+            geom.margin = -0.5 * touching.tolerance  # those of both sides add up
+    for pair in sorted(acting):
+        for first in geoms.get(pair[0], ()):
+            for second in geoms.get(pair[1], ()):
+                spec.add_pair(geomname1=first, geomname2=second, margin=-deep[pair])
+    return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+
+
+def _exclude(spec: mujoco.MjSpec, names: tuple[str, ...], bodies: IntArray, pairs: set[tuple[int, int]]) -> None:
+    for pair in sorted(pairs):
+        for first in np.flatnonzero(bodies == pair[0]):
+            for second in np.flatnonzero(bodies == pair[1]):
+                spec.add_exclude(bodyname1=names[first], bodyname2=names[second])
+
+
+def _geoms_of_bodies(measured: MujocoModel, bodies: IntArray) -> dict[int, list[str]]:
+    """Names of the collision shapes of every rigid body."""
+    found: dict[int, list[str]] = {}
+    for geom, body in enumerate(measured.model.geom_bodyid):
+        link = measured.link_of_body[body]
+        found.setdefault(int(bodies[link]), []).append(measured.model.geom(geom).name)
+    return found
+
+
+def set_servos(model: mujoco.MjModel, stiffness: FloatArray, damping: FloatArray) -> None:
+    """Give each servo its gains [N m/rad or N/m, and times s], shape (leaders,); its force is unlimited."""
+    model.actuator_gainprm[:, 0] = stiffness
+    model.actuator_biasprm[:, 1] = -stiffness
+    model.actuator_biasprm[:, 2] = -damping
+    model.jnt_actfrclimited[:] = 0
+
+
+def limited_servos(model: mujoco.MjModel, forces: FloatArray) -> mujoco.MjModel:
+    """Return a copy whose servos are no stronger than `forces` [N m or N], shape (leaders,); infinite: no limit."""
+    weaker = copy(model)
+    finite = np.isfinite(forces)
+    weaker.actuator_forcelimited[:] = finite
+    weaker.actuator_forcerange[:] = np.where(finite, forces, 0.0)[:, None] * [-1.0, 1.0]
+    return weaker
+
+
+def released(model: mujoco.MjModel) -> mujoco.MjModel:
+    """Return a copy without servos, damping and friction in its joints."""
+    free = copy(model)
+    free.actuator_gainprm[:] = 0.0
+    free.actuator_biasprm[:] = 0.0
+    free.dof_damping[:] = 0.0
+    free.dof_frictionloss[:] = 0.0
+    return free

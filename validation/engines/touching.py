@@ -1,0 +1,100 @@
+"""Which bodies touch along a sweep, how deep, and how much of it is there from the start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.validation.prepare.prepared import Prepared
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Contacts:
+    """Pairs of links in contact in some rows of a table of configurations, each pair once per row."""
+
+    row: IntArray
+    """Shape (c,)."""
+    links: IntArray
+    """Indices in the order of the document, smaller first, shape (c, 2)."""
+    depth: FloatArray
+    """Deepest point [m], shape (c,)."""
+
+
+def deepest(row: IntArray, links: IntArray, depth: FloatArray) -> Contacts:
+    """Keep the deepest contact of every pair in every row.
+
+    Args:
+        row: Shape (n,).
+        links: In any order, shape (n, 2).
+        depth: [m], shape (n,).
+    """
+    links = np.sort(links.reshape(-1, 2), axis=1)
+    order = np.lexsort((-depth, links[:, 1], links[:, 0], row))
+    key = np.column_stack([row[order], links[order]])
+    first = np.ones(len(key), dtype=bool)
+    first[1:] = np.any(key[1:] != key[:-1], axis=1)
+    kept = order[first]
+    return Contacts(row=row[kept], links=links[kept], depth=depth[kept])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Touching:
+    """Depth of every pair of bodies that ever touches, over the rows of a sweep whose first row is the rest."""
+
+    bodies: IntArray
+    """Shape (p, 2)."""
+    links: IntArray
+    """The two links that get deepest into each other, by which the pair is named, shape (p, 2)."""
+    depth: FloatArray
+    """[m], 0 where they are apart, shape (p, rows)."""
+    tolerance: float
+    """Depth that never counts [m]."""
+
+    @cached_property
+    def at_rest(self) -> FloatArray:
+        """Depth in the first row [m], shape (p,)."""
+        return self.depth[:, 0]
+
+    @cached_property
+    def allowed(self) -> FloatArray:
+        """Depth that each pair may reach: what it has at rest and the tolerance [m], shape (p,)."""
+        return self.at_rest + self.tolerance
+
+    @cached_property
+    def excess(self) -> FloatArray:
+        """Depth beyond what is allowed [m], negative where there is room, shape (p, rows)."""
+        return self.depth - self.allowed[:, None]
+
+    @cached_property
+    def meet(self) -> IntArray:
+        """Indices of the pairs that get deeper than allowed somewhere in the sweep."""
+        return np.flatnonzero((self.excess > 0.0).any(axis=1))
+
+    def pair(self, index: int, names: tuple[str, ...]) -> tuple[str, str]:
+        """Return the names of a pair's links."""
+        first, second = self.links[index].tolist()
+        return names[first], names[second]
+
+
+def touching(contacts: Contacts, mechanism: Mechanism, *, rows: int, tolerance: float) -> Touching:
+    """Gather contacts of links into contacts of bodies; row 0 is the rest."""
+    bodies = np.sort(mechanism.body_of_link[contacts.links], axis=1)
+    pairs, index = np.unique(bodies, axis=0, return_inverse=True)
+    index = index.reshape(-1)
+    depth = np.zeros((len(pairs), rows))
+    np.maximum.at(depth, (index, contacts.row), contacts.depth)
+    named = np.zeros((len(pairs), 2), dtype=np.int64)
+    order = np.argsort(contacts.depth)
+    named[index[order]] = contacts.links[order]  # the deepest comes last and stays
+    return Touching(bodies=pairs, links=named, depth=depth, tolerance=tolerance)
+
+
+def stand_in_error(prepared: Prepared, pair: tuple[str, str]) -> float:
+    """How much deeper the convex pieces of two links can be in each other than their declared surfaces [m]."""
+    return sum(prepared.link_by_name[name].gap for name in pair)
