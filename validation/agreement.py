@@ -1,12 +1,272 @@
-"""KV6xx: what the engines left behind, compared with each other and with the analytical model."""
+"""KV6xx: what the engines left behind, compared with each other and with the analytical model.
+
+It runs in the main process, so it uses numpy only and opens no mesh.
+"""
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from kinematify.validation.contact_agreement import compare_contacts
+from kinematify.validation.engine_results import EngineResults
+from kinematify.validation.engines.configurations import GRAVITY
+from kinematify.validation.engines.loading import ENGINE_TITLES
+from kinematify.validation.prepare.prepared import load_prepared
+
 if TYPE_CHECKING:
-    from kinematify.validation.stage import Recorder, StageRequest
+    from collections.abc import Callable, Mapping, Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.robot import DescribedJoint
+    from kinematify.validation.engines.configurations import EnginePoses
+    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+
+REFERENCE = "pinocchio"
+"""Masses and torques are held against it: it computes them in closed form."""
+_TINY = 1e-12
 
 
-def compare(request: StageRequest, recorder: Recorder) -> None:
-    """Tell the agreement checks."""
+def compare(request: StageRequest, recorder: Recorder, chosen: Sequence[str], failures: Mapping[str, str]) -> None:
+    """Tell KV601 to KV605.
+
+    Args:
+        request: Of the run; `poses-ENGINE.npz` and `prepared.json` are read from its folder.
+        recorder: Told the results.
+        chosen: Engines that were asked for.
+        failures: Why a stage did not end by itself, keyed by engine.
+    """
+    left = EngineResults(request, tuple(chosen), failures)
+    checks: dict[str, Callable[[OpenCheck, EngineResults], None]] = {
+        "KV601": _compare_poses,
+        "KV602": _compare_mass_matrices,
+        "KV603": _compare_gravity,
+        "KV604": compare_contacts,
+        "KV605": _compare_masses,
+    }
+    for name, run in checks.items():
+        if recorder.wants(name):
+            with recorder.check(name) as check:
+                run(check, left)
+
+
+def _compare_poses(check: OpenCheck, left: EngineResults) -> None:
+    if not left.chosen:
+        check.skip("no engine was asked for")
+        return
+    for engine, poses in left.engines.items():
+        for link in _lost(poses, left.rows.links):
+            check.find(
+                f"{ENGINE_TITLES[engine]} has lost the link {link}: it has no pose.",
+                "Give the link a mass and a name that is not used twice.",
+                link=link,
+                engine=engine,
+            )
+    joints = left.model.kinematics.joints
+    own = _relative(left, left.own)
+    theirs = {engine: _relative(left, poses.T_world_link) for engine, poses in left.engines.items()}
+    errors = {engine: _pose_errors(own, relative) for engine, relative in theirs.items()}
+    limits = np.array([left.settings.position * left.size, left.settings.angle])
+    for engine, error in errors.items():
+        largest = np.nanmax(error, axis=(0, 1), initial=0.0)
+        check.measured[f"{engine}_position_m"], check.measured[f"{engine}_angle_rad"] = largest.tolist()
+    for index, joint in enumerate(joints):
+        off = [engine for engine, error in errors.items() if (error[:, index] > limits).any()]
+        if len(off) >= 2 and len(off) == len(errors) and _agree([theirs[e][:, index] for e in off], limits):
+            _tell_pose(check, left, joint, errors[off[0]][:, index], limits, engine=None)
+        else:
+            for engine in off:
+                _tell_pose(check, left, joint, errors[engine][:, index], limits, engine=engine)
+    left.say_absent(check, left.chosen, left.engines)
+
+
+def _lost(poses: EnginePoses, links: tuple[str, ...]) -> list[str]:
+    lost = ~np.isfinite(poses.T_world_link).all(axis=(0, 2, 3))
+    return [links[index] for index in np.flatnonzero(lost)]
+
+
+def _relative(left: EngineResults, T_world_link: FloatArray) -> FloatArray:
+    """Pose of each joint's child in its parent, shape (n, joints, 4, 4): an error is seen where it begins."""
+    place = {link: index for index, link in enumerate(left.rows.links)}
+    joints = left.model.kinematics.joints
+    parent = T_world_link[:, [place[joint.parent] for joint in joints]]
+    child = T_world_link[:, [place[joint.child] for joint in joints]]
+    turned_back = np.swapaxes(parent[..., :3, :3], -1, -2)
+    relative = np.zeros_like(child)
+    relative[..., :3, :3] = turned_back @ child[..., :3, :3]
+    relative[..., :3, 3] = np.einsum("...ij,...j->...i", turned_back, child[..., :3, 3] - parent[..., :3, 3])
+    return relative
+
+
+def _pose_errors(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Distance [m] and angle [rad] between poses, shape (..., 2); NaN where one is lost."""
+    distance = np.linalg.norm(first[..., :3, 3] - second[..., :3, 3], axis=-1)
+    # The norm of the difference of two rotations is exact for small angles, unlike the arc cosine of a trace.
+    chord = np.linalg.norm(first[..., :3, :3] - second[..., :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
+    return np.stack([distance, 2.0 * np.arcsin(np.minimum(chord, 1.0))], axis=-1)
+
+
+def _agree(poses: list[FloatArray], limits: FloatArray) -> bool:
+    return all(not (_pose_errors(first, second) > limits).any() for first, second in combinations(poses, 2))
+
+
+def _tell_pose(
+    check: OpenCheck,
+    left: EngineResults,
+    joint: DescribedJoint,
+    error: FloatArray,
+    limits: FloatArray,
+    *,
+    engine: str | None,
+) -> None:
+    """Add a finding for the row in which a joint is off most; engine None: all engines agree against Kinematify."""
+    excess = np.nan_to_num(error / limits)
+    row, what = (int(index) for index in np.unravel_index(int(np.argmax(excess)), excess.shape))
+    value, unit = float(error[row, what]), ("m", "rad")[what]
+    who = "All engines have" if engine is None else f"{ENGINE_TITLES[engine]} has"
+    check.find(
+        f"{who} the link {joint.child} {value:.3g} {unit} away from where the {joint.kind} joint {joint.name} of the "
+        f"file puts it relative to {joint.parent}.",
+        f"Write the joint {joint.name} with a unit axis, plain decimal numbers and a type that every engine knows.",
+        joint=joint.name,
+        link=joint.child,
+        engine=engine,
+        q=left.rows.named(row),
+        value=value,
+        limit=float(limits[what]),
+        unit=unit,
+        line=left.model.joint_by_name[joint.name].line,
+    )
+
+
+def _compare_mass_matrices(check: OpenCheck, left: EngineResults) -> None:
+    reference = left.engines.get(REFERENCE)
+    if not _has_reference(check, left) or reference is None or reference.mass_matrix is None:
+        return
+    diagonal = np.abs(np.einsum("kii->ki", reference.mass_matrix))
+    diagonal = np.maximum(diagonal, _TINY * np.nanmax(diagonal, initial=1.0))
+    scale = np.sqrt(diagonal[:, :, None] * diagonal[:, None, :])
+    for engine, poses in left.engines.items():
+        if engine == REFERENCE or poses.mass_matrix is None:
+            continue
+        error = np.abs(poses.mass_matrix - reference.mass_matrix) / scale
+        check.measured[f"{engine}_relative"] = float(np.nanmax(error, initial=0.0))
+        _tell_dynamics(
+            check,
+            left,
+            engine,
+            error=np.nan_to_num(error).max(axis=2),
+            limit=left.settings.mass_matrix,
+            what="the inertia that the joint {joint} moves",
+        )
+    left.say_absent(check, ("mujoco", REFERENCE), left.engines)
+
+
+def _compare_gravity(check: OpenCheck, left: EngineResults) -> None:
+    reference = left.engines.get(REFERENCE)
+    if not _has_reference(check, left) or reference is None or reference.gravity is None:
+        return
+    # A joint that gravity hardly loads is held against the weight of the model.
+    turns = np.array([left.model.kinematics.joint_by_name[name].kind.turns for name in left.rows.joints], dtype=bool)
+    weight = 1e-6 * GRAVITY * (reference.total_mass or 0.0) * np.where(turns, left.size, 1.0)
+    scale = np.maximum(np.nan_to_num(np.abs(reference.gravity)).max(axis=0, initial=0.0), weight) + _TINY
+    for engine, poses in left.engines.items():
+        if engine == REFERENCE or poses.gravity is None:
+            continue
+        error = np.abs(poses.gravity - reference.gravity) / scale
+        check.measured[f"{engine}_relative"] = float(np.nanmax(error, initial=0.0))
+        _tell_dynamics(
+            check,
+            left,
+            engine,
+            error=np.nan_to_num(error),
+            limit=left.settings.gravity,
+            what="the torque or force that holds the joint {joint} against gravity",
+        )
+    left.say_absent(check, ("mujoco", REFERENCE), left.engines)
+
+
+def _has_reference(check: OpenCheck, left: EngineResults) -> bool:
+    """False, with the reason said, where there is nothing to compare."""
+    if REFERENCE not in left.chosen or not {"mujoco", "pybullet"} & set(left.chosen):
+        check.skip("it needs Pinocchio and another engine, which were not both asked for")
+    elif not left.rows.joints:
+        check.skip("the model has no joint that moves")
+    elif REFERENCE not in left.engines:
+        left.say_absent(check, (REFERENCE,), left.engines)
+    else:
+        return True
+    return False
+
+
+def _tell_dynamics(
+    check: OpenCheck, left: EngineResults, engine: str, *, error: FloatArray, limit: float, what: str
+) -> None:
+    """Add a finding for every joint that differs and carries no other that does: what lies above only inherits it.
+
+    Args:
+        check: Open.
+        left: What is compared.
+        engine: That differs from the reference.
+        error: Relative, shape (k, j).
+        limit: What it may be.
+        what: Differs, with a place for the name of the joint.
+    """
+    off = [name for name, worst in zip(left.rows.joints, error.max(axis=0), strict=True) if worst > limit]
+    inherited = set().union(*(left.ancestors[name] for name in off))
+    for name in off:
+        if name in inherited:
+            continue
+        column = error[:, left.rows.joints.index(name)]
+        row = int(np.argmax(column))
+        child = left.model.kinematics.joint_by_name[name].child
+        check.find(
+            f"{ENGINE_TITLES[engine]} and {ENGINE_TITLES[REFERENCE]} differ in {what.format(joint=name)} by "
+            f"{column[row]:.2%} of it.",
+            f"Check mass, centre of mass and inertia of {child} and of what is fixed to it: a body can have no moment "
+            "above the sum of the two others, and engines repair such values differently.",
+            joint=name,
+            link=child,
+            engine=engine,
+            q=left.rows.named(row),
+            value=float(column[row]),
+            limit=limit,
+            line=left.model.joint_by_name[name].line,
+        )
+
+
+def _compare_masses(check: OpenCheck, left: EngineResults) -> None:
+    if not left.chosen:
+        check.skip("no engine was asked for")
+        return
+    prepared = load_prepared(left.request.work)
+    for engine, poses in left.engines.items():
+        known = {} if poses.masses is None else dict(zip(poses.links, poses.masses.tolist(), strict=True))
+        for link in prepared.links:
+            mass = known.get(link.link, np.nan)
+            if np.isfinite(mass) and not link.mass_added:
+                _compare_mass(check, left, engine, mass, link.mass, link=link.link)
+        if poses.total_mass is not None:
+            check.measured[f"{engine}_kg"] = poses.total_mass
+            _compare_mass(check, left, engine, poses.total_mass, prepared.total_mass)
+    left.say_absent(check, left.chosen, left.engines)
+
+
+def _compare_mass(
+    check: OpenCheck, left: EngineResults, engine: str, found: float, expected: float, *, link: str | None = None
+) -> None:
+    if np.isclose(found, expected, rtol=left.settings.mass_error, atol=1e-9):
+        return
+    check.find(
+        f"{'The model' if link is None else f'The link {link}'} weighs {found:.6g} kg in {ENGINE_TITLES[engine]} and "
+        f"{expected:.6g} kg in the file.",
+        "Give every link an <inertial> element with a mass above zero, written as a plain decimal number.",
+        link=link,
+        engine=engine,
+        value=found,
+        limit=expected,
+        unit="kg",
+        line=None if link is None else left.model.link_by_name[link].line,
+    )

@@ -40,11 +40,6 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
     return stages
 
 
-def agreement_keys() -> tuple[CheckKey, ...]:
-    """Checks that compare what the engines have left behind."""
-    return keys(agreement.CHECKS)
-
-
 def keys(checks: Sequence[Check]) -> tuple[CheckKey, ...]:
     """(id, engine) of every result that the checks give."""
     return tuple((check.id, engine) for check in checks for engine in (check.engines or (None,)))

@@ -97,6 +97,7 @@ class _Run:
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
         self._why: dict[CheckKey, tuple[Status, str]] = {}
+        self._failures: dict[str, str] = {}
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, engines: Sequence[str], workers: int) -> None:
@@ -123,7 +124,8 @@ class _Run:
             Status.SKIPPED,
             "the engine was not asked for",
         )
-        agreement.compare(request, Recorder(self._take, request.selected))
+        chosen = [engine for engine in ENGINES if engine in engines]
+        agreement.compare(request, Recorder(self._take, request.selected), chosen, self._failures)
 
     def report(self, settings: ValidationSettings, suppressions: Sequence[Suppression]) -> ValidationReport:
         """Put together what is known."""
@@ -147,6 +149,7 @@ class _Run:
             self._take(told)
         if end.failure is None:
             return
+        self._failures[end.stage.name] = end.failure
         left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
         if left and not end.failure.startswith("the stage"):
             self._results[left[0]] = _fallen(left[0], end)

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import qmc
 
 from kinematify.assembly.part import read_only
 from kinematify.assembly.robot import joint_values, rest_configuration
@@ -43,7 +42,7 @@ class Configurations:
     joints: tuple[str, ...]
     """Every joint that is not fixed, followers included, in the order of the document."""
     q: FloatArray
-    """Joint values [rad or m], shape (n, j): zero, rest, Sobol points, then the ends of every joint. Read-only."""
+    """Joint values [rad or m], shape (n, j): zero, rest, a Latin hypercube, then the ends of every joint. Read-only."""
     dynamic: int
     """Mass matrices and gravity torques are computed for the first so many rows only."""
 
@@ -127,14 +126,14 @@ def joint_ends(leaders: Sequence[DescribedJoint]) -> tuple[FloatArray, FloatArra
 
 
 def _spread(lower: FloatArray, upper: FloatArray, rows: int, seed: int) -> FloatArray:
-    """Sobol points in the box of the limits, shape (rows, m)."""
-    if not len(lower):
-        return np.zeros((0, 0))
-    # SciPy's table of direction numbers ends at this dimension; larger models repeat its columns in another order.
-    known = min(len(lower), qmc.Sobol.MAXDIM)
-    points = qmc.Sobol(known, rng=np.random.default_rng(seed)).random_base2(max(0, (rows - 1).bit_length()))[:rows]
-    unit: FloatArray = points[:, np.arange(len(lower)) % known]
-    return lower + unit * (upper - lower)
+    """Latin hypercube in the box of the limits, shape (rows, m): every joint's range is covered evenly.
+
+    NumPy alone makes it; SciPy's Sobol points would cost every engine's process half a second for the import.
+    """
+    generator = np.random.default_rng(seed)
+    strata = np.array([generator.permutation(rows) for _ in lower]).reshape(len(lower), rows).T
+    points: FloatArray = (strata + generator.random(strata.shape)) / rows
+    return lower + points * (upper - lower)
 
 
 def _at_ends(middle: FloatArray, lower: FloatArray, upper: FloatArray, rows: int) -> FloatArray:
