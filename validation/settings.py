@@ -126,7 +126,7 @@ class PhysicsSettings(StageConfig):
     load_doublings: int
     """Two to this power configurations are sampled for the weight."""
     bare_share: float
-    """A link without collision is small below this fraction of its body's diagonal."""
+    """A link without collision geometry counts if it stands out of that of its body so far, fraction of its diagonal."""
     shift: float
     """Displacement of the collision geometry, fraction of the visual diagonal."""
     shift_same: float
@@ -198,6 +198,8 @@ class EvidenceSettings(StageConfig):
     """Lead in the score from which another joint of the same type is worth a warning, outside linkages."""
     linkage_better: float
     """The same in linkages, together with `bearing_lead` or with `blocked`."""
+    bearing_score: float
+    """Score of a bearing line below which it is chance."""
     bearing_lead: float
     """Score of a bearing on both bodies over that of the declared line from which the bearing contradicts it."""
     blocked: float

@@ -202,10 +202,11 @@ def _mean_distance(points: FloatArray, part: Part) -> float:
 def _thinned(parts: Sequence[Part], config: AssemblyConfig) -> tuple[list[Part], dict[str, Part]]:
     """The parts with few enough faces, and the full mesh of every part that had too many."""
     heavy = {part.name: part for part in parts if len(part.faces) > config.max_part_faces}
-    return [_simplified(part, config) if part.name in heavy else part for part in parts], heavy
+    return [simplified(part, config) if part.name in heavy else part for part in parts], heavy
 
 
-def _simplified(part: Part, config: AssemblyConfig) -> Part:
+def simplified(part: Part, config: AssemblyConfig) -> Part:
+    """Return a part of about `config.max_part_faces` faces with nearly the same surface."""
     # Its binding refuses read-only arrays.
     vertices, faces = fast_simplification.simplify(
         part.vertices.copy(), part.faces.copy(), target_count=config.max_part_faces

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kinematify.assembly.assemble import simplified
 from kinematify.assembly.erase import erase
+from kinematify.assembly.part import Assembly
 from kinematify.contact.build import build_contact_graph, exact_gap
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearing import fit_edge, score_line
@@ -14,7 +16,6 @@ from kinematify.joints.bearing import fit_edge, score_line
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import Assembly
     from kinematify.assembly.robot import RobotDescription
     from kinematify.assembly.truth import GroundTruth
     from kinematify.config import Config
@@ -113,7 +114,9 @@ def read_bodies(description: RobotDescription, config: Config, *, seed: int) -> 
     erased = erase(description, shuffle=False)
     if len(erased.parts) < 2 or -1 in (joint.parent for joint in erased.truth.joints):
         return None
-    assembly = erased.assembly
+    most = config.assembly.max_part_faces
+    parts = [part if len(part.faces) <= most else simplified(part, config.assembly) for part in erased.parts]
+    assembly = Assembly(parts=tuple(parts), source=description.name)
     surfaces = part_surfaces(assembly, config=config.surface)
     graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=seed)
     bearings = {

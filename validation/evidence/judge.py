@@ -191,7 +191,9 @@ def _place(case: _Case) -> Doubt | None:
 def _fit(case: _Case) -> Doubt | None:
     line, settings = case.measures.line, case.settings
     limit = settings.linkage_better if case.linkage else settings.better
-    if line.deficit <= limit or (case.linkage and not (_contradicted(case) or _blocked(case) > settings.blocked)):
+    if line.deficit <= limit or _supported(case):
+        return None
+    if case.linkage and not (_contradicted(case) or _blocked(case) > settings.blocked):
         return None
     return Doubt(
         check=FIT,
@@ -205,9 +207,16 @@ def _fit(case: _Case) -> Doubt | None:
     )
 
 
+def _supported(case: _Case) -> bool:
+    """Both bodies are round about the declared line about as clearly as about any: then no habit speaks against it."""
+    measures = case.measures
+    return measures.own_bearing > max(case.settings.bearing_score, 0.5 * measures.bearing)
+
+
 def _contradicted(case: _Case) -> bool:
-    """Both bodies are round about another line."""
-    return case.measures.bearing > case.settings.bearing_lead * max(case.measures.own_bearing, 1e-4)
+    """Both bodies are beyond doubt round about another line."""
+    own = max(case.measures.own_bearing, 1e-4)
+    return case.measures.weighed.scene.gated and case.measures.bearing > case.settings.bearing_lead * own
 
 
 def _blocked(case: _Case) -> float:
@@ -249,7 +258,7 @@ def _type_open(case: _Case) -> bool:
     if not case.linkage or not case.measures.slides:
         return True
     better = case.measures.line.deficit > case.settings.better
-    return better or case.measures.bearing > 0.0 or _blocked(case) > case.settings.blocked
+    return better or case.measures.weighed.scene.gated or _blocked(case) > case.settings.blocked
 
 
 def _opening(case: _Case) -> Doubt | None:

@@ -100,7 +100,7 @@ class JointMeasures:
     odds_against: float
     """Log odds of the other type against the declared one."""
     bearing: float
-    """Score of the best bearing line of the contact; 0 without one that is beyond doubt."""
+    """Score of the best bearing line of the contact; 0 without one."""
     own_bearing: float
     """Score of the declared line as a bearing; 0 where there is no other to compare it with."""
     weighed: WeighedJoints
@@ -142,7 +142,7 @@ def measure_joints(
         line = Line(axis=joint.axis, point=joint.pivot)
         bearing = bodies.bearings.get(pair)
         weighed = weigh_joints(cache, bodies.tree, frames, edge, bearing, config=config, given=(line,))
-        gated = bearing if weighed.scene.gated else None
+        best = bearing.lines[0].score if bearing is not None and bearing.lines else 0.0
         odds = weighed.decision.odds
         yield JointMeasures(
             joint=joint,
@@ -150,8 +150,8 @@ def measure_joints(
             line=_line_evidence(weighed, joint, settings),
             room=_room_evidence(weighed, joint, config),
             odds_against=-odds if joint.kind is JointType.PRISMATIC else odds,
-            bearing=0.0 if gated is None else gated.lines[0].score,
-            own_bearing=0.0 if gated is None else bodies.score_line(pair, line).score,
+            bearing=best,
+            own_bearing=bodies.score_line(pair, line).score if best > settings.bearing_score else 0.0,
             weighed=weighed,
         )
 
