@@ -14,7 +14,7 @@ from kinematify.geometry.hull import thickened
 from kinematify.validation.convex import outermost, signed_volume
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import FloatArray
     from kinematify.assembly.robot import LinkMesh
@@ -120,14 +120,18 @@ class Body:
     @cached_property
     def room(self) -> Room | None:
         """Room of all links together, in the frame of the first."""
-        if not self.rooms:
+        return self.placed(self.rooms)
+
+    def placed(self, rooms: Mapping[str, Room]) -> Room | None:
+        """Put rooms of its links together in the frame of the first link; None where there are none."""
+        if not rooms:
             return None
-        placed = [
+        points = [
             room.points @ self.T_body_link[name][:3, :3].T + self.T_body_link[name][:3, 3]
-            for name, room in self.rooms.items()
+            for name, room in rooms.items()
         ]
-        solids = [room.solid for room in self.rooms.values() if room.solid is not None]
-        return Room(points=np.concatenate(placed), solid=sum(solids) if len(solids) == len(self.rooms) else None)
+        solids = [room.solid for room in rooms.values() if room.solid is not None]
+        return Room(points=np.concatenate(points), solid=sum(solids) if len(solids) == len(rooms) else None)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -36,14 +36,20 @@ def missing_collisions(physics: Physics) -> Iterator[Problem]:
 
 
 def _uncovered(physics: Physics, body: Body) -> Iterator[Problem]:
-    """A small part without collision, on a body that has some, is decoration."""
-    size = body.room.diagonal if body.room is not None else 0.0
-    bare = not any(name in physics.collision for name in body.rooms)
+    """A part within the hull of what the body collides with is decoration."""
+    felt = body.placed(
+        {link.name: physics.collision[link.name] for link in body.links if link.name in physics.collision}
+    )
     for name, room in body.rooms.items():
         if name in physics.collision:
             continue
-        counts = name == body.called if bare else room.diagonal > physics.settings.bare_share * size
-        if counts or not bare:
+        points = body.placed({name: room})
+        if felt is None:
+            counts = name == body.called
+        else:
+            out = max(felt.outside(point) for point in points.points) if points is not None else 0.0
+            counts = out > physics.settings.bare_share * room.diagonal
+        if counts or felt is not None:
             yield Problem(
                 message=f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and "
                 f"other links of the model have some: "
@@ -51,14 +57,8 @@ def _uncovered(physics: Physics, body: Body) -> Iterator[Problem]:
                 remedy="Copy its <visual> to a <collision>, or write a simpler shape.",
                 severity=None if counts else Severity.NOTE,
                 link=name,
-                joint=_joint_above(physics, name),
                 line=physics.model.link_by_name[name].line,
             )
-
-
-def _joint_above(physics: Physics, link: str) -> str | None:
-    above = physics.model.kinematics.joint_above.get(link)
-    return None if above is None else above.name
 
 
 def displaced_collisions(physics: Physics) -> Iterator[Problem]:
@@ -93,7 +93,6 @@ def _displaced(physics: Physics, body: Body, link: DeclaredLink, seen: Room, fel
         else "Check the scale and the <origin> of the <collision>.",
         severity=Severity.ERROR if same and moved > settings.shift_wrong else Severity.WARNING,
         link=link.name,
-        joint=_joint_above(physics, link.name) or body.joint,
         value=value * seen.diagonal,
         limit=limit * seen.diagonal,
         unit="m",
@@ -128,7 +127,6 @@ def inflated_hulls(physics: Physics) -> Iterator[Problem]:
                 "volume of the mesh, and MuJoCo and PyBullet see the hull: what reaches into its hollows collides.",
                 remedy="Cut it into convex pieces (for example with CoACD) and write each as a <collision>.",
                 link=link.name,
-                joint=_joint_above(physics, link.name),
                 value=ratio,
                 limit=physics.settings.inflation,
                 line=shape.line,
@@ -155,7 +153,6 @@ def heavy_collisions(physics: Physics) -> Iterator[Problem]:
                 "slow with so many.",
                 remedy="Use fewer and simpler shapes: boxes and cylinders, or convex pieces of some 50 corners.",
                 link=link.name,
-                joint=_joint_above(physics, link.name),
                 value=shapes if many else faces,
                 limit=settings.collision_shapes if many else settings.collision_faces,
                 line=link.line,

@@ -39,7 +39,6 @@ def missing_masses(physics: Physics) -> Iterator[Problem]:
             if frame
             else f"Add an <inertial>{_suggested(body)}.",
             link=body.called,
-            joint=body.joint,
             line=physics.model.link_by_name[body.called].line,
         )
 
@@ -86,17 +85,11 @@ def _not_positive(
         remedy=f"Write the true mass{_suggested(body)}.",
         severity=Severity.ERROR if certain else Severity.NOTE if note else Severity.WARNING,
         link=link.name,
-        joint=_joint_above(physics, link.name),
         value=inertial.mass,
         limit=0.0,
         unit="kg",
         line=inertial.line,
     )
-
-
-def _joint_above(physics: Physics, link: str) -> str | None:
-    above = physics.model.kinematics.joint_above.get(link)
-    return None if above is None else above.name
 
 
 def implausible_masses(physics: Physics) -> Iterator[Problem]:
@@ -113,7 +106,6 @@ def implausible_masses(physics: Physics) -> Iterator[Problem]:
             f"{settings.huge_mass:g} kg.",
             remedy="Write the true mass in kilograms; exporters that know no material write a placeholder.",
             link=body.heaviest.name,
-            joint=body.joint,
             value=body.mass,
             limit=settings.tiny_mass if tiny else settings.huge_mass,
             unit="kg",
@@ -149,7 +141,6 @@ def _density(body: Body, density: float, limit: float, *, certain: bool) -> Prob
         + ("it is too heavy or too small." if heavy else "it is too light or too large."),
         severity=Severity.ERROR if certain else Severity.WARNING,
         link=body.heaviest.name,
-        joint=body.joint,
         value=density,
         limit=limit,
         unit="kg/m3",
