@@ -36,29 +36,30 @@ def missing_collisions(physics: Physics) -> Iterator[Problem]:
 
 
 def _uncovered(physics: Physics, body: Body) -> Iterator[Problem]:
-    """A part within the hull of what the body collides with is decoration."""
-    felt = body.placed(
-        {link.name: physics.collision[link.name] for link in body.links if link.name in physics.collision}
-    )
+    """What lies within the hull of its body is decoration, unless nearly all links of the file have collisions."""
+    solid = {name for other in physics.bodies for name in other.rooms}
+    exception = len(solid - set(physics.collision)) <= max(1.0, physics.settings.bare_minority * len(solid))
+    felt = body.placed({name: physics.collision[name] for name in body.rooms if name in physics.collision})
     for name, room in body.rooms.items():
-        if name in physics.collision:
+        if name in physics.collision or (felt is None and name != body.called):
             continue
-        points = body.placed({name: room})
-        if felt is None:
-            counts = name == body.called
-        else:
-            out = max(felt.outside(point) for point in points.points) if points is not None else 0.0
-            counts = out > physics.settings.bare_share * room.diagonal
-        if counts or felt is not None:
-            yield Problem(
-                message=f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and "
-                f"other links of the model have some: "
-                + ("everything passes through it." if counts else "contacts with it are not seen."),
-                remedy="Copy its <visual> to a <collision>, or write a simpler shape.",
-                severity=None if counts else Severity.NOTE,
-                link=name,
-                line=physics.model.link_by_name[name].line,
-            )
+        counts = felt is None or exception or _stands_out(body, name, felt) > physics.settings.bare_share
+        yield Problem(
+            message=f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and other "
+            "links of the model have some: " + ("what meets it passes through." if counts else "it is small."),
+            remedy="Copy its <visual> to a <collision>, or write a simpler shape.",
+            severity=None if counts else Severity.NOTE,
+            link=name,
+            line=physics.model.link_by_name[name].line,
+        )
+
+
+def _stands_out(body: Body, name: str, felt: Room) -> float:
+    """How far a link stands out of the hull of what its body collides with, fraction of the link's diagonal."""
+    placed = body.placed({name: body.rooms[name]})
+    if placed is None or placed.diagonal == 0.0:
+        return 0.0
+    return max(felt.outside(point) for point in placed.points) / placed.diagonal
 
 
 def displaced_collisions(physics: Physics) -> Iterator[Problem]:

@@ -190,7 +190,8 @@ CHECKS: tuple[Check, ...] = (
         blame=Blame.PHYSICS,
         verifies=(
             "Every body with geometry has collision geometry, and so has each of its links that stands out of the rest "
-            "by `bare_share` of its size (others are a note). Where no link of the file has any, that is one finding."
+            "by `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links). "
+            "Where no link of the file has any, that is one finding."
         ),
         matters="Grippers and other parts pass through the link in every engine.",
         remedy="Copy the <visual> to a <collision>, or write a simpler shape.",
