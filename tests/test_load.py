@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import json
+import os
 import stat
 import zipfile
 from pathlib import Path
@@ -575,3 +576,13 @@ def test_unusable_archives(tmp_path: Path) -> None:
     refused(zipped(tmp_path / "b.zip", {}), "holds mesh files in 0 folders")
     refused(zipped(tmp_path / "c.zip", {"x/a.obj": obj(box()), "y/b.obj": obj(box(3))}), "2 folders")
     refused(zipped(tmp_path / "d.zip", {"a.obj": b"junk", "b.obj": obj(box(3))}), r"d\.zip: The file a\.obj cannot")
+
+
+def test_a_gltf_buffer_that_is_a_pipe_or_a_device_is_missing(tmp_path: Path) -> None:
+    for name, content in scene().export(file_type="gltf").items():
+        (tmp_path / name).write_bytes(content)
+    buffer = next(tmp_path.glob("*.bin"))
+    buffer.unlink()
+    os.mkfifo(buffer)
+    with pytest.raises(AssemblyError, match="buffer"):
+        load(tmp_path / "model.gltf")

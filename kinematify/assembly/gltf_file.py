@@ -113,10 +113,11 @@ class _Buffers:
 
     def _buffer(self, index: int) -> bytes:
         if index not in self.loaded:
-            self.loaded[index] = self._read_buffer(self.document["buffers"][index].get("uri"))
+            self.loaded[index] = self._read_buffer(self.document["buffers"][index])
         return self.loaded[index]
 
-    def _read_buffer(self, uri: str | None) -> bytes:
+    def _read_buffer(self, buffer: dict[str, Any]) -> bytes:
+        uri = buffer.get("uri")
         if uri is None:
             return self.binary
         if uri.startswith("data:"):
@@ -124,7 +125,10 @@ class _Buffers:
         path = (self.folder / unquote(uri)).resolve()
         if not path.is_relative_to(self.folder.resolve()):
             raise ValueError(f"its buffer {uri!r} lies outside of its folder")
-        return path.read_bytes()
+        if not path.is_file():
+            raise ValueError(f"its buffer {uri!r} is not there")  # a pipe or a device would never end
+        with path.open("rb") as file:
+            return file.read(buffer["byteLength"])
 
 
 def _nodes(document: dict[str, Any], source: _Buffers) -> Iterator[GltfNode]:

@@ -236,8 +236,8 @@ def _tell_units(check: OpenCheck, files: tuple[MeshFile, ...]) -> None:
     collada = [file for file in files if file.path.suffix.lower() == ".dae"]
     if collada:
         check.find(
-            f"{len(collada)} meshes are COLLADA files; readers differ in whether they heed the unit and the up axis "
-            "that these state. Here the unit is heeded and the up axis is not, as in RViz.",
+            f"COLLADA meshes: {len(collada)}. Readers differ in whether they heed the unit and the up axis that these "
+            "state; here the unit is heeded and the up axis is not, as in RViz.",
             "Export OBJ or STL in metres with z up to be sure.",
             link=collada[0].first.link,
             line=collada[0].first.line,

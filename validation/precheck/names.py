@@ -72,8 +72,8 @@ def odd_names(urdf: Urdf) -> Iterator[Problem]:
             plain.append(element)
     if plain:
         yield Problem(
-            message=f"{len(plain)} names are no identifiers, the first is {shown(plain[0].get('name'))}: USD and many "
-            "scripts will change them.",
+            message=f"Names that are no identifiers: {len(plain)}, the first is {shown(plain[0].get('name'))}. USD and "
+            "many scripts will change them.",
             remedy="Use letters, digits and underscores, beginning with a letter.",
             severity=Severity.NOTE,
             value=len(plain),

@@ -87,8 +87,8 @@ def unknown_formats(urdf: Urdf) -> Iterator[Problem]:
             converted[suffix].append(reference)
     for suffix, references in converted.items():
         yield Problem(
-            message=f"{len(references)} meshes are {suffix} files, which MuJoCo does not read (OBJ and binary STL "
-            "only). They are converted for the checks.",
+            message=f"Meshes in {suffix} files: {len(references)}. MuJoCo reads OBJ and binary STL only; they are "
+            "converted for the checks.",
             remedy="Export OBJ or binary STL as well if MuJoCo is to load the file itself.",
             severity=Severity.NOTE,
             value=len(references),
@@ -106,7 +106,7 @@ def repeated_base_names(urdf: Urdf) -> Iterator[Problem]:
     if repeated:
         name, (first, second, *_) = next(iter(repeated.items()))
         yield Problem(
-            message=f"{len(repeated)} names stand for several mesh files each, the first is {shown(name)} "
+            message=f"Names that several mesh files share: {len(repeated)}, the first is {shown(name)} "
             f"({shown(first.filename)} and {shown(second.filename)}); MuJoCo names meshes after their files and takes "
             "one for the other when it strips the paths.",
             remedy="Give every mesh file a name of its own. Here they are renamed for the engines.",
@@ -121,7 +121,7 @@ def bound_paths(urdf: Urdf) -> Iterator[Problem]:
     bound = [reference for reference in _references(urdf) if _is_bound(reference.filename)]
     if bound:
         yield Problem(
-            message=f"{len(bound)} meshes have paths that hold on one machine or system only, the first is "
+            message=f"Mesh paths that hold on one machine or system only: {len(bound)}, the first is "
             f"{shown(bound[0].filename)}.",
             remedy="Write paths relative to the URDF with forward slashes, or package://NAME/PATH.",
             value=len(bound),

@@ -166,7 +166,7 @@ def unknown_elements(urdf: Urdf) -> Iterator[Problem]:
     for (parent_tag, tag), elements in found.items():
         close = next((known for known in _CHILDREN[parent_tag] if known.lower() == tag.lower()), None)
         yield Problem(
-            message=f"URDF has no <{tag}> inside <{parent_tag}>; {len(elements)} of them are ignored.",
+            message=f"URDF has no <{tag}> inside <{parent_tag}>; what it says is ignored (found: {len(elements)}).",
             remedy=f"Write <{close}>: tags are case-sensitive." if close else "Delete it if nothing reads it.",
             severity=Severity.WARNING if close else None,
             value=len(elements),

@@ -129,8 +129,8 @@ def second_roots(urdf: Urdf) -> Iterator[Problem]:
         if root != largest:
             count = sizes.get(root, 1)
             yield Problem(
-                message=f"The link {root} is a second root beside {largest}: {count} links hang on it and on nothing "
-                "else. PyBullet crashes with two roots.",
+                message=f"The link {root} is a second root beside {largest}: its tree has {count} links. PyBullet "
+                "crashes with two roots.",
                 remedy="Join it to the rest by a joint (a fixed one if it does not move), or split the file.",
                 link=root,
                 line=_line_of_link(urdf, root),

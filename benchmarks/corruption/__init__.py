@@ -1,0 +1,1 @@
+"""Corrupted models for the robustness of `kinematify validate`."""
