@@ -126,7 +126,7 @@ class PhysicsSettings(StageConfig):
     load_doublings: int
     """Two to this power configurations are sampled for the weight."""
     bare_share: float
-    """A link without collision geometry counts if it stands out so far of that of its body, fraction of its own size."""
+    """A link without collision geometry counts if it stands out so far of that of its body, fraction of its size."""
     bare_minority: float
     """It counts anyway if no larger share of the links has none."""
     shift: float
