@@ -41,10 +41,7 @@ def write_case(number: int, seed: int, bases: Sequence[Base], folder: Path) -> C
     for name, path in base.meshes.items():
         place = folder / name
         place.parent.mkdir(parents=True, exist_ok=True)
-        if name == harmed:
-            place.write_bytes(path.read_bytes())
-        else:
-            place.symlink_to(path)
+        place.write_bytes(path.read_bytes())
     urdf = folder / "model.urdf"
     if harmed is not None:
         meshes.CORRUPTIONS[kind](folder / harmed, random)

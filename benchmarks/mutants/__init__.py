@@ -1,0 +1,1 @@
+"""Faulty copies of good models, to measure what `kinematify validate` finds."""
