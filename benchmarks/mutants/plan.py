@@ -42,9 +42,9 @@ class Mutant:
 def write_mutants(bases: Sequence[BaseModel], count: int, seed: int) -> list[Mutant]:
     """Plant `count` faults, rounded up to the same number of each kind, and write a model for each.
 
-    A kind that has fewer places gets those. Within a kind the objects take turns, in an order drawn from the seed, and within
-    an object its joints or links do, so that no object and no joint has its second fault of a kind before all have
-    their first.
+    A kind that has fewer places gets those. Within a kind the objects take turns, in an order drawn from the seed, and
+    within an object its joints or links do, so that no object and no joint has its second fault of a kind before all
+    have their first.
     """
     each = -(-count // len(FAULTS))
     mutants: list[Mutant] = []
