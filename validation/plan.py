@@ -8,7 +8,7 @@ from kinematify.validation.catalogue import agreement, engines, evidence, geomet
 from kinematify.validation.isolation import Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from kinematify.validation.catalogue import Check
 
@@ -38,6 +38,15 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         function = f"kinematify.validation.engines.{engine}_stage:run"
         stages.append(Stage(name=engine, function=function, checks=checks, after=("prepare",)))
     return stages
+
+
+def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:
+    """Return the stages that tell a selected check, with those that they come after; the agreement needs all."""
+    if any(check.id in selected for check in agreement.CHECKS):
+        return list(stages)
+    wanted = [stage for stage in stages if any(check in selected for check, _ in stage.checks)]
+    names = {stage.name for stage in wanted} | {name for stage in wanted for name in stage.after}
+    return [stage for stage in stages if stage.name in names]
 
 
 def keys(checks: Sequence[Check]) -> tuple[CheckKey, ...]:

@@ -17,7 +17,7 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.isolation import run_stages, start_server
-from kinematify.validation.plan import ENGINES, asset_stage, keys, later_stages
+from kinematify.validation.plan import ENGINES, asset_stage, keys, later_stages, needed
 from kinematify.validation.precheck.document import precheck
 from kinematify.validation.report import JointSummary, ValidationReport
 from kinematify.validation.settings import load_settings
@@ -84,6 +84,9 @@ def validate(
 
 _GUARDS = frozenset(check for check in CATALOGUE if check.startswith("KV1"))
 """Checks of file and meshes: they always run, and their errors always count, since nothing else can run after one."""
+_MESH_GUARDS = frozenset(check for check in _GUARDS if check.startswith("KV15"))
+_LAST_GUARD = "KV152"
+"""Told when every mesh file has been opened and read."""
 
 
 class _Run:
@@ -112,10 +115,11 @@ class _Run:
         for end in run_stages([asset_stage()], asset_request, workers=1):
             self._take_end(end)
         self._progress("meshes and declared physics", 0.15)
-        if self._broken_meshes():
-            self._explain_rest(Status.BLOCKED, "a mesh cannot be used")
+        fault = self._fault_of_meshes()
+        if fault is not None:
+            self._explain_rest(Status.BLOCKED, fault)
             return
-        stages = later_stages([engine for engine in ENGINES if engine in engines])
+        stages = needed(later_stages([engine for engine in ENGINES if engine in engines]), self.selected)
         for number, end in enumerate(run_stages(stages, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
@@ -156,8 +160,12 @@ class _Run:
         status = Status.SKIPPED if "budget" in end.failure else Status.BLOCKED
         self._explain(left, status, f"the stage {end.stage.name} {end.failure}")
 
-    def _broken_meshes(self) -> bool:
-        return any(check in _GUARDS and _has_error(result) for (check, _), result in self._results.items())
+    def _fault_of_meshes(self) -> str | None:
+        """Why no later stage may open the meshes; None if they may."""
+        if (_LAST_GUARD, None) not in self._results:
+            return "the meshes could not be checked, and no other stage may trip over them"
+        faults = [key[0] for key, result in self._results.items() if key[0] in _MESH_GUARDS and _has_error(result)]
+        return f"the meshes cannot be used, see {', '.join(faults)}" if faults else None
 
     def _missing(self) -> Iterable[CheckKey]:
         return [key for key in keys(list(CATALOGUE.values())) if key not in self._results and key not in self._why]

@@ -170,7 +170,7 @@ def _write_all(outcome: Outcome) -> None:
 
 def _unexplained(report: ValidationReport) -> list[str]:
     """Reasons of blocked checks that are no consequence of what was found: something inside gave way."""
-    usual = ("the pre-check found", "a mesh cannot be used", "the stage prepare")
+    usual = ("the pre-check found", "a mesh cannot be used", "the meshes cannot be used")
     return sorted(
         {
             f"{check.check} {check.engine or ''}: {check.reason}"[:300]
