@@ -102,7 +102,8 @@ class Mechanism:
         moved = np.zeros((int(self.body_of_link.max()) + 1, len(self.travels)), dtype=bool)
         for joint in self.description.joints_downward:
             moved[body[joint.child]] |= moved[body[joint.parent]] | row.get(joint.name, np.False_)
-        return moved.T
+        result: BoolArray = moved.T
+        return result
 
     @cached_property
     def leads(self) -> FloatArray:
@@ -132,7 +133,8 @@ class Mechanism:
 
     @cached_property
     def _at_zero(self) -> FloatArray:
-        return self._followed(np.zeros((1, len(self.travels))))[0]
+        first: FloatArray = self._followed(np.zeros((1, len(self.travels))))[0]
+        return first
 
     def _followed(self, leaders: FloatArray) -> FloatArray:
         names = [travel.joint for travel in self.travels]

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 _RESERVED = "world"
 """MuJoCo's name of the outside; a link of this name is loaded under another one."""
-FLOOR = "kinematify floor"
 
 
 class Refused(Exception):
@@ -145,13 +144,18 @@ def _sentence(error: Exception) -> str:
 
 
 def with_servos(source: Source) -> Source:
-    """Return a copy with one servo for each leading joint, in their order; its gains are set after compiling."""
+    """Return a copy with sensors of both energies, and one servo for each leading joint, in their order.
+
+    The gains are set after compiling (`set_servos`).
+    """
     spec = source.spec.copy()
     for number, travel in enumerate(source.mechanism.travels):
         servo = spec.add_actuator(
             name=f"kinematify servo {number}", target=travel.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
         )
         servo.set_to_position(kp=1.0)
+    for kind in (mujoco.mjtSensor.mjSENS_E_POTENTIAL, mujoco.mjtSensor.mjSENS_E_KINETIC):
+        spec.add_sensor(type=kind)
     return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
 
 
@@ -176,12 +180,29 @@ def with_allowances(source: Source, measured: MujocoModel, touching: Touching, *
     else:
         _exclude(spec, source.names, bodies, acting)
         for geom in spec.geoms:
-            geom.margin = -0.5 * touching.tolerance  # those of both sides add up
+            geom.condim, geom.solimp = 1, _yielding(touching.tolerance)
     for pair in sorted(acting):
         for first in geoms.get(pair[0], ()):
             for second in geoms.get(pair[1], ()):
-                spec.add_pair(geomname1=first, geomname2=second, margin=-deep[pair])
+                spec.add_pair(geomname1=first, geomname2=second, condim=1, solimp=_yielding(deep[pair]))
     return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+
+
+def with_floor(source: Source, *, height: float) -> Source:
+    """Return a copy whose root is free, above a plane at a height [m]."""
+    spec = source.spec.copy()
+    spec.body(source.names[source.mechanism.links.index(source.mechanism.description.root)]).add_freejoint()
+    floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
+    floor.size, floor.pos, floor.priority = [0.0, 0.0, 1.0], [0.0, 0.0, height], 1
+    return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+
+
+def _yielding(depth: float) -> list[float]:
+    """Return the impedance (`solimp`) of a frictionless contact that gives way without force down to a depth [m].
+
+    A negative margin would say the same, but MuJoCo 4.0.0 then reports wrong depths between meshes.
+    """
+    return [1e-4, 0.95, max(depth, 1e-9), 0.99, 100.0]
 
 
 def _exclude(spec: mujoco.MjSpec, names: tuple[str, ...], bodies: IntArray, pairs: set[tuple[int, int]]) -> None:

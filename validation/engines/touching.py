@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from kinematify.validation.engines.mechanism import Mechanism
     from kinematify.validation.prepare.prepared import Prepared
 
+_REST_SHARE = 1.05
+"""A contact that is as deep as it may be at rest would push; a twentieth more keeps it without force."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Contacts:
@@ -55,6 +58,9 @@ class Touching:
     """[m], 0 where they are apart, shape (p, rows)."""
     tolerance: float
     """Depth that never counts [m]."""
+    slack: FloatArray
+    """How far convex stand-ins can exceed what they stand for [m], 0 for pairs that are apart at rest and that no joint
+    connects, shape (p,)."""
 
     @cached_property
     def at_rest(self) -> FloatArray:
@@ -63,8 +69,8 @@ class Touching:
 
     @cached_property
     def allowed(self) -> FloatArray:
-        """Depth that each pair may reach: what it has at rest and the tolerance [m], shape (p,)."""
-        return self.at_rest + self.tolerance
+        """Depth that each pair may reach: what it has at rest, with tolerance and slack [m], shape (p,)."""
+        return _REST_SHARE * self.at_rest + self.tolerance + self.slack
 
     @cached_property
     def excess(self) -> FloatArray:
@@ -82,7 +88,7 @@ class Touching:
         return names[first], names[second]
 
 
-def touching(contacts: Contacts, mechanism: Mechanism, *, rows: int, tolerance: float) -> Touching:
+def touching(contacts: Contacts, mechanism: Mechanism, prepared: Prepared, *, rows: int, tolerance: float) -> Touching:
     """Gather contacts of links into contacts of bodies; row 0 is the rest."""
     bodies = np.sort(mechanism.body_of_link[contacts.links], axis=1)
     pairs, index = np.unique(bodies, axis=0, return_inverse=True)
@@ -92,7 +98,11 @@ def touching(contacts: Contacts, mechanism: Mechanism, *, rows: int, tolerance: 
     named = np.zeros((len(pairs), 2), dtype=np.int64)
     order = np.argsort(contacts.depth)
     named[index[order]] = contacts.links[order]  # the deepest comes last and stays
-    return Touching(bodies=pairs, links=named, depth=depth, tolerance=tolerance)
+    # Bodies between which there are several joints in one place overlap as those do that one joint connects.
+    near = [(a, b) in mechanism.neighbours for a, b in pairs.tolist()] | (depth[:, 0] > tolerance)
+    names = [(mechanism.links[a], mechanism.links[b]) for a, b in named.tolist()]
+    slack = np.array([stand_in_error(prepared, pair) for pair in names]) * near
+    return Touching(bodies=pairs, links=named, depth=depth, tolerance=tolerance, slack=slack)
 
 
 def stand_in_error(prepared: Prepared, pair: tuple[str, str]) -> float:
