@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kinematify.validation.stage import StageRequest
 
 _THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-_PRELOADED = ("kinematify.validation.read", "kinematify.geometry.surface")
+_PRELOADED = ("kinematify.validation.asset.stage", "kinematify.geometry.surface")
 
 
 @dataclass(frozen=True, kw_only=True)
