@@ -222,7 +222,9 @@ class EngineSettings(StageConfig):
     """KV4xx and KV5xx: behaviour in engines."""
 
     time_step: float
-    """[s]."""
+    """Of MuJoCo [s]."""
+    pybullet_time_step: float
+    """Of PyBullet [s]."""
     same: float
     """Difference of an axis, limit, mass or inertia that an importer may make, fraction of the value."""
     pose_distance: float

@@ -76,7 +76,7 @@ _KINDS = (
         severity=Severity.WARNING,
         blame=Blame.PHYSICS,
         verifies="At rest, no two links overlap by more than engines.contact_depth as the engine sees them (convex "
-        "pieces). Links that a joint connects may overlap by what they have at rest; the deepest are named in a note.",
+        "pieces). Links that a joint connects may overlap by what they have at rest; a note names them.",
         matters="An overlap at the start is pushed apart in the first steps: the model jumps or flies off.",
         remedy="Move the parts apart or shrink their collision geometry by the depth that is named; where a convex "
         "stand-in overlaps although the mesh does not, write convex pieces as collision geometry.",
@@ -111,7 +111,7 @@ _KINDS = (
         severity=Severity.WARNING,
         blame=Blame.PHYSICS,
         verifies="While a joint is driven, no pair of links gets deeper into each other than at rest by more than "
-        "engines.contact_depth.",
+        "twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their meshes by.",
         matters="Parts that pass through each other teach a policy what reality does not allow.",
         remedy="Correct the joint, or the collision geometry of the pair.",
     ),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.finding import Severity
+from kinematify.validation.prepare.prepared import Method
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
@@ -30,7 +31,7 @@ def usable_efforts(declared: DeclaredModel, prepared: Prepared, mechanism: Mecha
         made_up = any(
             prepared.link_by_name[name].mass_added
             for name, moves in zip(mechanism.links, carried, strict=True)
-            if moves and declared.link_by_name[name].has_geometry
+            if moves and prepared.link_by_name[name].method is not Method.NONE
         )
         if effort is not None and effort > 0.0 and not made_up:
             efforts[leader] = effort

@@ -22,7 +22,8 @@ from kinematify.validation.engines.mujoco_free import drop, hold_and_release, re
 from kinematify.validation.engines.mujoco_measure import measure
 from kinematify.validation.engines.mujoco_runs import around_fastest
 from kinematify.validation.engines.outcome import Case, Driven, find_escapes, find_penetrations, find_unreached
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.engines.run_end import RunEnd, find_unstable
+from kinematify.validation.finding import Blame
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -43,20 +44,6 @@ _TIME = re.compile(r" Time = ")
 _LATE = "time ran out before it"
 _FLOOR_OF_ENERGY = 1e-5
 """Growth that does not count, fraction of the energy of a fall of the whole model by its own size."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class RunEnd:
-    """How a run went on the whole."""
-
-    when: str
-    """As words that follow "while"."""
-    speed: float
-    """The largest of a link's frame [m/s]."""
-    warnings: tuple[str, ...]
-    """Those of MuJoCo that ended it."""
-    joint: str | None = None
-    """The one that was driven."""
 
 
 @dataclass(kw_only=True, eq=False)
@@ -181,11 +168,13 @@ def _tell_driven(recorder: Recorder, work: MujocoWork, bench: Bench | None, seen
 
 
 def _ends(work: MujocoWork, session: Session) -> list[RunEnd]:
-    names = [work.mechanism.travels[item.drive.leader].joint for item in session.driven]
-    return [
-        RunEnd(when=f"{name} was driven", speed=speed, warnings=warnings, joint=name)
-        for name, speed, warnings in zip(names, session.fastest, session.warnings, strict=True)
-    ]
+    ends: list[RunEnd] = []
+    for item, speed, warnings in zip(session.driven, session.fastest, session.warnings, strict=True):
+        travel = work.mechanism.travels[item.drive.leader]
+        told = float(np.abs(item.drive.speed).max()) * (work.size if travel.turns else 1.0)
+        when = f"{travel.joint} was driven to {item.drive.end:.4g} {travel.unit}"
+        ends.append(RunEnd(when=when, speed=speed, warnings=warnings, joint=travel.joint, told=told))
+    return ends
 
 
 def _say_left(check: OpenCheck, session: Session) -> None:
@@ -210,29 +199,9 @@ def _tell_drop(recorder: Recorder, work: MujocoWork, bench: Bench | None) -> Non
 def _tell_stable(recorder: Recorder, work: MujocoWork) -> None:
     """KV407: from the ends of all runs."""
     with recorder.check("KV407", ENGINE) as check:
-        fall = float(np.sqrt(2.0 * GRAVITY * work.size))
-        limit = work.request.settings.engines.explosion * fall
-        check.measured |= {"fastest": max((end.speed for end in work.ends), default=0.0), "limit": limit}
         if not work.ends:
             _ready(check, work, None)
-        for end in work.ends:
-            if end.warnings:
-                check.find(
-                    f"MuJoCo diverged while {end.when}: {', '.join(end.warnings)}.",
-                    "Correct masses and inertias, above all of links far lighter than what they carry, and overlaps.",
-                    joint=end.joint,
-                )
-            elif end.speed > limit:
-                check.find(
-                    f"A link moves at {end.speed:.3g} m/s while {end.when}; a fall from the height of the model gives "
-                    f"{fall:.3g} m/s.",
-                    "Correct masses and inertias, and overlaps at rest.",
-                    severity=Severity.WARNING,
-                    joint=end.joint,
-                    value=end.speed,
-                    limit=limit,
-                    unit="m/s",
-                )
+        find_unstable(check, work.ends, size=work.size, explosion=work.request.settings.engines.explosion)
 
 
 def _tell_warnings(recorder: Recorder, work: MujocoWork) -> None:

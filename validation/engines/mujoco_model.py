@@ -181,7 +181,7 @@ def with_allowances(source: Source, measured: MujocoModel, touching: Touching, *
         _exclude(spec, source.names, bodies, acting)
         for geom in spec.geoms:
             geom.condim, geom.solimp = 1, _yielding(touching.tolerance)
-    for pair in sorted(acting):
+    for pair in sorted(pair for pair in acting if np.isfinite(deep[pair])):
         for first in geoms.get(pair[0], ()):
             for second in geoms.get(pair[1], ()):
                 spec.add_pair(geomname1=first, geomname2=second, condim=1, solimp=_yielding(deep[pair]))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.engines.mechanism import sweep_rows
-from kinematify.validation.engines.touching import stand_in_error
+from kinematify.validation.engines.touching import stand_in_error, stand_in_reason
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -103,13 +103,11 @@ def find_overlaps(check: OpenCheck, case: Case) -> None:
 
 def _find_overlap(check: OpenCheck, case: Case, index: int) -> None:
     first, second = pair = case.sweep.pair(index, case.mechanism.links)
-    depth, error = float(case.sweep.at_rest[index]), stand_in_error(case.prepared, pair)
-    real = depth > error
+    depth = float(case.sweep.at_rest[index])
+    real = depth > stand_in_error(case.prepared, pair)
     check.find(
         f"At rest, {first} and {second} overlap by {depth * 1e3:.3g} mm"
-        + (
-            "." if real else f", within the {error * 1e3:.3g} mm by which their convex stand-ins can exceed the meshes."
-        ),
+        + ("." if real else f", {stand_in_reason(case.prepared, pair)}."),
         f"Move {first} and {second} apart, or shrink their collision geometry."
         if real
         else f"Write convex pieces as collision geometry of {first} and {second}.",
@@ -157,8 +155,7 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     excess, values = case.excess_towards(driven)
     deepest = int(np.argmax(excess[index]))
     neighbours = tuple(sorted(case.sweep.bodies[index].tolist())) in case.mechanism.neighbours
-    error = stand_in_error(case.prepared, pair)
-    real = excess[index, deepest] > error
+    real = excess[index, deepest] > stand_in_error(case.prepared, pair)
     why = (
         f"there {first} and {second} collide; moved on without physics, they get {excess[index, deepest] * 1e3:.3g} mm "
         f"deeper into each other than at rest (at {values[deepest]:.4g} {travel.unit})"
@@ -166,7 +163,7 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     if real:
         remedy = f"Correct axis, pivot or limit of {travel.joint} so that {first} and {second} stay clear."
     else:
-        why += f", within the {error * 1e3:.3g} mm by which their convex stand-ins can exceed the meshes"
+        why += f", {stand_in_reason(case.prepared, pair)}"
         remedy = f"Write convex pieces as collision geometry of {first} and {second}."
     check.find(
         f"{stops}: {why}.",
@@ -212,7 +209,8 @@ def find_penetrations(check: OpenCheck, case: Case, driven: Sequence[Driven]) ->
     worst: dict[int, tuple[float, Driven]] = {}
     for item in driven:
         stopping = None if case.arrived(item) else blocking_pair(case, item)
-        for pair in np.flatnonzero(item.excess > 0.0).tolist():
+        # What is allowed gives way without force; a stop is then as soft as any contact of the engine.
+        for pair in np.flatnonzero(item.excess > case.sweep.tolerance).tolist():
             if pair != stopping and item.excess[pair] > worst.get(pair, (0.0, item))[0]:
                 worst[pair] = (float(item.excess[pair]), item)
     deepest = max((float(item.excess.max(initial=0.0)) for item in driven), default=0.0)

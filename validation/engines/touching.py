@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.validation.prepare.prepared import Method
+
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.validation.engines.mechanism import Mechanism
@@ -99,12 +101,26 @@ def touching(contacts: Contacts, mechanism: Mechanism, prepared: Prepared, *, ro
     order = np.argsort(contacts.depth)
     named[index[order]] = contacts.links[order]  # the deepest comes last and stays
     # Bodies between which there are several joints in one place overlap as those do that one joint connects.
-    near = [(a, b) in mechanism.neighbours for a, b in pairs.tolist()] | (depth[:, 0] > tolerance)
+    joined = np.array([(a, b) in mechanism.neighbours for a, b in pairs.tolist()], dtype=bool)
+    near = joined | (depth[:, 0] > tolerance)
     names = [(mechanism.links[a], mechanism.links[b]) for a, b in named.tolist()]
-    slack = np.array([stand_in_error(prepared, pair) for pair in names]) * near
+    errors = np.array([stand_in_error(prepared, pair) for pair in names])
+    slack = np.where(near, errors, 0.0)
     return Touching(bodies=pairs, links=named, depth=depth, tolerance=tolerance, slack=slack)
 
 
 def stand_in_error(prepared: Prepared, pair: tuple[str, str]) -> float:
-    """How much deeper the convex pieces of two links can be in each other than their declared surfaces [m]."""
-    return sum(prepared.link_by_name[name].gap for name in pair)
+    """How much deeper the convex pieces of two links can be in each other than their declared surfaces [m].
+
+    Infinite where one is the hull of a concave mesh: it fills hollows, in which the other may rightly be.
+    """
+    links = [prepared.link_by_name[name] for name in pair]
+    return float("inf") if any(link.method is Method.HULL for link in links) else sum(link.gap for link in links)
+
+
+def stand_in_reason(prepared: Prepared, pair: tuple[str, str]) -> str:
+    """Why an overlap of convex pieces may be none of the declared surfaces, as words that follow a comma."""
+    error = stand_in_error(prepared, pair)
+    if error == float("inf"):
+        return "one of which is the convex hull of a concave mesh"
+    return f"within the {error * 1e3:.3g} mm by which their convex pieces can exceed the meshes"
