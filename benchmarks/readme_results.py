@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.paper import TABLE_I, PaperRow, mean_over_robots
+from kinematify.benchmark.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.benchmark.report import load_report
 from kinematify.benchmark.summary import condition_group, median_seconds, summarise
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.benchmark.job import JobResult
+    from kinematify.benchmark.run import BenchmarkReport
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- results:begin -->", "<!-- results:end -->"
@@ -48,6 +49,21 @@ def by_condition(title: str, results: Sequence[JobResult]) -> str:
     return f"{title} by condition: {'; '.join(parts)}."
 
 
+def ablation(reports: Sequence[BenchmarkReport]) -> list[str]:
+    """The paper's method as we built it (`--config paper`) beside the numbers that the paper gives."""
+    runs = [run for report in reports for run in report.results]
+    lines = ["| `--config paper`, at rest: angle [deg], TED | everyday | Fetch | Panda |", "|---|---|---|---|"]
+    for variant, theirs in ABLATION.items():
+        cells = []
+        for name in ("everyday", "fetch", "panda"):
+            group = [r for r in runs if r.variant == variant and name in (r.object, r.kind)]
+            values = summarise(group).values
+            angle, _, ted = theirs[name]
+            cells.append(f"{values['angle_deg']:.1f}, {values['ted']:.2f} (paper: {angle:.1f}, {ted:.2f})")
+        lines.append(f"| {variant} | {' | '.join(cells)} |")
+    return lines
+
+
 def faults(results: Sequence[JobResult]) -> str:
     wrong: dict[str, set[str]] = {}
     for run in results:
@@ -75,6 +91,8 @@ def main() -> None:
         "",
         faults(robots.results),
         faults(everyday.results),
+        "",
+        *ablation([load_report(ROOT / "results" / f"ablation_{name}.json") for name in ("robots", "everyday")]),
         "",
         f"Made by `{robots.header['command']}` and `{everyday.header['command']}`,",
         "written here by `python benchmarks/readme_results.py`.",
