@@ -1,0 +1,271 @@
+"""`prepared.urdf` in PyBullet: a world of its own per purpose, and what it says of single configurations.
+
+PyBullet speaks in indices of its own and in tuples; nothing of either leaves this module.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pybullet as bullet
+
+from kinematify.validation.engines.configurations import GRAVITY
+from kinematify.validation.engines.loading import LoadedJoint, LoadedModel
+from kinematify.validation.engines.touching import Contacts, deepest
+from kinematify.validation.prepare.prepared import Method
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.validation.prepare.prepared import Prepared
+
+_FLAGS = (
+    bullet.URDF_USE_SELF_COLLISION
+    | bullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT  # else neighbours pass through each other
+    | bullet.URDF_USE_INERTIA_FROM_FILE  # else inertias are made up from the collision shapes
+)
+_HULL_MARGIN = 1e-3
+"""Bullet inflates convex hulls of meshes by it [m]; primitives keep their size."""
+_CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
+_BASE = -1
+
+
+class Refused(Exception):
+    """PyBullet does not load the file; the text is the cause that it printed."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PybulletModel:
+    """A body in a world of its own, and where the links and joints of the document stand in it."""
+
+    client: int
+    body: int
+    mechanism: Mechanism
+    link: IntArray
+    """PyBullet's index of each link, -1 for the root, -2 for lost ones, shape (L,)."""
+    joint: IntArray
+    """PyBullet's index of each of `Mechanism.joints`, -2 for lost ones, shape (J,)."""
+    margin: FloatArray
+    """By which each link's shapes are inflated [m], shape (L,)."""
+
+    @property
+    def complete(self) -> bool:
+        """True if no link and no joint was lost."""
+        return bool((self.link >= _BASE).all() and (self.joint >= 0).all())
+
+    @cached_property
+    def indices(self) -> list[int]:
+        """`joint` as PyBullet wants it."""
+        return [int(index) for index in self.joint]
+
+    @cached_property
+    def order(self) -> IntArray:
+        """Place of each joint among PyBullet's degrees of freedom, which follow its indices, shape (J,)."""
+        return np.argsort(np.argsort(self.joint))
+
+    @cached_property
+    def link_of(self) -> dict[int, int]:
+        """Link of the document by PyBullet's index."""
+        return {index: link for link, index in enumerate(self.link.tolist())}
+
+    @cached_property
+    def size(self) -> float:
+        """Largest side of the box around all collision shapes at zero [m], at least 1 mm."""
+        self.place(np.zeros(len(self.joint)))
+        boxes = [
+            bullet.getAABB(self.body, index, physicsClientId=self.client)
+            for index in self.link.tolist()
+            if bullet.getCollisionShapeData(self.body, index, physicsClientId=self.client)
+        ]
+        corners = np.array(boxes).reshape(-1, 3)
+        return float(max(np.ptp(corners, axis=0).max(), 1e-3)) if len(corners) else 1.0
+
+    def place(self, values: FloatArray) -> None:
+        """Set all joints, shape (J,) [rad or m], and stop them."""
+        if self.indices:
+            bullet.resetJointStatesMultiDof(
+                self.body,
+                self.indices,
+                [[value] for value in values.tolist()],
+                [[0.0]] * len(values),
+                physicsClientId=self.client,
+            )
+
+    def state(self) -> tuple[list[float], list[float], list[float]]:
+        """Return values, speeds and motor torques of all joints."""
+        states = bullet.getJointStates(self.body, self.indices, physicsClientId=self.client)
+        return [s[0] for s in states], [s[1] for s in states], [s[3] for s in states]
+
+    def link_states(self) -> list[tuple[tuple[float, ...], ...]]:
+        """Return PyBullet's state of every link but the root, by its index.
+
+        Of each, [0] is the centre of mass, [4] and [5] are the frame, [6] is the speed of the centre of mass.
+        """
+        count = bullet.getNumJoints(self.body, physicsClientId=self.client)
+        states = bullet.getLinkStates(
+            self.body, range(count), computeLinkVelocity=1, computeForwardKinematics=1, physicsClientId=self.client
+        )
+        return list(states or ())
+
+    def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
+        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set."""
+        bullet.performCollisionDetection(physicsClientId=self.client)
+        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
+        link_of = self.link_of
+        return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
+
+    def corrected(self, found: Sequence[tuple[int, int, int, float]]) -> Contacts:
+        """Return the contacts without the inflation of hulls: only those in which the shapes themselves meet."""
+        table = np.array(found, dtype=np.float64).reshape(-1, 4)
+        links = table[:, 1:3].astype(np.int64)
+        depth = table[:, 3] - self.margin[links].sum(axis=1)
+        kept = depth > 0.0
+        return deepest(table[kept, 0].astype(np.int64), links[kept], depth[kept])
+
+    def gravity(self, values: FloatArray) -> FloatArray:
+        """Return the torques and forces that hold the model still [N m or N], shape (J,)."""
+        q = np.zeros(len(values))
+        q[self.order] = values
+        zero = [0.0] * len(values)
+        torques = bullet.calculateInverseDynamics(self.body, q.tolist(), zero, zero, physicsClientId=self.client)
+        held: FloatArray = np.array(torques)[self.order]
+        return held
+
+    def mass_matrix(self, values: FloatArray) -> FloatArray:
+        """Return the joint-space inertia, shape (J, J)."""
+        q = np.zeros(len(values))
+        q[self.order] = values
+        matrix = bullet.calculateMassMatrix(self.body, q.tolist(), physicsClientId=self.client)
+        ordered: FloatArray = np.array(matrix).reshape(len(values), len(values))[np.ix_(self.order, self.order)]
+        return ordered
+
+    def release(self, *, ideal: bool = False) -> None:
+        """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
+        for index in self.indices:
+            bullet.setJointMotorControl2(
+                self.body, index, bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client
+            )
+        if ideal:
+            for index in self.link.tolist():
+                bullet.changeDynamics(
+                    self.body, index, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0,
+                    physicsClientId=self.client,
+                )  # fmt: skip
+
+    def only_pairs(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Let no two links act on each other but those of these pairs (indices in the document)."""
+        for index in self.link.tolist():
+            bullet.setCollisionFilterGroupMask(self.body, index, 0, 0, physicsClientId=self.client)
+        self._filter(pairs, act=True)
+
+    def without_pairs(self, pairs: Iterable[tuple[int, int]]) -> None:
+        """Let the links of these pairs not act on each other."""
+        self._filter(pairs, act=False)
+
+    def _filter(self, pairs: Iterable[tuple[int, int]], *, act: bool) -> None:
+        for first, second in pairs:
+            bullet.setCollisionFilterPair(
+                self.body, self.body, int(self.link[first]), int(self.link[second]), int(act),
+                physicsClientId=self.client,
+            )  # fmt: skip
+
+    def disconnect(self) -> None:
+        """Free the world."""
+        bullet.disconnect(physicsClientId=self.client)
+
+
+def load(urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True) -> PybulletModel:
+    """Load a prepared file into a new world; links that fixed joints join do not collide with each other.
+
+    Args:
+        urdf: The file.
+        mechanism: Its tree.
+        prepared: Its record.
+        step: Time step [s].
+        fixed: False: the base is free.
+
+    Raises:
+        Refused: PyBullet cannot.
+    """
+    client = bullet.connect(bullet.DIRECT)
+    bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client)
+    bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
+    try:
+        body = bullet.loadURDF(str(urdf), useFixedBase=fixed, flags=_FLAGS, physicsClientId=client)
+    except bullet.error as error:
+        bullet.disconnect(physicsClientId=client)
+        raise Refused(str(error)) from error
+    infos = [bullet.getJointInfo(body, k, physicsClientId=client) for k in range(bullet.getNumJoints(body, client))]
+    links = {_text(info[12]): info[0] for info in infos}
+    links.setdefault(mechanism.description.root, _BASE)
+    joints = {_text(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
+    methods = [prepared.link_by_name[name].method for name in mechanism.links]
+    loaded = PybulletModel(
+        client=client,
+        body=body,
+        mechanism=mechanism,
+        link=np.array([links.get(name, -2) for name in mechanism.links], dtype=np.int64),
+        joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
+        margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
+    )
+    if loaded.complete:
+        loaded.without_pairs(welded_pairs(mechanism))
+    return loaded
+
+
+def welded_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:
+    """Pairs of links that fixed joints join."""
+    members: dict[int, list[int]] = defaultdict(list)
+    for link, body in enumerate(mechanism.body_of_link.tolist()):
+        members[body].append(link)
+    return [pair for group in members.values() for pair in combinations(group, 2)]
+
+
+def loaded_model(fixed: PybulletModel, free: PybulletModel) -> LoadedModel:
+    """Return what PyBullet made of the file.
+
+    Args:
+        fixed: With a fixed base.
+        free: With a free base: a fixed one has no mass.
+    """
+    joints = {}
+    for k in range(bullet.getNumJoints(fixed.body, fixed.client)):
+        info = bullet.getJointInfo(fixed.body, k, physicsClientId=fixed.client)
+        if info[2] in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
+            unlimited = info[8] > info[9]
+            joints[_text(info[1])] = LoadedJoint(
+                turns=info[2] == bullet.JOINT_REVOLUTE,
+                lower=-np.inf if unlimited else info[8],
+                upper=np.inf if unlimited else info[9],
+            )
+    masses = link_masses(free)
+    return LoadedModel(joints=joints, masses=masses, total_mass=sum(masses.values()))
+
+
+def link_masses(free: PybulletModel) -> dict[str, float]:
+    """Mass of each link that is there [kg]; the base must be free."""
+    there = [(name, index) for name, index in zip(free.mechanism.links, free.link.tolist(), strict=True) if index >= -1]
+    return {name: bullet.getDynamicsInfo(free.body, index, physicsClientId=free.client)[0] for name, index in there}
+
+
+def printed(log: Path) -> list[str]:
+    """What PyBullet has printed into the log of its process, without what it always prints."""
+    ctypes.CDLL(None).fflush(None)
+    try:
+        lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return []
+    return [line.strip() for line in lines if line.strip() and not any(word in line for word in _CHATTER)]
+
+
+def _text(name: bytes) -> str:
+    return name.decode("utf-8", errors="replace")
