@@ -13,10 +13,11 @@ from pathlib import Path
 
 from corruption.bases import all_bases
 from corruption.cases import kinds_of
-from corruption.runner import Plan, run_cases
+from corruption.runner import Plan, hurried, run_cases
 from corruption.tables import BAD, write_tables
 
 from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.environment import environment
 
 
 def main() -> None:
@@ -27,7 +28,7 @@ def main() -> None:
     bases = all_bases(work / "bases", arguments.data)
     print(f"{len(bases)} valid models in {work}")
     selected = frozenset(check for check in CATALOGUE if check.startswith(tuple(arguments.checks)))
-    plan = Plan(seed=arguments.seed, bases=tuple(bases), seconds=arguments.seconds, selected=selected)
+    plan = Plan(seed=arguments.seed, bases=tuple(bases), settings=hurried(arguments.seconds), selected=selected)
     ledger = work / f"ledger-{arguments.seed}.jsonl"
     if arguments.fresh:
         ledger.unlink(missing_ok=True)
@@ -46,7 +47,8 @@ def main() -> None:
             _tell(result, len(done), len(wanted), time.perf_counter() - start)
     command = f"python benchmarks/robustness.py --count {len(done)} --seed {arguments.seed}"
     seconds = sum(result["seconds"] for result in done.values())
-    print(write_tables([done[number] for number in sorted(done)], arguments.output, command=command, seconds=seconds))
+    facts = environment(plan.settings, seconds=seconds, interrupted=False)
+    print(write_tables([done[number] for number in sorted(done)], facts, arguments.output, command=command))
 
 
 def _tell(result: dict, count: int, total: int, seconds: float) -> None:

@@ -25,11 +25,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
+    from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.report import JointSummary
     from kinematify.validation.stage import StageRequest
 
+_SHOWN = 200
+"""Characters of a failed stage's last words."""
 _THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 _PRELOADED = ("kinematify.validation.asset.stage", "kinematify.geometry.surface")
 
@@ -122,7 +125,7 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     limit = request.settings.budget.stage_bytes
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    _silence(request.work / f"{stage.name}.log")
+    _silence(_log(stage, request))
     module, function = stage.function.split(":")
     run: Callable[[StageRequest, Recorder], None] = getattr(importlib.import_module(module), function)
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
@@ -151,7 +154,7 @@ def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterat
                 message = receiver.recv()
             except EOFError:
                 running.process.join()
-                failure = _cause(running.process.exitcode)
+                failure = _cause(running.process.exitcode, _log(running.stage, request))
             else:
                 if message is not None:
                     running.told.append(message)
@@ -173,10 +176,20 @@ def _grace(request: StageRequest) -> float:
     return request.deadline + 2.0 - time.time()
 
 
-def _cause(exit_code: int | None) -> str:
+def _cause(exit_code: int | None, log: Path) -> str:
     if exit_code is not None and exit_code < 0:
         return f"crashed with {signal.Signals(-exit_code).name}"
-    return f"failed with status {exit_code}"
+    try:
+        last = log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
+    except OSError:
+        last = ""
+    # The last line of a traceback says what was raised.
+    return f"failed with status {exit_code}" + (f" ({last[:_SHOWN]})" if last else "")
+
+
+def _log(stage: Stage, request: StageRequest) -> Path:
+    """Where a stage's output goes."""
+    return request.work / f"{stage.name}.log"
 
 
 def _stop(receiver: Connection, process: BaseProcess) -> None:

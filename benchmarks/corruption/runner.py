@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from corruption.bases import Base
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
+    from kinematify.validation.settings import ValidationSettings
 
 Result = dict[str, Any]
 """number, kind, base, outcome, seconds, message, errors, unexplained."""
@@ -50,8 +51,8 @@ class Plan:
 
     seed: int
     bases: tuple[Base, ...]
-    seconds: float
-    """Time budget of one run, as a user would set it."""
+    settings: ValidationSettings
+    """With the time budget of one run."""
     selected: frozenset[str]
     """Ids of the checks."""
 
@@ -68,7 +69,7 @@ def run_cases(numbers: Sequence[int], plan: Plan, workers: int) -> Iterator[Resu
                 active[worker.channel] = worker
             ready = connection.wait(list(active), timeout=1.0)
             for channel, worker in list(active.items()):
-                limit = plan.seconds + _GRACE
+                limit = plan.settings.budget.seconds + _GRACE
                 result = worker.result(limit) if channel in ready else worker.late(limit)
                 if result is None:
                     continue
@@ -126,6 +127,12 @@ class _Worker:
         return {"number": self.number, "outcome": outcome, "seconds": seconds, "message": message}
 
 
+def hurried(seconds: float) -> ValidationSettings:
+    """Return the settings as shipped with a time budget of one's own."""
+    settings = load_settings()
+    return settings.model_copy(update={"budget": settings.budget.model_copy(update={"seconds": seconds})})
+
+
 def _serve(channel: Connection, plan: Plan) -> None:
     while (number := channel.recv()) is not None:
         channel.send(run_case(number, plan))
@@ -145,12 +152,9 @@ def run_case(number: int, plan: Plan) -> Result:
 
 
 def _validated(urdf: Path, plan: Plan) -> Result:
-    settings = load_settings()
-    budget = settings.budget.model_copy(update={"seconds": plan.seconds})
     try:
         engines = sorted({engine for check in plan.selected for engine in CATALOGUE[check].engines})
-        settings = settings.model_copy(update={"budget": budget})
-        report = validate(urdf, settings=settings, selected=plan.selected, engines=engines, workers=1)
+        report = validate(urdf, settings=plan.settings, selected=plan.selected, engines=engines, workers=1)
     except InputError as error:
         _write_all(Unusable(model=str(urdf), message=str(error)))
         return {"outcome": "no URDF", "message": str(error)[:200]}
@@ -171,10 +175,9 @@ def _write_all(outcome: Outcome) -> None:
 def _unexplained(report: ValidationReport) -> list[str]:
     """Reasons of blocked checks that are no consequence of what was found: something inside gave way."""
     usual = ("the pre-check found", "a mesh cannot be used", "the meshes cannot be used")
-    return sorted(
-        {
-            f"{check.check} {check.engine or ''}: {check.reason}"[:300]
-            for check in report.checks
-            if check.status is Status.BLOCKED and not (check.reason or "").startswith(usual)
-        }
-    )
+    first: dict[str, str] = {}
+    for check in report.checks:
+        reason = check.reason or ""
+        if check.status is Status.BLOCKED and not reason.startswith(usual):
+            first.setdefault(reason, f"{check.check} {check.engine or ''}: {reason}"[:400])
+    return list(first.values())

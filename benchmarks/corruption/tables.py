@@ -10,11 +10,9 @@ import numpy as np
 
 from corruption.cases import KINDS
 from corruption.runner import READY
-from kinematify.validation.environment import environment
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from corruption.runner import Result
@@ -23,15 +21,15 @@ NAME = "validate_robustness"
 BAD = ("crash", "hang", "traceback")
 
 
-def write_tables(results: Sequence[Result], folder: Path, *, command: str, seconds: float) -> str:
+def write_tables(results: Sequence[Result], facts: Mapping[str, Any], folder: Path, *, command: str) -> str:
     """Write ``validate_robustness.md`` and ``.json`` and return the former's text."""
     folder.mkdir(parents=True, exist_ok=True)
-    text = _markdown(results, command)
+    text = _markdown(results, facts, command)
     (folder / f"{NAME}.md").write_text(text, encoding="utf-8")
     values = {
         "schema": 1,
         "command": command,
-        "environment": _environment(seconds),
+        "environment": {key: value for key, value in facts.items() if key not in ("settings", "interrupted")},
         "totals": dict(Counter(result["outcome"] for result in results)),
         "by_kind": {kind: dict(_outcomes(results, kind)) for kind in KINDS},
         "failures": [result for result in results if result["outcome"] in BAD],
@@ -41,21 +39,15 @@ def write_tables(results: Sequence[Result], folder: Path, *, command: str, secon
     return text
 
 
-def _environment(seconds: float) -> dict[str, Any]:
-    facts = environment(load_settings(), seconds=seconds, interrupted=False)
-    return {key: value for key, value in facts.items() if key not in ("settings", "interrupted")}
-
-
 def _outcomes(results: Sequence[Result], kind: str) -> Counter[str]:
     return Counter(result["outcome"] for result in results if result["kind"] == kind)
 
 
-def _markdown(results: Sequence[Result], command: str) -> str:
+def _markdown(results: Sequence[Result], facts: Mapping[str, Any], command: str) -> str:
     columns = (*READY, *BAD)
     totals = Counter(result["outcome"] for result in results)
     times = np.array([result["seconds"] for result in results])
     inside = [result for result in results if result.get("unexplained")]
-    versions = _environment(0.0)["versions"]
     intro = (
         f"`{command}`: {len(results)} corruptions of valid models. *Passes* and *fails* are reports (exit status 0 and "
         "1, written in every format), *no URDF* is a refusal with a remedy (exit status 2). "
@@ -66,7 +58,7 @@ def _markdown(results: Sequence[Result], command: str) -> str:
         f"{times.max():.1f} s. In {len(inside)} runs an isolated stage or check gave way, which the report says."
     )
     heading = "| Corruption | cases | " + " | ".join(columns) + " |"
-    told_versions = ", ".join(f"{name} {version}" for name, version in versions.items()) + "."
+    told_versions = ", ".join(f"{name} {version}" for name, version in facts["versions"].items()) + "."
     lines = ["# Robustness of `kinematify validate`", "", intro, "", pace, "", told_versions, "", heading]
     lines.append("|---|--:|" + "--:|" * len(columns))
     for kind in KINDS:

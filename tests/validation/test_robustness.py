@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
 from corruption.bases import Base, built_base
 from corruption.cases import KINDS, write_case
-from corruption.runner import READY, Plan, run_case
+from corruption.runner import READY, Plan, hurried, run_case
 
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.plan import later_stages, needed
@@ -37,7 +37,7 @@ def test_the_model_that_is_corrupted_is_sound(base: Base, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("number", range(len(KINDS)))
 def test_every_kind_of_corruption_ends_with_a_report_or_a_refusal(number: int, base: Base) -> None:
-    result = run_case(number, Plan(seed=1, bases=(base,), seconds=20.0, selected=FILE_CHECKS))
+    result = run_case(number, Plan(seed=1, bases=(base,), settings=hurried(20.0), selected=FILE_CHECKS))
     assert result["outcome"] in READY, result["message"]
     assert not result.get("unexplained")
     assert result["seconds"] < 15.0
