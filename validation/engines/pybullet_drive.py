@@ -10,6 +10,7 @@ import numpy as np
 import pybullet as bullet
 
 from kinematify.validation.engines.drive import drives, servos
+from kinematify.validation.engines.mechanism import sweep_rows
 from kinematify.validation.engines.outcome import Driven
 from kinematify.validation.engines.pybullet_measure import measure
 from kinematify.validation.engines.touching import Contacts, touching
@@ -116,11 +117,11 @@ def drive_all(bench: Bench, acting: PybulletModel, seen: Measured, remaining: Ca
 
     Args:
         bench: As set up.
-        acting: A model of its own; pairs that cannot meet while one joint moves are switched off in it.
+        acting: A model of its own; pairs act on each other in it only in drives in which they get too deep.
         seen: What was measured along `Mechanism.sweep`.
         remaining: Seconds that are left.
     """
-    acting.only_pairs(_acting_pairs(bench))
+    acting.silence()
     planned = drives(bench.mechanism, bench.settings, bench.step)
     records: list[_Record] = []
     for drive in planned:
@@ -145,16 +146,22 @@ def drive_all(bench: Bench, acting: PybulletModel, seen: Measured, remaining: Ca
     )
 
 
-def _acting_pairs(bench: Bench) -> list[tuple[int, int]]:
-    """Pairs of links of the bodies that get too deep into each other in the sweep, but for those at rest."""
-    members = [np.flatnonzero(bench.mechanism.body_of_link == body).tolist() for body in range(_bodies(bench))]
-    meeting = bench.sweep.bodies[bench.sweep.meet].tolist()
-    pairs = [pair for first, second in meeting for pair in product(members[first], members[second])]
+def _acting_pairs(bench: Bench, drive: Drive) -> list[tuple[int, int]]:
+    """Pairs of links of the bodies that get too deep into each other on the way, but for those that touch at rest.
+
+    Others are left out, because an inflated shape would stop a joint that slides past it within the tolerance.
+    """
+    travel, count = bench.mechanism.travels[drive.leader], bench.settings.sweep_samples
+    values = np.linspace(travel.lower, travel.upper, count)
+    ahead = values >= travel.rest if drive.end == travel.upper else values <= travel.rest
+    excess = bench.sweep.excess[:, sweep_rows(drive.leader, count)][:, ahead]
+    body = bench.mechanism.body_of_link
+    pairs = [
+        (int(a), int(b))
+        for first, second in bench.sweep.bodies[(excess > 0.0).any(axis=1)].tolist()
+        for a, b in product(np.flatnonzero(body == first), np.flatnonzero(body == second))
+    ]
     return [pair for pair in pairs if (min(pair), max(pair)) not in bench.at_rest]
-
-
-def _bodies(bench: Bench) -> int:
-    return int(bench.mechanism.body_of_link.max()) + 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,6 +175,8 @@ class _Record:
     beyond: float
     looks: FloatArray | None
     """Values of all joints on the way, the last where the joint stands at last, shape (_LOOKS, J); None: diverged."""
+    against: frozenset[tuple[int, int]]
+    """Pairs of bodies that press against each other there, smaller index first."""
     fastest: float
 
 
@@ -175,9 +184,12 @@ def _drive(bench: Bench, acting: PybulletModel, drive: Drive) -> _Record:
     """Drive one joint by a motor that is no stronger than the motion needs; the others are held."""
     column = bench.mechanism.joints.index(bench.mechanism.travels[drive.leader].joint)
     force = float(bench.force[drive.leader])
+    pairs = _acting_pairs(bench, drive)
+    acting.act(pairs, on=True)
     motors = Motors(acting, bench)
     looks = set((np.linspace(drive.arrived / _LOOKS, drive.arrived, _LOOKS).astype(int) - 1).tolist())
     values, forces, seen, fastest = [], [], [], 0.0
+    against: frozenset[tuple[int, int]] = frozenset()
     motors.hold(_UNLIMITED)
     for step, (target, speed) in enumerate(zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)):
         motors.command(drive.leader, target, speed, force)
@@ -191,6 +203,9 @@ def _drive(bench: Bench, acting: PybulletModel, drive: Drive) -> _Record:
         if step in looks:
             seen.append(q)
             fastest = max(fastest, fastest_link(acting))
+        if step == drive.arrived - 1:
+            against = acting.touching_bodies()
+    acting.act(pairs, on=False)
     whole = len(values) == len(drive.reference)
     moved, outward = np.array(values), np.sign(drive.end - drive.reference[0])
     arrived = drive.arrived
@@ -201,6 +216,7 @@ def _drive(bench: Bench, acting: PybulletModel, drive: Drive) -> _Record:
         lag=float(np.abs(drive.reference[:arrived] - moved[:arrived]).max()) if whole else np.nan,
         beyond=float(np.max((outward or _side(bench, drive)) * (moved[arrived:] - drive.end))) if whole else np.nan,
         looks=np.array(seen) if whole else None,
+        against=against,
         fastest=fastest,
     )
 
@@ -283,6 +299,7 @@ def _driven(bench: Bench, record: _Record, sweep: Touching, excess: FloatArray) 
         sweep: Pairs of bodies.
         excess: Of each at each look [m], shape (pairs, _LOOKS).
     """
+    pressed = np.array([(a, b) in record.against for a, b in sweep.bodies.tolist()], dtype=bool)
     driven = Driven(
         drive=record.drive,
         reached=record.reached,
@@ -290,7 +307,7 @@ def _driven(bench: Bench, record: _Record, sweep: Touching, excess: FloatArray) 
         lag=record.lag,
         beyond=record.beyond,
         excess=excess.max(axis=1),
-        at_end=excess[:, -1],
+        at_end=np.where(pressed, np.maximum(excess[:, -1], 0.0), excess[:, -1]),
     )
     body = bench.mechanism.body_of_link
     silent = {tuple(sorted((int(body[a]), int(body[b])))) for a, b in bench.at_rest}

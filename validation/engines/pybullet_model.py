@@ -123,6 +123,13 @@ class PybulletModel:
         link_of = self.link_of
         return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
 
+    def touching_bodies(self) -> frozenset[tuple[int, int]]:
+        """Return pairs of bodies that pushed each other in the last step, smaller index first."""
+        body, link_of = self.mechanism.body_of_link, self.link_of
+        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
+        pairs = ((int(body[link_of[p[3]]]), int(body[link_of[p[4]]])) for p in points if p[9] > 0.0)
+        return frozenset((min(pair), max(pair)) for pair in pairs)
+
     def corrected(self, found: Sequence[tuple[int, int, int, float]]) -> Contacts:
         """Return the contacts without the inflation of hulls: only those in which the shapes themselves meet."""
         table = np.array(found, dtype=np.float64).reshape(-1, 4)
@@ -161,20 +168,16 @@ class PybulletModel:
                     physicsClientId=self.client,
                 )  # fmt: skip
 
-    def only_pairs(self, pairs: Iterable[tuple[int, int]]) -> None:
-        """Let no two links act on each other but those of these pairs (indices in the document)."""
+    def silence(self) -> None:
+        """Let no two links act on each other but those that `act` names."""
         for index in self.link.tolist():
             bullet.setCollisionFilterGroupMask(self.body, index, 0, 0, physicsClientId=self.client)
-        self._filter(pairs, act=True)
 
-    def without_pairs(self, pairs: Iterable[tuple[int, int]]) -> None:
-        """Let the links of these pairs not act on each other."""
-        self._filter(pairs, act=False)
-
-    def _filter(self, pairs: Iterable[tuple[int, int]], *, act: bool) -> None:
+    def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
+        """Let the links of these pairs (indices in the document) act on each other, or not."""
         for first, second in pairs:
             bullet.setCollisionFilterPair(
-                self.body, self.body, int(self.link[first]), int(self.link[second]), int(act),
+                self.body, self.body, int(self.link[first]), int(self.link[second]), int(on),
                 physicsClientId=self.client,
             )  # fmt: skip
 
@@ -218,7 +221,7 @@ def load(urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, f
         margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
     )
     if loaded.complete:
-        loaded.without_pairs(welded_pairs(mechanism))
+        loaded.act(welded_pairs(mechanism), on=False)
     return loaded
 
 

@@ -222,7 +222,7 @@ def _ready(check: OpenCheck, work: _Work, *needed: object) -> bool:
 def _tell_free(recorder: Recorder, work: _Work, bench: Bench) -> None:
     """KV504, KV508, KV512: from one run that is held and one that is released."""
     case, model = work.case(bench.sweep), work.load()
-    model.without_pairs(bench.at_rest)
+    model.act(bench.at_rest, on=False)
     falling: Free | None = None
     with recorder.check("KV504", ENGINE) as check:
         if _ready(check, work):
@@ -296,7 +296,7 @@ def _tell_stable_and_warnings(recorder: Recorder, work: _Work, bench: Bench) -> 
             check.skip(_LATE)
         elif recorder.wants("KV511"):
             falling = work.load(fixed=False)
-            falling.without_pairs(bench.at_rest)
+            falling.act(bench.at_rest, on=False)
             end = drop(bench, falling)
             falling.disconnect()
             warnings = _DIVERGED if end.diverged else ()
