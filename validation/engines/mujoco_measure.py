@@ -71,7 +71,7 @@ def _measure_rows(loaded: MujocoModel, values: FloatArray, rows: IntArray, dynam
             matrices.append(_mass_matrix(loaded, data))
     row_of, links, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(3))
     size = len(loaded.joint)
-    inertia = np.array(matrices).reshape(-1, size, size)
+    inertia = np.array(matrices).reshape(len(matrices), size, size)
     return poses, row_of.astype(np.int64), links.reshape(-1, 2).astype(np.int64), depth, gravity[:, loaded.dof], inertia
 
 

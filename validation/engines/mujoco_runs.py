@@ -66,9 +66,7 @@ def simulate(
         whole=whole,
         state=state,
         warnings=tuple(
-            _warnings(model, state[run, -1], control[run, min(steps, control.shape[1] - 1)])
-            if steps < state.shape[1]
-            else ()
+            _warnings(model, np.vstack([start, state[run]]), control[run], steps) if steps < state.shape[1] else ()
             for run, (model, steps) in enumerate(zip(models, whole, strict=True))
         ),
     )
@@ -89,13 +87,22 @@ def _whole(time: FloatArray) -> int:
     return int(stopped[0]) + 1 if len(stopped) else len(time)
 
 
-def _warnings(model: mujoco.MjModel, state: FloatArray, control: FloatArray) -> tuple[str, ...]:
-    """Repeat the step at which the engine gave up, and read its counters."""
+def _warnings(model: mujoco.MjModel, states: FloatArray, control: FloatArray, whole: int) -> tuple[str, ...]:
+    """Repeat the last two steps before the engine gave up, and read its counters.
+
+    Args:
+        model: Of the run.
+        states: At the start and after every step, shape (1 + steps, s).
+        control: Shape (steps, leaders).
+        whole: Steps that it made; the last one may have ended in a state that MuJoCo had reset.
+    """
     data = mujoco.MjData(model)
-    mujoco.mj_setState(model, data, state, STATE)
-    data.ctrl[:] = control
-    mujoco.mj_step(model, data)
-    return counted_warnings(data)
+    first = max(0, whole - 1)
+    mujoco.mj_setState(model, data, states[first], STATE)
+    for command in control[first : first + 2]:
+        data.ctrl[:] = command
+        mujoco.mj_step(model, data)
+    return counted_warnings(data) or ("for no reason that it tells",)
 
 
 def counted_warnings(data: mujoco.MjData) -> tuple[str, ...]:

@@ -121,8 +121,8 @@ def _find_overlap(check: OpenCheck, case: Case, index: int) -> None:
 
 def find_unreached(check: OpenCheck, case: Case, driven: Sequence[Driven]) -> None:
     """Add a finding for every joint that did not get to one of its ends."""
-    check.measured["drives"] = len(driven)
-    check.measured["arrived"] = sum(case.arrived(item) for item in driven)
+    check.measured["drives"] = float(len(driven))
+    check.measured["arrived"] = float(sum(case.arrived(item) for item in driven))
     for item in driven:
         if not case.arrived(item):
             _find_blocked(check, case, item)
@@ -168,7 +168,7 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     check.find(
         f"{stops}: {why}.",
         remedy,
-        severity=Severity.ERROR if real and neighbours else Severity.WARNING,
+        severity=Severity.ERROR if real and neighbours and travel.limited else Severity.WARNING,
         blame=Blame.KINEMATICS if real else Blame.PHYSICS,
         pair=pair,
         **facts,  # type: ignore[arg-type]

@@ -1,0 +1,305 @@
+"""The MuJoCo stage: quiet on what is fine, and each kind of finding once, with the right joint, pair and blame."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.validation.catalogue.engines import CHECKS
+from kinematify.validation.engines.configurations import agreement_configurations, read_poses
+from kinematify.validation.engines.freely import find_drop, find_growth
+from kinematify.validation.engines.mechanism import Mechanism, sweep_rows
+from kinematify.validation.engines.mujoco_stage import run
+from kinematify.validation.engines.placed import link_poses
+from kinematify.validation.engines.run_end import RunEnd, find_unstable
+from kinematify.validation.finding import Blame, Finding, Severity, Status
+from kinematify.validation.prepare.prepared import URDF_FILE, load_prepared
+from kinematify.validation.prepare.stage import prepare
+from kinematify.validation.read import read_model
+from kinematify.validation.settings import load_settings
+from kinematify.validation.stage import OpenCheck, StageRequest
+from tests.validation.engine_models import (
+    Box,
+    Model,
+    Part,
+    Told,
+    cabinet,
+    engine_settings,
+    prepared_request,
+    tell,
+)
+
+IDS = {check.id for check in CHECKS if "mujoco" in check.engines}
+BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).parents[2] / "../shared/bench"))
+PANDA = BENCH / "robots/panda/model.urdf"
+
+
+def told(model: Model, folder: Path, **settings: float) -> Told:
+    return tell(run, prepared_request(model, folder, engine_settings(**settings)))
+
+
+def only(result: Told, check: str) -> Finding:
+    (finding,) = [f for f in result.results[check].findings if f.severity is not Severity.NOTE]
+    return finding
+
+
+def pendulum(**changes: object) -> Model:
+    base = Part(name="base", boxes=(Box(size=(0.1, 0.1, 0.1)),))
+    rod = Part(
+        name="rod",
+        parent="base",
+        kind="revolute",
+        boxes=(Box(size=(0.4, 0.02, 0.02), at=(0.2, 0.0, 0.0)),),
+        at=(0.06, 0.0, 0.1),
+        axis=(0.0, 1.0, 0.0),
+        limits=(-1.0, 1.0),
+        center=(0.2, 0.0, 0.0),
+    )
+    return Model(parts=(base, rod)).with_part("rod", **changes)
+
+
+def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
+    result = told(cabinet(), tmp_path)
+    assert set(result.results) == IDS
+    assert {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS} == {}
+    assert not any(r.findings for r in result.results.values())
+    assert result.results["KV405"].measured["arrived"] == 4
+
+
+def test_leaves_poses_that_agree_with_the_kinematics(tmp_path: Path) -> None:
+    request = prepared_request(cabinet(), tmp_path)
+    tell(run, request)
+    poses = read_poses(tmp_path, "mujoco")
+    description = read_model(request.urdf).kinematics
+    rows = agreement_configurations(description, request.settings.agreement, request.settings.seed)
+    assert poses is not None
+    np.testing.assert_array_equal(poses.q, rows.q)
+    np.testing.assert_allclose(poses.T_world_link, link_poses(description, rows), atol=1e-12)
+    assert poses.mass_matrix is not None
+    np.testing.assert_allclose(poses.mass_matrix[0, 0, 0], 2.0)  # a drawer of 2 kg that slides
+    assert poses.masses is not None
+    np.testing.assert_allclose(poses.masses, [20.0, 2.0, 2.0])
+    assert poses.contacts is not None
+    assert poses.contacts.shape[1] == 3
+
+
+def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
+    result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    finding = only(result, "KV405")
+    assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
+    assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
+    assert finding.value == pytest.approx(0.01, abs=0.01)  # 5 mm of room, and what a contact gives way by
+    assert finding.limit == 0.3
+
+
+def test_stop_at_another_part_is_a_warning(tmp_path: Path) -> None:
+    post = Part(
+        name="post",
+        parent="body",
+        kind="prismatic",
+        boxes=(Box(size=(0.02, 0.1, 0.1)),),
+        at=(0.35, -0.155, 0.0),
+        axis=(0.0, 0.0, 1.0),
+        limits=(0.0, 0.5),
+    )
+    result = told(Model(parts=(*cabinet().parts, post)), tmp_path)
+    finding = only(result, "KV405")
+    assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.KINEMATICS)
+    assert (finding.joint, finding.pair) == ("drawer_joint", ("drawer", "post"))
+
+
+def test_overlap_at_rest_of_parts_that_no_joint_connects(tmp_path: Path) -> None:
+    door = {"at": (0.19, 0.32, 0.0), "boxes": (Box(size=(0.02, 0.4, 0.3), at=(0.0, -0.2, 0.0)),)}
+    result = told(cabinet().with_part("door", **door), tmp_path)
+    finding = only(result, "KV403")
+    assert finding.pair == ("drawer", "door")
+    assert finding.value == pytest.approx(0.015, abs=1e-4)
+    note = next(f for f in result.results["KV403"].findings if f.severity is Severity.NOTE)
+    assert "body and door" in note.message
+
+
+def test_convex_hull_of_a_hollow_body_stops_no_drawer(tmp_path: Path) -> None:
+    request = prepared_request(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    record = tmp_path / "prepared.json"
+    record.write_text(record.read_text(encoding="utf-8").replace('"method": "primitives"', '"method": "hull"'))
+    result = tell(run, request)
+    assert result.worst("KV405") == []
+
+
+def test_weak_motor_sags(tmp_path: Path) -> None:
+    result = told(pendulum(effort=3.0), tmp_path)
+    finding = only(result, "KV404")
+    assert (finding.severity, finding.joint, finding.unit) == (Severity.WARNING, "rod_joint", "N m")
+    assert finding.value == pytest.approx(2.0 * 9.81 * 0.2)
+    assert finding.limit == 3.0
+    assert result.results["KV408"].status is Status.PASS
+    assert result.results["KV404"].measured["drift_rad"] > 0.9
+
+
+def test_strong_motor_holds(tmp_path: Path) -> None:
+    assert told(pendulum(effort=5.0), tmp_path).results["KV404"].status is Status.PASS
+
+
+def test_loads_what_the_file_says_or_says_so(tmp_path: Path) -> None:
+    request = prepared_request(cabinet(), tmp_path)
+    urdf = tmp_path / URDF_FILE
+    text = urdf.read_text(encoding="utf-8")
+    urdf.write_text(text.replace('upper="0.3"', 'upper="0.4"').replace('mass value="20.0"', 'mass value="21.0"'))
+    findings = tell(run, request).results["KV401"].findings
+    assert {(f.joint, f.link) for f in findings} == {("drawer_joint", None), (None, "body")}
+    assert {f.severity for f in findings} == {Severity.ERROR}
+
+
+def test_link_that_stands_elsewhere_is_named(tmp_path: Path) -> None:
+    request = prepared_request(cabinet(), tmp_path)
+    urdf = tmp_path / URDF_FILE
+    text = urdf.read_text(encoding="utf-8")
+    assert text.count("-0.155") == 1
+    urdf.write_text(text.replace("-0.155", "-0.154"))
+    finding = only(tell(run, request), "KV402")
+    assert finding.link == "drawer"
+    assert finding.value == pytest.approx(0.001)
+
+
+def test_refused_model_blocks_the_rest(tmp_path: Path) -> None:
+    request = prepared_request(cabinet(), tmp_path)
+    urdf = tmp_path / URDF_FILE
+    urdf.write_text(urdf.read_text(encoding="utf-8").replace('mass value="2.0"', 'mass value="0"'))
+    result = tell(run, request)
+    assert only(result, "KV401").severity is Severity.ERROR
+    assert {r.status for check, r in result.results.items() if check != "KV401"} == {Status.BLOCKED}
+    assert set(result.results) == IDS
+
+
+def test_inertia_at_the_edge_of_what_can_be_is_balanced(tmp_path: Path) -> None:
+    result = told(cabinet().with_part("door", inertia=(0.05, 0.05, 0.10000001)), tmp_path)
+    finding = only(result, "KV401")
+    assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.PHYSICS)
+    assert result.results["KV405"].status is Status.PASS
+
+
+def test_link_called_world_is_a_link(tmp_path: Path) -> None:
+    body, *others = cabinet().parts
+    renamed = Model(parts=(Part(name="world", boxes=()), replace(body, parent="world", at=(0.0, 0.0, 1.0)), *others))
+    result = told(renamed, tmp_path)
+    assert {r.status for r in result.results.values()} == {Status.PASS}
+
+
+def test_follower_goes_along(tmp_path: Path) -> None:
+    finger = Part(
+        name="left",
+        parent="palm",
+        kind="prismatic",
+        boxes=(Box(size=(0.02, 0.02, 0.1)),),
+        at=(0.02, 0.0, 0.1),
+        limits=(0.0, 0.04),
+        mass=0.1,
+        inertia=(1e-4, 1e-4, 1e-4),
+    )
+    mimic = '<mimic joint="left_joint" multiplier="1" offset="0"/>'
+    other = replace(finger, name="right", at=(-0.02, 0.0, 0.1), axis=(-1.0, 0.0, 0.0), extra=mimic)
+    palm = Part(name="palm", boxes=(Box(size=(0.2, 0.05, 0.05)),))
+    model = Model(parts=(palm, finger, other))
+    result = told(model, tmp_path)
+    assert result.results["KV405"].measured == {"drives": 2.0, "arrived": 2.0}
+    assert result.results["KV402"].status is Status.PASS
+
+
+def test_follower_with_less_room_than_its_leader_stops_it_without_contact(tmp_path: Path) -> None:
+    mimic = '<mimic joint="rod_joint" multiplier="1" offset="0"/>'
+    follower = replace(pendulum().parts[1], name="short", at=(0.06, 0.3, 0.1), limits=(-1.0, 0.3), extra=mimic)
+    result = told(Model(parts=(*pendulum().parts, follower)), tmp_path)
+    finding = only(result, "KV405")
+    assert (finding.joint, finding.pair, finding.blame) == ("rod_joint", None, Blame.PHYSICS)
+
+
+def test_soft_stop_is_told(tmp_path: Path) -> None:
+    result = told(cabinet(), tmp_path, push=20.0, escape=0.002, servo_margin=300.0)
+    assert {f.joint for f in result.results["KV409"].findings} >= {"drawer_joint"}
+
+
+def test_coarse_steps_are_told(tmp_path: Path) -> None:
+    result = told(pendulum(kind="continuous"), tmp_path, time_step=0.05, step_difference=0.01)
+    assert [(f.severity, f.joint) for f in result.results["KV412"].findings] == [(Severity.NOTE, "rod_joint")]
+
+
+def test_growth_of_energy_is_a_finding() -> None:
+    settings = load_settings().engines
+    steps = np.linspace(0.0, 1.0, 50)
+    check = OpenCheck(id="KV408", engine="mujoco")
+    find_growth(check, np.stack([10.0 - 5.0 * steps, 5.0 * steps], axis=1), 0.01, settings)
+    assert check.findings == []
+    find_growth(check, np.stack([10.0 - 5.0 * steps, 6.0 * steps], axis=1), 0.01, settings)
+    assert [f.value for f in check.findings] == [pytest.approx(1.0)]
+
+
+def test_blow_up_is_an_error(tmp_path: Path) -> None:
+    request = prepared_request(pendulum(kind="continuous", effort=1e15), tmp_path, engine_settings(servo_frequency=1e6))
+    result = tell(run, request)
+    assert Severity.ERROR in {f.severity for f in result.results["KV407"].findings}
+    assert result.results["KV410"].findings
+
+
+def test_flying_link_is_a_warning() -> None:
+    check = OpenCheck(id="KV407", engine="mujoco")
+    slow = RunEnd(when="it was released", speed=5.0, warnings=())
+    fast = RunEnd(when="arm was driven", speed=50.0, warnings=(), joint="arm")
+    told_so = RunEnd(when="wheel was driven", speed=50.0, warnings=(), joint="wheel", told=40.0)
+    find_unstable(check, [slow, fast, told_so], size=1.0, explosion=3.0)
+    assert [(f.severity, f.joint) for f in check.findings] == [(Severity.WARNING, "arm")]
+
+
+def test_drop_that_does_not_end(tmp_path: Path) -> None:
+    finding = told(cabinet(), tmp_path, drop_seconds=0.11).results["KV411"].findings[0]
+    assert (finding.severity, finding.unit) == (Severity.NOTE, "m/s")
+    check = OpenCheck(id="KV411", engine="mujoco")
+    find_drop(check, depth=0.02, speed=0.0, settings=load_settings().engines)
+    assert [f.severity for f in check.findings] == [Severity.WARNING]
+
+
+def test_model_without_joints_is_skipped_with_a_reason(tmp_path: Path) -> None:
+    result = told(Model(parts=cabinet().parts[:1]), tmp_path)
+    skipped = {check for check, r in result.results.items() if r.status is Status.SKIPPED}
+    assert skipped == {"KV404", "KV405", "KV406", "KV408", "KV409", "KV412"}
+    assert {r.reason for r in result.results.values() if r.status is Status.SKIPPED} == {"no joint moves"}
+
+
+def test_late_stage_says_what_it_left_out(tmp_path: Path) -> None:
+    request = prepared_request(cabinet(), tmp_path, seconds=-1.0)
+    result = tell(run, request)
+    assert set(result.results) == IDS
+    assert result.results["KV405"].status is Status.SKIPPED
+
+
+def test_sweep_moves_one_joint_at_a_time(tmp_path: Path) -> None:
+    mechanism = Mechanism(description=read_model(cabinet().write(tmp_path)).kinematics)
+    rows = mechanism.sweep(5)
+    assert rows.shape == (11, 2)
+    np.testing.assert_array_equal(rows[sweep_rows(1, 5), 0], 0.0)
+    np.testing.assert_allclose(rows[sweep_rows(1, 5), 1], np.linspace(0.0, 1.5, 5))
+    assert mechanism.moved.tolist() == [[False, True, False], [False, False, True]]
+
+
+@pytest.mark.skipif(not PANDA.is_file(), reason="the benchmark objects are not there")
+def test_panda_has_no_error_and_is_quick(tmp_path: Path) -> None:
+    settings = load_settings()
+    prepare(read_model(PANDA), tmp_path, settings.prepare)
+    request = StageRequest(
+        urdf=PANDA,
+        package_dirs=(),
+        work=tmp_path,
+        settings=settings,
+        selected=frozenset(IDS),
+        deadline=time.time() + 100.0,
+    )
+    start = time.perf_counter()
+    result = tell(run, request)
+    assert time.perf_counter() - start < 10.0
+    assert not any(f.severity is Severity.ERROR for r in result.results.values() for f in r.findings)
+    assert {result.results[check].status for check in ("KV401", "KV402", "KV407", "KV408", "KV409")} == {Status.PASS}
+    assert load_prepared(tmp_path).links
