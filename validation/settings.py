@@ -197,7 +197,9 @@ class EvidenceSettings(StageConfig):
     linkage_distance: float
     """The same in linkages, whose bearings are often left out of the meshes."""
     better: float
-    """Lead in the score from which another joint of the same type is worth a warning, outside linkages."""
+    """Lead in the score from which another hinge is worth a warning, outside linkages."""
+    better_slide: float
+    """The same for another direction of sliding."""
     linkage_better: float
     """The same in linkages, together with `bearing_lead` or with `blocked`."""
     bearing_score: float

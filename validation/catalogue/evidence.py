@@ -46,9 +46,10 @@ CHECKS: tuple[Check, ...] = (
         severity=Severity.WARNING,
         blame=Blame.KINEMATICS,
         verifies="The declared joint is scored beside all candidates of its type by the cues of the inference (room, "
-        "contact near the axis, bearings, handles, margins). A lead of evidence.better is a warning; in linkages, "
-        "whose bearings are often not modelled, a lead of evidence.linkage_better together with a bearing on both "
-        "bodies about another line (evidence.bearing_lead) or a range of which the parent blocks evidence.blocked.",
+        "contact near the axis, bearings, handles, margins). A lead of evidence.better (evidence.better_slide for "
+        "slides) is a warning, unless both bodies are round about the declared line itself. In linkages, whose "
+        "bearings are often not modelled, it takes a lead of evidence.linkage_better with a bearing on both bodies "
+        "about another line (evidence.bearing_lead) or a range of which the parent blocks evidence.blocked.",
         matters="A door on the wrong edge, or a knob about the wrong line, moves plausibly in an engine and wrongly.",
         remedy="Compare with the candidate that the message names, and correct axis and origin.",
     ),
@@ -59,8 +60,8 @@ CHECKS: tuple[Check, ...] = (
         blame=Blame.KINEMATICS,
         verifies="Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity "
         "slide, round parts with a bearing turn, small caps are pressed. Log odds above evidence.type_odds are a "
-        "warning; a slide of a linkage must also have a bearing, a better direction (evidence.better) or a parent in "
-        "the way (evidence.blocked), and a continuous joint is taken as meant.",
+        "warning; a slide of a linkage must also have a bearing, a better direction (evidence.better_slide) or a "
+        "parent in the way (evidence.blocked), and a continuous joint is taken as meant.",
         matters="A drawer that turns and a door that slides are useless for training, and nothing else reports them.",
         remedy="Write the other type with limits in its unit, or accept the finding with a reason.",
     ),

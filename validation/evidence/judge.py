@@ -190,7 +190,7 @@ def _place(case: _Case) -> Doubt | None:
 
 def _fit(case: _Case) -> Doubt | None:
     line, settings = case.measures.line, case.settings
-    limit = settings.linkage_better if case.linkage else settings.better
+    limit = _better(case)
     if line.deficit <= limit or _supported(case):
         return None
     if case.linkage and not (_contradicted(case) or _blocked(case) > settings.blocked):
@@ -205,6 +205,13 @@ def _fit(case: _Case) -> Doubt | None:
         limit=limit,
         unit=None,
     )
+
+
+def _better(case: _Case) -> float:
+    settings = case.settings
+    if case.linkage:
+        return settings.linkage_better
+    return settings.better_slide if case.measures.slides else settings.better
 
 
 def _supported(case: _Case) -> bool:
@@ -257,7 +264,7 @@ def _type_open(case: _Case) -> bool:
         return False
     if not case.linkage or not case.measures.slides:
         return True
-    better = case.measures.line.deficit > case.settings.better
+    better = case.measures.line.deficit > case.settings.better_slide
     return better or case.measures.weighed.scene.gated or _blocked(case) > case.settings.blocked
 
 
