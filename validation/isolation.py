@@ -95,7 +95,8 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
                 waiting.remove(stage)
                 broken = next((name for name in stage.after if ended[name]), None)
                 if broken is not None:
-                    end = StageEnd(stage=stage, told=(), failure=f"the stage {broken} {ended[broken]}", seconds=0.0)
+                    why = f"did not run, because the stage {broken} {ended[broken]}"
+                    end = StageEnd(stage=stage, told=(), failure=why, seconds=0.0)
                     ended[stage.name] = "did not run"
                     yield end
                 else:

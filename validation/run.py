@@ -155,7 +155,7 @@ class _Run:
             return
         self._failures[end.stage.name] = end.failure
         left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
-        if left and not end.failure.startswith("the stage"):
+        if left and not end.failure.startswith("did not run"):
             self._results[left[0]] = _fallen(left[0], end)
         status = Status.SKIPPED if "budget" in end.failure else Status.BLOCKED
         self._explain(left, status, f"the stage {end.stage.name} {end.failure}")
