@@ -60,9 +60,7 @@ def _load(urdf: Path) -> pin.Model:
 
 def _loaded(model: pin.Model) -> LoadedModel:
     joints = {}
-    for name, joint in zip(model.names, model.joints, strict=True):
-        if joint.nv != 1:
-            continue
+    for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first stands for the world
         kind = joint.shortname()
         bounded = joint.nq == 1
         joints[str(name)] = LoadedJoint(

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 _LOOKS = 16
 """Looks at the contacts on the way to an end."""
+_DECIMALS = 6
+"""Of joint values [rad or m] at which contacts are measured."""
 _POSITION_GAIN = 0.2
 """Share of the error that a motor takes back per step: fast, and without overshoot."""
 _UNLIMITED = 1e9
@@ -130,13 +132,14 @@ def drive_all(bench: Bench, acting: PybulletModel, seen: Measured, remaining: Ca
         records.append(_drive(bench, acting, drive))
     sound = [record for record in records if record.looks is not None]
     looks = [record.looks for record in sound if record.looks is not None]
-    size = (0, len(bench.mechanism.joints))
-    looked = measure(bench.measuring, np.concatenate(looks) if looks else np.zeros(size), dynamic=0, poses=False)
+    rows = np.concatenate(looks) if looks else np.zeros((0, len(bench.mechanism.joints)))
+    # PyBullet finds boxes metres deep in each other where their edges are parallel but for the noise of a motor.
+    looked = measure(bench.measuring, np.round(rows, _DECIMALS), dynamic=0, poses=False)
     sweep = _both(bench, seen.contacts, looked.contacts, len(sound))
-    rows = bench.sweep.depth.shape[1]
+    start = bench.sweep.depth.shape[1]
     return Session(
         driven=tuple(
-            _driven(bench, record, sweep, sweep.excess[:, rows + k * _LOOKS : rows + (k + 1) * _LOOKS])
+            _driven(bench, record, sweep, sweep.excess[:, start + k * _LOOKS : start + (k + 1) * _LOOKS])
             for k, record in enumerate(sound)
         ),
         sweep=sweep,

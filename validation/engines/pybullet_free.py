@@ -77,10 +77,9 @@ def _steps(bench: Bench, seconds: float) -> int:
 
 def _run(bench: Bench, model: PybulletModel, *, steps: int) -> Free:
     leaders = [bench.mechanism.joints.index(travel.joint) for travel in bench.mechanism.travels]
-    masses = _masses(bench, model)
     looks = set(np.linspace(0, steps - 1, _LOOKS).astype(int).tolist())
     values: list[list[float]] = []
-    energies = [_energy(model, masses, *model.state()[:2])]
+    energies = [_energy(bench, model, *model.state()[:2])]
     fastest = 0.0
     for step in range(steps):
         bullet.stepSimulation(physicsClientId=model.client)
@@ -89,7 +88,7 @@ def _run(bench: Bench, model: PybulletModel, *, steps: int) -> Free:
             break
         values.append([q[column] for column in leaders])
         if step in looks:
-            energies.append(_energy(model, masses, q, v))
+            energies.append(_energy(bench, model, q, v))
             fastest = max(fastest, fastest_link(model))
     return Free(
         q=np.array(values).reshape(-1, len(leaders)),
@@ -99,18 +98,16 @@ def _run(bench: Bench, model: PybulletModel, *, steps: int) -> Free:
     )
 
 
-def _masses(bench: Bench, model: PybulletModel) -> dict[int, float]:
-    """Mass of every link but the root, by PyBullet's index [kg]."""
-    links = zip(model.mechanism.links, model.link.tolist(), strict=True)
-    return {index: bench.prepared.link_by_name[name].mass for name, index in links if index >= 0}
-
-
-def _energy(model: PybulletModel, masses: dict[int, float], q: list[float], v: list[float]) -> tuple[float, float]:
-    """Potential and kinetic energy [J]."""
-    states = model.link_states()
-    potential = sum(mass * GRAVITY * states[index][0][2] for index, mass in masses.items())
-    speeds = np.array(v)
-    return potential, float(0.5 * speeds @ model.mass_matrix(np.array(q)) @ speeds)
+def _energy(bench: Bench, model: PybulletModel, q: list[float], v: list[float]) -> tuple[float, float]:
+    """Potential energy of all links but the root, and kinetic energy [J]."""
+    states, speeds = model.link_states(), np.array(v)
+    links = [
+        (name, index) for name, index in zip(model.mechanism.links, model.link.tolist(), strict=True) if index >= 0
+    ]
+    weights = [GRAVITY * bench.prepared.link_by_name[name].mass for name, _ in links]
+    heights = [states[index][0][2] for _, index in links]
+    inertia = bench.measuring.mass_matrix(np.array(q))
+    return float(np.dot(weights, heights)), float(0.5 * speeds @ inertia @ speeds)
 
 
 def drop(bench: Bench, model: PybulletModel) -> Dropped:

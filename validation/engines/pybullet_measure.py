@@ -42,8 +42,8 @@ def measure(loaded: PybulletModel, values: FloatArray, *, dynamic: int, poses: b
     for row, q in enumerate(values):
         loaded.place(q)
         found += loaded.contacts(row)
-        if row < dynamic and len(q):
-            matrices.append(loaded.mass_matrix(q))
+        if row < dynamic:
+            matrices.append(loaded.mass_matrix(q) if len(q) else np.zeros((0, 0)))
         if poses:
             transforms[row] = link_transforms(loaded)
             gravity[row] = loaded.gravity(q) if len(q) else 0.0
@@ -51,7 +51,7 @@ def measure(loaded: PybulletModel, values: FloatArray, *, dynamic: int, poses: b
         T_world_link=transforms,
         contacts=loaded.corrected(found),
         gravity=gravity,
-        inertia=np.array(matrices).reshape(-1, values.shape[1], values.shape[1]),
+        inertia=np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1]),
     )
 
 

@@ -35,6 +35,10 @@ _FLAGS = (
 )
 _HULL_MARGIN = 1e-3
 """Bullet inflates convex hulls of meshes by it [m]; primitives keep their size."""
+_FORGET = 1e-6
+"""Sliding [m] from which a contact is a new one."""
+_LARGE_INERTIA = 0.1
+"""Principal moments [kg m^2] below it are never refused."""
 _CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
 _BASE = -1
 
@@ -56,6 +60,8 @@ class PybulletModel:
     """PyBullet's index of each of `Mechanism.joints`, -2 for lost ones, shape (J,)."""
     margin: FloatArray
     """By which each link's shapes are inflated [m], shape (L,)."""
+    mass_scale: float
+    """Of all masses in this world over those of the file, see `load`."""
 
     @property
     def complete(self) -> bool:
@@ -144,7 +150,7 @@ class PybulletModel:
         q[self.order] = values
         zero = [0.0] * len(values)
         torques = bullet.calculateInverseDynamics(self.body, q.tolist(), zero, zero, physicsClientId=self.client)
-        held: FloatArray = np.array(torques)[self.order]
+        held: FloatArray = np.array(torques)[self.order] / self.mass_scale
         return held
 
     def mass_matrix(self, values: FloatArray) -> FloatArray:
@@ -153,7 +159,7 @@ class PybulletModel:
         q[self.order] = values
         matrix = bullet.calculateMassMatrix(self.body, q.tolist(), physicsClientId=self.client)
         ordered: FloatArray = np.array(matrix).reshape(len(values), len(values))[np.ix_(self.order, self.order)]
-        return ordered
+        return ordered / self.mass_scale
 
     def release(self, *, ideal: bool = False) -> None:
         """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
@@ -186,7 +192,9 @@ class PybulletModel:
         bullet.disconnect(physicsClientId=self.client)
 
 
-def load(urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True) -> PybulletModel:
+def load(
+    urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True, looking: bool = False
+) -> PybulletModel:
     """Load a prepared file into a new world; links that fixed joints join do not collide with each other.
 
     Args:
@@ -195,12 +203,17 @@ def load(urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, f
         prepared: Its record.
         step: Time step [s].
         fixed: False: the base is free.
+        looking: The model is set to configurations and never simulated. Contacts are then forgotten as soon as they
+            slide, else those of one configuration are reported in the next; and large inertias are scaled down,
+            because the inverse dynamics refuses tensors that differ from symmetric ones by 2e-16 kg m^2.
 
     Raises:
         Refused: PyBullet cannot.
     """
     client = bullet.connect(bullet.DIRECT)
     bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client)
+    if looking:
+        bullet.setPhysicsEngineParameter(contactBreakingThreshold=_FORGET, physicsClientId=client)
     bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
     try:
         body = bullet.loadURDF(str(urdf), useFixedBase=fixed, flags=_FLAGS, physicsClientId=client)
@@ -212,6 +225,7 @@ def load(urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, f
     links.setdefault(mechanism.description.root, _BASE)
     joints = {_text(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
     methods = [prepared.link_by_name[name].method for name in mechanism.links]
+    scale = _scaled_down(client, body, len(infos)) if looking else 1.0
     loaded = PybulletModel(
         client=client,
         body=body,
@@ -219,10 +233,25 @@ def load(urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, f
         link=np.array([links.get(name, -2) for name in mechanism.links], dtype=np.int64),
         joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
         margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
+        mass_scale=scale,
     )
     if loaded.complete:
         loaded.act(welded_pairs(mechanism), on=False)
     return loaded
+
+
+def _scaled_down(client: int, body: int, count: int) -> float:
+    """Scale masses and inertias by a power of two, which changes no digit, so that all moments are small."""
+    infos = {index: bullet.getDynamicsInfo(body, index, physicsClientId=client) for index in range(-1, count)}
+    largest = max(max(info[2]) for info in infos.values())
+    scale = 2.0 ** min(0.0, np.floor(np.log2(_LARGE_INERTIA / max(largest, _LARGE_INERTIA))))
+    if scale < 1.0:
+        for index, info in infos.items():
+            moments = [moment * scale for moment in info[2]]
+            bullet.changeDynamics(
+                body, index, mass=info[0] * scale, localInertiaDiagonal=moments, physicsClientId=client
+            )
+    return float(scale)
 
 
 def welded_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:

@@ -45,6 +45,7 @@ from kinematify.validation.read import read_without_geometry
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
+    from kinematify.assembly.part import FloatArray
     from kinematify.validation.declared import DeclaredModel
     from kinematify.validation.engines.outcome import Driven
     from kinematify.validation.engines.pybullet_drive import Bench, Session
@@ -107,10 +108,10 @@ class _Work:
     ends: list[RunEnd] = field(default_factory=list)
     """Of all runs so far."""
 
-    def load(self, *, fixed: bool = True) -> PybulletModel:
-        """Load into a new world."""
+    def load(self, *, fixed: bool = True, looking: bool = False) -> PybulletModel:
+        """Load into a new world, see `pybullet_model.load`."""
         step = self.request.settings.engines.pybullet_time_step
-        return load(self.prepared.urdf, self.mechanism, self.prepared, step=step, fixed=fixed)
+        return load(self.prepared.urdf, self.mechanism, self.prepared, step=step, fixed=fixed, looking=looking)
 
     def case(self, sweep: Touching) -> Case:
         """Return what findings name."""
@@ -123,7 +124,7 @@ def _load(recorder: Recorder, work: _Work) -> None:
     """Tell KV501, and keep the model in which everything collides."""
     with recorder.check("KV501", ENGINE) as check:
         try:
-            fixed, free = work.load(), work.load(fixed=False)
+            fixed, free = work.load(looking=True), work.load(fixed=False)
         except Refused as refusal:
             said = printed(work.request.work / f"{ENGINE}.log") or [str(refusal)]
             check.find(
@@ -234,7 +235,9 @@ def _tell_free(recorder: Recorder, work: _Work, bench: Bench) -> None:
                 falling = None
             else:
                 find_sag(check, case, held.q, holding=bench.servos.holding[0], efforts=efforts)
-                find_passive_escape(check, case, falling.q, window=round(case.settings.push_seconds / bench.step))
+                find_passive_escape(
+                    check, case, _less_one_step(case, falling.q), window=round(case.settings.push_seconds / bench.step)
+                )
     with recorder.check("KV508", ENGINE) as check:
         if _ready(check, work, falling) and falling is not None:
             floor = _FLOOR_OF_ENERGY * work.prepared.total_mass * GRAVITY * bench.measuring.size
@@ -245,6 +248,19 @@ def _tell_free(recorder: Recorder, work: _Work, bench: Bench) -> None:
             count = min(len(fine), len(falling.q))
             find_difference_of_steps(check, case, falling.q[:count], fine[:count])
     model.disconnect()
+
+
+def _less_one_step(case: Case, released: FloatArray) -> FloatArray:
+    """Take back what each leader moves in one step from what it is beyond its limits.
+
+    PyBullet stops a joint one step after it has passed its limit, and leaves it where it stands then.
+    """
+    lower = np.array([travel.lower for travel in case.mechanism.travels])
+    upper = np.array([travel.upper for travel in case.mechanism.travels])
+    late = np.abs(np.diff(released, axis=0)).max(axis=0, initial=0.0)
+    beyond = released - np.clip(released, lower, upper)
+    taken_back: FloatArray = released - np.clip(beyond, -late, late)
+    return taken_back
 
 
 def _kept(work: _Work, when: str, free: Free) -> Free:
