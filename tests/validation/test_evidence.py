@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.sources.procedural.solids import box
+from kinematify.sources.procedural.solids import box, union
 from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Severity, Status
 from kinematify.validation.report import JointSummary
@@ -25,7 +25,7 @@ from tests.household import (
     nested_drawer,
     sliding_lid,
 )
-from tests.known import KnownObject, known_object, posed, rotation, sliding, with_yaw
+from tests.known import KnownObject, known_object, posed, rotation, sliding, turning, with_yaw
 from tests.robots import aligned_arm
 from tests.validation.planted import (
     findings,
@@ -166,6 +166,23 @@ def test_a_button_that_comes_out_is_told(tmp_path: Path) -> None:
 def test_a_drawer_that_leaves_its_carcass_is_told(tmp_path: Path) -> None:
     good = drawer()
     assert found(with_joint(good, "drawer", upper=2.0 * joint_of(good, "drawer").upper), tmp_path) == {"KV347"}
+
+
+@pytest.mark.parametrize(("build", "child"), [(edge_door, "door"), (doorbell, "cap")])
+def test_a_range_that_is_unusual_for_the_part_is_told(build: Build, child: str, tmp_path: Path) -> None:
+    good = build()
+    assert found(with_joint(good, child, upper=2.0 * joint_of(good, child).upper), tmp_path) == {"KV348"}
+
+
+def test_a_closed_door_that_turns_into_an_open_body_is_told(tmp_path: Path) -> None:
+    """A body of posts and boards that a small door passes without touching anything."""
+    posts = [box((x, y, 0), (x + 0.03, y + 0.03, 1)) for x in (0.0, 0.57) for y in (0.0, 0.5)]
+    body = union(*posts, box((0, 0, -0.03), (0.6, 0.53, 0)), box((0, 0, 1), (0.6, 0.53, 1.03)))
+    door = box((0.032, 0.002, 0.02), (0.568, 0.02, 0.98))
+    joint = turning("body", "door", (0, 0, -1), (0.032, 0.002, 0.5), (0.0, 1.5))
+    good = known_object("frame", {"body": body, "door": door}, joint)
+    assert found(good, tmp_path / "good") == set()
+    assert found(flipped(good, "door"), tmp_path / "bad") == {"KV346"}
 
 
 def test_a_wrong_parent_is_told_and_nothing_else(tmp_path: Path) -> None:

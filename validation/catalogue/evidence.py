@@ -71,8 +71,9 @@ CHECKS: tuple[Check, ...] = (
         severity=Severity.WARNING,
         blame=Blame.KINEMATICS,
         verifies="With a one-sided range (evidence.one_sided), the permitted side does not lead into the parent within "
-        "evidence.shut of the range while the other side is free for evidence.open of it; small parts that slide do "
-        "not move outwards (evidence.button_outward).",
+        "evidence.shut of the range while the other side is free for evidence.open of it; a closed panel does not turn "
+        "into its body (evidence.panel_inward), and small parts that slide do not move outwards "
+        "(evidence.button_outward).",
         matters="A drawer that opens inwards is stuck in every engine, or flies out of the back of the cabinet.",
         remedy="Reverse the axis, or swap the limits together with their signs.",
     ),
@@ -86,5 +87,16 @@ CHECKS: tuple[Check, ...] = (
         "guides.",
         matters="A drawer that travels twice its length hangs in the air.",
         remedy="Reduce the limits, for a drawer to about four fifths of its length.",
+    ),
+    Check(
+        id="KV348",
+        title="range is usual for such a part",
+        severity=Severity.WARNING,
+        blame=Blame.KINEMATICS,
+        verifies="An upright panel opens by no more than evidence.widest_door, a level one by no more than "
+        "evidence.widest_lid, and a button travels by no more than evidence.button_travel of its own length. Meshes do "
+        "not hold designed stops, so this is experience, and only outside linkages.",
+        matters="A robot that learns to open a door to twice its angle fails on the real one.",
+        remedy="Correct the limit, or accept the finding with a reason.",
     ),
 )

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from kinematify.validation.evidence.measure import JointMeasures
     from kinematify.validation.settings import EvidenceSettings
 
-PARENT, DIRECTION, PLACE, FIT, TYPE, OPENING, TRAVEL = "KV341", "KV342", "KV343", "KV344", "KV345", "KV346", "KV347"
+PARENT, DIRECTION, PLACE, FIT = "KV341", "KV342", "KV343", "KV344"
+TYPE, OPENING, TRAVEL, RANGE = "KV345", "KV346", "KV347", "KV348"
 
 _LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture
 _SMALL = 0.5  # `JointScene.smallness` from which a part is a button or knob
@@ -94,7 +95,7 @@ def doubts_about(bodies: Bodies, measures: JointMeasures, settings: EvidenceSett
         return (parent,)
     judges: list[Callable[[_Case], Doubt | None]] = [_direction, _place]
     if measures.alone:
-        judges += [_fit, _type, _opening, _travel]
+        judges += [_fit, _type, _opening, _travel, _range]
     found = [doubt for judge in judges if (doubt := judge(case)) is not None]
     unexplained = any(doubt.check == DIRECTION for doubt in found)
     # One cause, one finding: a direction that nothing shows has no place, and of course another one fits better.
@@ -283,7 +284,7 @@ def _opening(case: _Case) -> Doubt | None:
         # Pressed parts sink into what they stand on: only the way out is wrong.
         return _button_opening(case, outward, remedy)
     if free >= settings.shut * wanted or other <= settings.open * wanted:
-        return None
+        return _panel_opening(case, outward, remedy)
     return Doubt(
         check=OPENING,
         severity=Severity.WARNING,
@@ -293,6 +294,23 @@ def _opening(case: _Case) -> Doubt | None:
         value=free,
         limit=settings.shut * wanted,
         unit=unit,
+    )
+
+
+def _panel_opening(case: _Case, outward: float, remedy: str) -> Doubt | None:
+    """A closed door or lid that nothing stops still does not open into its body."""
+    limit = -case.settings.panel_inward
+    closed = case.measures.weighed.scene.panel and not case.measures.room.ajar
+    if case.measures.slides or case.linkage or not closed or outward >= limit:
+        return None
+    return Doubt(
+        check=OPENING,
+        severity=Severity.WARNING,
+        message=f"{case.child} is a closed panel and the permitted motion turns it into {case.parent}.",
+        remedy=remedy,
+        value=outward,
+        limit=limit,
+        unit=None,
     )
 
 
@@ -326,6 +344,36 @@ def _travel(case: _Case) -> Doubt | None:
         value=room.parted,
         limit=limit,
         unit="m",
+    )
+
+
+def _range(case: _Case) -> Doubt | None:
+    """What is wide for such a part although nothing stops it."""
+    joint, room, scene, settings = case.measures.joint, case.measures.room, case.measures.weighed.scene, case.settings
+    span = max(abs(joint.lower), abs(joint.upper))
+    if case.linkage or not np.isfinite(span):
+        return None
+    if case.measures.slides:
+        pressed = case.small and abs(room.outward) > settings.button_outward
+        return _wide(case, "button", span, settings.button_travel * room.length, "m") if pressed else None
+    if not scene.panel or not (scene.upright or scene.flat):
+        return None
+    name, limit = ("door", settings.widest_door) if scene.upright else ("lid", settings.widest_lid)
+    return _wide(case, name, float(np.degrees(span)), limit, "deg")
+
+
+def _wide(case: _Case, name: str, span: float, limit: float, unit: str) -> Doubt | None:
+    if span <= limit:
+        return None
+    return Doubt(
+        check=RANGE,
+        severity=Severity.WARNING,
+        message=f"{case.child} looks like a {name} and moves by {span:.3g} {unit} to one side; such parts hardly ever "
+        f"move by more than {limit:.3g} {unit}.",
+        remedy="Check the limit, and halve it if the range was doubled; suppress the finding if it is meant.",
+        value=span,
+        limit=limit,
+        unit=unit,
     )
 
 

@@ -84,6 +84,8 @@ class RoomEvidence:
     """How far was swept [rad or m]."""
     length: float
     """Size of the child along the declared line [m]."""
+    ajar: bool
+    """A plate that touches its parent along one edge only, so that it stands open."""
     parted: float
     """How much farther a slide is from its parent at the end of its range than at rest [m]; 0 for a turn."""
 
@@ -254,6 +256,7 @@ def _room_evidence(weighed: WeighedJoints, joint: TrueJoint, config: JointsConfi
         outward=outward,
         reach=float(reach),
         length=length,
+        ajar=bool(weighed.turns.cues["ajar_contact"].max(initial=0.0) > 0.0),
         parted=_parted(weighed, joint) if slides else 0.0,
     )
 
