@@ -152,10 +152,22 @@ class PrepareSettings(StageConfig):
 
     thickness: float
     """Thickness that flat geometry is given, fraction of its diagonal."""
-    directions: int
-    """Vertices of a convex piece at most."""
-    convex_gap: float
-    """A mesh whose hull reaches less far beyond its surface is convex, fraction of the link's diagonal."""
+    least_thickness: float
+    """The same, at least [m]."""
+    corners: int
+    """Vertices of the hull of a convex mesh at most."""
+    link_gap: float
+    """Pieces may reach so far beyond a mesh, fraction of its diagonal."""
+    model_gap: float
+    """Or so far, whichever is more, fraction of the model's diagonal."""
+    most_components: int
+    """Connected pieces of a mesh that are looked at one by one, the largest; the others count as one."""
+    cuts: int
+    """Cuts through concave meshes of a model."""
+    cuts_per_link: int
+    """The same for models with many links."""
+    cached_files: int
+    """Cuts of so many models are kept for the next run; 0 keeps none."""
     frame_mass: float
     """Of links that add nothing to the body that they are fixed to [kg]."""
     dummy_mass: float
@@ -163,7 +175,7 @@ class PrepareSettings(StageConfig):
     ball_radius: float
     """Radius of gyration of what has a mass and no geometry [m]."""
     moment_slack: float
-    """How far the largest principal moment may exceed the sum of the others, fraction of that sum."""
+    """A tensor that had to be changed by more is said to be made up, fraction of its largest entry."""
     effort: float
     """Of joints that state none [N m or N]."""
     velocity: float
@@ -172,6 +184,61 @@ class PrepareSettings(StageConfig):
 
 class GeometrySettings(StageConfig):
     """KV30x to KV33x: collision along the motion."""
+
+    hole: float
+    """Area of the holes of a shell that still has an inside, fraction of its surface."""
+    points: int
+    """Points on a body's surface that are asked how deep they are."""
+    tolerance: float
+    """Depth beyond that at rest that does not count, fraction of the model's size."""
+    part_tolerance: float
+    """The same as a fraction of the smaller part's size; the smaller one of the two counts."""
+    wrong: float
+    """Depth that is an error, fraction of the model's size."""
+    noise: float
+    """Growth of depth that is rounding of meshes, fraction of the model's size."""
+    rest_overlap: float
+    """Overlap at rest of bodies without a joint between them that is worth a warning, fraction of the model's size."""
+    rest_joined: float
+    """The same of neighbours, fraction of the smaller part's size."""
+    hover: float
+    """Gap at rest between a part and what carries it that is worth a warning, fraction of the model's size."""
+    lost: float
+    """Growth of that gap along the range that is worth a warning, fraction of the model's size."""
+    far: float
+    """Growth of that gap that is an error, fraction of the model's size."""
+    step: float
+    """Motion of the fastest corner from sample to sample, fraction of the model's size."""
+    samples_least: int
+    """Samples of a joint to one side, declared range and what lies beyond it each."""
+    samples_most: int
+    """The same at most."""
+    gap_samples: int
+    """Configurations to one side in which the gap is measured."""
+    fine_angle: float
+    """Precision of a first contact [deg]."""
+    fine_length: float
+    """The same of slides [m]; no finer than a ten thousandth of the model's size."""
+    early: float
+    """A side of the range that is free over less than this share of the whole range is blocked early."""
+    late: float
+    """Declared ends this close behind the free travel are not mentioned, fraction of the range."""
+    small_range: float
+    """A declared range below this fraction of the free travel is worth a note."""
+    guide: float
+    """Share of its guide that a slide may run out."""
+    always: float
+    """Share of configurations in which a pair that always collides does so."""
+    random_rows: int
+    """Quasi-random configurations of all joints."""
+    pair_steps: int
+    """Values of each joint of a pair of joints."""
+    pair_rows: int
+    """Configurations of all pairs of joints together."""
+    hull_planes: int
+    """Directions in which a hull is kept where collision shapes are looked at as engines see them."""
+    listed: int
+    """Pairs that one finding names."""
 
 
 class EvidenceSettings(StageConfig):
@@ -216,6 +283,14 @@ class EvidenceSettings(StageConfig):
     """A permitted side that is free over less than this share of its range leads into the parent."""
     open: float
     """The other side is open from this share on."""
+    panel_inward: float
+    """Cosine between the motion of a closed panel and the way into its parent beyond which it opens inwards."""
+    widest_door: float
+    """Opening beyond which that of an upright panel is unusual [deg]."""
+    widest_lid: float
+    """The same for a level panel [deg]."""
+    button_travel: float
+    """Travel of a button over its own length beyond which it is unusual."""
     button_outward: float
     """How far out on its parent, from 0 in the middle to 1 at the side, a small part may be that moves farther out."""
 
