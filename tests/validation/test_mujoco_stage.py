@@ -97,7 +97,7 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
     assert finding.limit == 0.3
 
 
-def test_stop_at_another_part_is_a_warning(tmp_path: Path) -> None:
+def test_stop_at_a_part_that_can_move_itself_is_a_note(tmp_path: Path) -> None:
     post = Part(
         name="post",
         parent="body",
@@ -108,9 +108,18 @@ def test_stop_at_another_part_is_a_warning(tmp_path: Path) -> None:
         limits=(0.0, 0.5),
     )
     result = told(Model(parts=(*cabinet().parts, post)), tmp_path)
-    finding = only(result, "KV405")
-    assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.KINEMATICS)
+    (finding,) = result.results["KV405"].findings
+    assert (finding.severity, finding.blame) == (Severity.NOTE, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("drawer", "post"))
+
+
+def test_stop_at_a_neighbour_that_moves_itself_is_a_warning(tmp_path: Path) -> None:
+    arm = Part(name="arm", parent="body", kind="prismatic", boxes=cabinet().parts[0].boxes, at=(2.0, 0.0, 0.0))
+    parts = tuple(replace(part, parent="arm") if part.parent == "body" else part for part in cabinet().parts)
+    model = Model(parts=(parts[0], arm, *parts[1:])).with_part("drawer", axis=(-1.0, 0.0, 0.0))
+    finding = only(told(model, tmp_path), "KV405")
+    assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.KINEMATICS)
+    assert (finding.joint, finding.pair) == ("drawer_joint", ("arm", "drawer"))
 
 
 def test_overlap_at_rest_of_parts_that_no_joint_connects(tmp_path: Path) -> None:
@@ -303,3 +312,10 @@ def test_panda_has_no_error_and_is_quick(tmp_path: Path) -> None:
     assert not any(f.severity is Severity.ERROR for r in result.results.values() for f in r.findings)
     assert {result.results[check].status for check in ("KV401", "KV402", "KV407", "KV408", "KV409")} == {Status.PASS}
     assert load_prepared(tmp_path).links
+
+
+def test_empty_range_is_no_way_to_drive(tmp_path: Path) -> None:
+    result = told(cabinet().with_part("door", limits=(0.0, 0.0)), tmp_path)
+    assert [(f.severity, f.joint) for f in result.results["KV401"].findings] == [(Severity.WARNING, "door_joint")]
+    assert result.results["KV405"].measured["drives"] == 2
+    assert not {r.status for r in result.results.values()} & {Status.BLOCKED}

@@ -98,9 +98,10 @@ _KINDS = (
         severity=Severity.ERROR,
         blame=Blame.KINEMATICS,
         verifies="One joint after the other is driven from rest to both ends by a position servo, the others held. "
-        "Each must arrive within engines.reach of its range. A joint that its own neighbour stops is an error "
-        "if their collision geometry is what the file declares, else a warning; so is one that other links stop. "
-        "Torques beyond the declared effort are a warning, a tracking error above engines.tracking a note.",
+        "Each must arrive within engines.reach of its range. A joint that its own base stops is an error if their "
+        "collision geometry is what the file declares; where other neighbours or convex stand-ins are in the way it is "
+        "a warning, and a note where parts are in the way that can move themselves: a robot reaches itself within its "
+        "ranges. A tracking error above engines.tracking is a note.",
         matters="A drawer that does not open in the simulator is of no use, whatever its file says.",
         remedy="Correct axis, pivot or limit of the joint, so that the pair that is named stays clear; where convex "
         "stand-ins meet, write convex pieces as collision geometry.",

@@ -85,10 +85,11 @@ class Drive:
 
 
 def drives(mechanism: Mechanism, settings: EngineSettings, step: float) -> tuple[Drive, ...]:
-    """Return a drive to each end of every leading joint, all of the same number of steps."""
+    """Return a drive to each end of every leading joint that has a way, all of the same number of steps."""
     return tuple(
         _drive(leader, travel, end, settings, step)
         for leader, travel in enumerate(mechanism.travels)
+        if travel.range > 0.0
         for end in (travel.lower, travel.upper)
     )
 

@@ -51,8 +51,8 @@ def find_sag(check: OpenCheck, case: Case, held: FloatArray, *, holding: FloatAr
     travels = case.mechanism.travels
     sag = np.abs(held - case.mechanism.rest).max(axis=0)
     ranges = np.array([travel.range for travel in travels])
-    check.measured["sag_of_range"] = float(np.max(sag / np.maximum(ranges, 1e-12), initial=0.0))
-    for leader in np.flatnonzero(sag > case.settings.sag * ranges).tolist():
+    check.measured["sag_of_range"] = float(np.max(sag[ranges > 0.0] / ranges[ranges > 0.0], initial=0.0))
+    for leader in np.flatnonzero((sag > case.settings.sag * ranges) & (ranges > 0.0)).tolist():
         travel, need, effort = travels[leader], abs(float(holding[leader])), float(efforts[leader])
         unit = "N m" if travel.turns else "N"
         weak = need > 0.9 * effort
@@ -88,7 +88,7 @@ def find_passive_escape(check: OpenCheck, case: Case, released: FloatArray, *, w
         outside = np.maximum(travel.lower - released[:, leader], released[:, leader] - travel.upper)
         windows = np.lib.stride_tricks.sliding_window_view(outside, min(window, len(outside)))
         beyond = float(windows.min(axis=1).max())
-        if travel.limited and beyond > case.settings.escape * travel.range:
+        if travel.limited and travel.range > 0.0 and beyond > case.settings.escape * travel.range:
             check.find(
                 f"Released, joint {travel.joint} falls {beyond:.3g} {travel.unit} beyond its limit.",
                 "Give the part a plausible mass and inertia, and limits that fit its motion.",
@@ -134,7 +134,7 @@ def find_difference_of_steps(check: OpenCheck, case: Case, coarse: FloatArray, f
     difference = np.abs(coarse - fine).max(axis=0)
     motion = np.maximum(np.abs(coarse - case.mechanism.rest), np.abs(fine - case.mechanism.rest)).max(axis=0)
     for leader, travel in enumerate(case.mechanism.travels):
-        if motion[leader] < _HARDLY * travel.range:
+        if motion[leader] <= _HARDLY * travel.range:
             continue
         share = float(difference[leader] / motion[leader])
         check.measured["difference"] = max(check.measured.get("difference", 0.0), share)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.validation.finding import Severity
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
@@ -91,6 +93,8 @@ def _compare_joint(check: OpenCheck, engine: str, joint: DescribedJoint, loaded:
         check.find(
             said,
             f"Write the joint {joint.name} with a type, axis and limits that {engine} reads as they are meant.",
+            # Importers take an empty range for none; that the range is empty is told where limits are checked.
+            severity=Severity.WARNING if joint.lower >= joint.upper else None,
             joint=joint.name,
         )
 

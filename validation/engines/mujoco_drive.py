@@ -131,13 +131,15 @@ def drive_all(bench: Bench, seen: Measured, remaining: Callable[[], float]) -> S
     """Drive every joint to both ends."""
     step = float(bench.acting.model.opt.timestep)
     planned = drives(bench.mechanism, bench.settings, step)
-    numbers = len(planned[0].reference) * (2 * len(bench.mechanism.joints) + 3)
+    numbers = max((len(drive.reference) for drive in planned), default=1) * (2 * len(bench.mechanism.joints) + 3)
     batch = max(2 * bench.threads, _NUMBERS // numbers)
     records: list[_Record] = []
     for start in range(0, len(planned), batch):
         if remaining() <= 0.0:
             break
         records += _drive(bench, planned[start : start + batch])
+    if not records:
+        return Session(driven=(), sweep=bench.sweep, fastest=(), warnings=(), left=len(planned))
     fastest = np.concatenate([record.fastest for record in records])
     around = measure(bench.measuring, fastest, dynamic=0, threads=bench.threads).T_world_link[..., :3, 3]
     looked = measure(

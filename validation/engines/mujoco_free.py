@@ -65,7 +65,7 @@ def drop(bench: Bench, source: Source) -> Dropped:
     lowest = lowest_point(bench.measuring.model, _data_at(bench.measuring, bench.values_at_rest))
     servoed = with_servos(source)
     allowed = with_allowances(servoed, bench.measuring, bench.sweep, only=False)
-    loaded = compiled(with_floor(allowed, height=lowest - bench.settings.drop))
+    loaded = compiled(with_floor(allowed, height=lowest - bench.settings.drop, tolerance=bench.sweep.tolerance))
     set_servos(loaded.model, bench.servos.stiffness, bench.servos.damping)
     steps = _steps(bench.settings.drop_seconds, loaded.model)
     control = np.repeat(_held(bench)[None, None], steps, axis=1)

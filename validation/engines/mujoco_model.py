@@ -180,29 +180,24 @@ def with_allowances(source: Source, measured: MujocoModel, touching: Touching, *
     else:
         _exclude(spec, source.names, bodies, acting)
         for geom in spec.geoms:
-            geom.condim, geom.solimp = 1, _yielding(touching.tolerance)
+            # Frictionless; detected when they touch (margin + gap), acting beyond (margin); those of both sides add up.
+            geom.condim, geom.margin, geom.gap = 1, -0.5 * touching.tolerance, 0.5 * touching.tolerance
     for pair in sorted(pair for pair in acting if np.isfinite(deep[pair])):
         for first in geoms.get(pair[0], ()):
             for second in geoms.get(pair[1], ()):
-                spec.add_pair(geomname1=first, geomname2=second, condim=1, solimp=_yielding(deep[pair]))
+                depth = float(deep[pair])
+                spec.add_pair(geomname1=first, geomname2=second, condim=1, margin=-depth, gap=depth)
     return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
 
 
-def with_floor(source: Source, *, height: float) -> Source:
-    """Return a copy whose root is free, above a plane at a height [m]."""
+def with_floor(source: Source, *, height: float, tolerance: float) -> Source:
+    """Return a copy whose root is free, above a plane at a height [m]; the floor tolerates no depth."""
     spec = source.spec.copy()
     spec.body(source.names[source.mechanism.links.index(source.mechanism.description.root)]).add_freejoint()
     floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
     floor.size, floor.pos, floor.priority = [0.0, 0.0, 1.0], [0.0, 0.0, height], 1
+    floor.margin, floor.gap = 0.5 * tolerance, -0.5 * tolerance
     return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
-
-
-def _yielding(depth: float) -> list[float]:
-    """Return the impedance (`solimp`) of a frictionless contact that gives way without force down to a depth [m].
-
-    A negative margin would say the same, but MuJoCo 4.0.0 then reports wrong depths between meshes.
-    """
-    return [1e-4, 0.95, max(depth, 1e-9), 0.99, 100.0]
 
 
 def _exclude(spec: mujoco.MjSpec, names: tuple[str, ...], bodies: IntArray, pairs: set[tuple[int, int]]) -> None:

@@ -154,7 +154,6 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     first, second = pair = case.sweep.pair(index, case.mechanism.links)
     excess, values = case.excess_towards(driven)
     deepest = int(np.argmax(excess[index]))
-    neighbours = tuple(sorted(case.sweep.bodies[index].tolist())) in case.mechanism.neighbours
     real = excess[index, deepest] > stand_in_error(case.prepared, pair)
     why = (
         f"there {first} and {second} collide; moved on without physics, they get {excess[index, deepest] * 1e3:.3g} mm "
@@ -168,11 +167,23 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     check.find(
         f"{stops}: {why}.",
         remedy,
-        severity=Severity.ERROR if real and neighbours and travel.limited else Severity.WARNING,
+        severity=_severity(case, index, real=real, limited=travel.limited),
         blame=Blame.KINEMATICS if real else Blame.PHYSICS,
         pair=pair,
         **facts,  # type: ignore[arg-type]
     )
+
+
+def _severity(case: Case, index: int, *, real: bool, limited: bool) -> Severity:
+    """How bad it is that a pair stops a joint.
+
+    Neighbours above the root pass each other in engines unless one asks for their contacts, and parts that both move
+    can get out of each other's way: a robot reaches itself within its ranges.
+    """
+    pair = tuple(sorted(case.sweep.bodies[index].tolist()))
+    if real and limited and pair in case.mechanism.neighbours and pair[0] == 0:
+        return Severity.ERROR
+    return Severity.WARNING if pair in case.mechanism.neighbours or (real and pair[0] == 0) else Severity.NOTE
 
 
 def blocking_pair(case: Case, driven: Driven) -> int | None:

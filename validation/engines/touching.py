@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from kinematify.validation.engines.mechanism import Mechanism
     from kinematify.validation.prepare.prepared import Prepared
 
-_REST_SHARE = 1.05
-"""A contact that is as deep as it may be at rest would push; a twentieth more keeps it without force."""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Contacts:
@@ -72,7 +69,7 @@ class Touching:
     @cached_property
     def allowed(self) -> FloatArray:
         """Depth that each pair may reach: what it has at rest, with tolerance and slack [m], shape (p,)."""
-        return _REST_SHARE * self.at_rest + self.tolerance + self.slack
+        return self.at_rest + self.tolerance + self.slack
 
     @cached_property
     def excess(self) -> FloatArray:
