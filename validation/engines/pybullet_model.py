@@ -35,8 +35,6 @@ _FLAGS = (
 )
 _HULL_MARGIN = 1e-3
 """Bullet inflates convex hulls of meshes by it [m]; primitives keep their size."""
-_FORGET = 1e-6
-"""Sliding [m] from which a contact is a new one."""
 _LARGE_INERTIA = 0.1
 """Principal moments [kg m^2] below it are never refused."""
 _CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
@@ -123,7 +121,13 @@ class PybulletModel:
         return list(states or ())
 
     def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
-        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set."""
+        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set.
+
+        PyBullet keeps contacts from step to step as points that move with the bodies. Where a body was set to another
+        place they are wrong, so all pairs are made to be found anew.
+        """
+        for index in self.link.tolist():
+            bullet.setCollisionFilterGroupMask(self.body, index, 1, 1, physicsClientId=self.client)
         bullet.performCollisionDetection(physicsClientId=self.client)
         points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
         link_of = self.link_of
@@ -203,17 +207,14 @@ def load(
         prepared: Its record.
         step: Time step [s].
         fixed: False: the base is free.
-        looking: The model is set to configurations and never simulated. Contacts are then forgotten as soon as they
-            slide, else those of one configuration are reported in the next; and large inertias are scaled down,
-            because the inverse dynamics refuses tensors that differ from symmetric ones by 2e-16 kg m^2.
+        looking: The model is set to configurations and never simulated. Large inertias are then scaled down, because
+            the inverse dynamics refuses tensors that differ from symmetric ones by 2e-16 kg m^2.
 
     Raises:
         Refused: PyBullet cannot.
     """
     client = bullet.connect(bullet.DIRECT)
     bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client)
-    if looking:
-        bullet.setPhysicsEngineParameter(contactBreakingThreshold=_FORGET, physicsClientId=client)
     bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
     try:
         body = bullet.loadURDF(str(urdf), useFixedBase=fixed, flags=_FLAGS, physicsClientId=client)
