@@ -163,7 +163,8 @@ def write_poses(work: Path, engine: str, poses: EnginePoses) -> None:
 def read_poses(work: Path, engine: str) -> EnginePoses | None:
     """Return what an engine left, or None where it left nothing or was cut off while writing."""
     try:
-        with np.load(work / f"poses-{engine}.npz", allow_pickle=False) as file:
+        # NumPy leaves a file open that it cannot read, unless it was opened here.
+        with (work / f"poses-{engine}.npz").open("rb") as opened, np.load(opened, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
     except (OSError, ValueError, EOFError, zipfile.BadZipFile):
         return None
