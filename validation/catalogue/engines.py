@@ -80,6 +80,7 @@ _KINDS = (
         matters="An overlap at the start is pushed apart in the first steps: the model jumps or flies off.",
         remedy="Move the parts apart or shrink their collision geometry by the depth that is named; where a convex "
         "stand-in overlaps although the mesh does not, write convex pieces as collision geometry.",
+        pybullet="The 1 mm by which PyBullet inflates meshes does not count.",
     ),
     _Kind(
         number="04",
@@ -91,6 +92,7 @@ _KINDS = (
         "engines.escape of its range.",
         matters="An arm that cannot carry itself collapses at the start of each episode.",
         remedy="Raise the effort above the torque that is named, or reduce the masses.",
+        pybullet="PyBullet stops a joint one step after its limit and leaves it there; so much is not counted.",
     ),
     _Kind(
         number="05",
@@ -105,14 +107,17 @@ _KINDS = (
         matters="A drawer that does not open in the simulator is of no use, whatever its file says.",
         remedy="Correct axis, pivot or limit of the joint, so that the pair that is named stays clear; where convex "
         "stand-ins meet, write convex pieces as collision geometry.",
+        pybullet="Pairs that touch at rest once meshes are inflated by 1 mm do not act on each other, "
+        "since PyBullet would push them apart; the joint counts as stopped where they get deeper than allowed.",
     ),
     _Kind(
         number="06",
         title="little penetration while driven",
         severity=Severity.WARNING,
         blame=Blame.PHYSICS,
-        verifies="While a joint is driven, no pair of links gets deeper into each other than at rest by more than "
-        "twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their meshes by.",
+        verifies="While a joint is driven to an end that it reaches, no pair of links gets deeper into each other than "
+        "at rest by more than twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their "
+        "meshes by.",
         matters="Parts that pass through each other teach a policy what reality does not allow.",
         remedy="Correct the joint, or the collision geometry of the pair.",
     ),
@@ -159,6 +164,7 @@ _KINDS = (
         remedy="Each message is given; begin with inertias and overlaps.",
         mujoco="Its counters are read after each run: bad positions, velocities, accelerations, full contact or "
         "constraint buffers.",
+        pybullet="What it has printed is read.",
     ),
     _Kind(
         number="11",
