@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 from mutants.base import UNTOUCHED, write_base
+from mutants.fault import Fault
 from mutants.outcome import judge
 from mutants.plan import FAULTS, write_mutants
 from mutants.tables import Row, write_tables
@@ -35,8 +36,9 @@ def main() -> None:
         untouched[name] = result
         print(f"{name}: {result['seconds']:.1f} s, {len(result['findings'])} findings", flush=True)
     clean = [base for name, base in bases.items() if not _has_errors(untouched[name])]
-    mutants = {mutant.name: mutant for mutant in write_mutants(clean, arguments.count, arguments.seed)}
-    faults = {fault.name: fault for fault in FAULTS}
+    faults = {fault.name: fault for fault in FAULTS if arguments.only in (None, _family(fault))}
+    planned = write_mutants(clean, arguments.count, arguments.seed, list(faults.values()))
+    mutants = {mutant.name: mutant for mutant in planned}
     print(f"{len(clean)} of {len(bases)} models are clean; {len(mutants)} mutants")
     jobs = [
         (name, mutant.urdf, MOTION_FAMILIES if faults[mutant.fault].kinematic else FILE_FAMILIES)
@@ -52,7 +54,8 @@ def main() -> None:
             print(f"{number} of {len(jobs)}, {time.perf_counter() - start:.0f} s", flush=True)
     order = {name: index for index, name in enumerate(mutants)}
     rows.sort(key=lambda row: order[row.mutant.name])
-    command = f"python benchmarks/detection.py --count {arguments.count} --seed {arguments.seed}"
+    only = f" --only {arguments.only}" if arguments.only else ""
+    command = f"python benchmarks/detection.py --count {arguments.count} --seed {arguments.seed}{only}"
     text = write_tables(rows, untouched, arguments.output, command=command)
     print(text)
 
@@ -61,11 +64,16 @@ def _has_errors(result: dict) -> bool:
     return any(fact["severity"] == "error" for fact in result["findings"])
 
 
+def _family(fault: Fault) -> str:
+    return "kinematic" if fault.kinematic else "file"
+
+
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, help="folder of models, the benchmark's if absent")
     parser.add_argument("--count", type=int, default=1080, help="mutants, rounded up to the same number of each kind")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", choices=("kinematic", "file"), help="faults of one family")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "kinematify-detection",
                         help="folder for the models; a stopped run goes on there")  # fmt: skip

@@ -39,16 +39,16 @@ class Mutant:
         return f"{self.model}: {self.fault} at {self.planted.joint or self.planted.links}: {self.planted.how}"
 
 
-def write_mutants(bases: Sequence[BaseModel], count: int, seed: int) -> list[Mutant]:
+def write_mutants(bases: Sequence[BaseModel], count: int, seed: int, faults: Sequence[Fault] = FAULTS) -> list[Mutant]:
     """Plant `count` faults, rounded up to the same number of each kind, and write a model for each.
 
     A kind that has fewer places gets those. Within a kind the objects take turns, in an order drawn from the seed, and
     within an object its joints or links do, so that no object and no joint has its second fault of a kind before all
     have their first.
     """
-    each = -(-count // len(FAULTS))
+    each = -(-count // len(faults))
     mutants: list[Mutant] = []
-    for fault in FAULTS:
+    for fault in faults:
         mutants += _of_kind(fault, bases, each, seed)
     return mutants
 

@@ -78,8 +78,9 @@ def _markdown(rows: Sequence[Row], untouched: Mapping[str, Result], command: str
         f"({len(good['errors']) / max(good['models'], 1):.1%}); with warnings: {len(good['warnings'])}."
     )
     halves = (
-        "## By half of the objects\n\nThresholds were set on the objects of the first half; the halves are drawn from "
-        "the objects' names alone.\n\n"
+        "## By half of the objects\n\nThe first half of the objects alone leads to the thresholds of KV34x; the halves "
+        "are drawn from the objects' names. Neither half is unseen in the strict sense: the scorers behind KV344 and "
+        "KV345 were made with all of the objects in view.\n\n"
     )
     blocks = [
         "# Planted faults that `kinematify validate` finds",
