@@ -186,7 +186,12 @@ def test_refused_model_blocks_the_rest(tmp_path: Path) -> None:
 
 
 def test_inertia_at_the_edge_of_what_can_be_is_balanced(tmp_path: Path) -> None:
-    result = told(cabinet().with_part("door", inertia=(0.05, 0.05, 0.10000001)), tmp_path)
+    request = prepared_request(cabinet(), tmp_path)
+    urdf = tmp_path / URDF_FILE
+    text = urdf.read_text(encoding="utf-8")
+    assert 'izz="0.05"' in text
+    urdf.write_text(text.replace('izz="0.05"', 'izz="0.10000001"'))
+    result = tell(run, request)
     finding = only(result, "KV401")
     assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.PHYSICS)
     assert result.results["KV405"].status is Status.PASS
@@ -319,3 +324,10 @@ def test_empty_range_is_no_way_to_drive(tmp_path: Path) -> None:
     assert [(f.severity, f.joint) for f in result.results["KV401"].findings] == [(Severity.WARNING, "door_joint")]
     assert result.results["KV405"].measured["drives"] == 2
     assert not {r.status for r in result.results.values()} & {Status.BLOCKED}
+
+
+def test_only_what_was_asked_for_is_told(tmp_path: Path) -> None:
+    request = replace(prepared_request(cabinet(), tmp_path), selected=frozenset({"KV402", "KV411"}))
+    result = tell(run, request)
+    assert set(result.results) == {"KV402", "KV411"}
+    assert read_poses(tmp_path, "mujoco") is not None

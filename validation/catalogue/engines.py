@@ -141,6 +141,7 @@ _KINDS = (
         matters="Growing energy comes from inertias that cannot be or from contacts that push: the motion is not "
         "physical and explodes in longer runs.",
         remedy="Correct the inertia tensors and the overlaps at the start, or reduce the time step.",
+        pybullet="It is simulated with a quarter of the usual time step.",
     ),
     _Kind(
         number="09",

@@ -79,10 +79,13 @@ class MujocoWork:
 
 
 def simulate_all(recorder: Recorder, work: MujocoWork, seen: Measured, sweep: Touching) -> None:
-    """Tell KV404 to KV412; the checks that gather what all runs gave come last."""
+    """Tell KV404 to KV412; the checks that gather what all runs gave come last, and they need all runs."""
+    gathered = {"KV407", "KV410"}
     bench = _tell_free(recorder, work, seen, sweep)
-    _tell_driven(recorder, work, bench, seen)
-    _tell_drop(recorder, work, bench)
+    if recorder.wants("KV405", "KV406", "KV409", *gathered):
+        _tell_driven(recorder, work, bench, seen)
+    if recorder.wants("KV411", *gathered):
+        _tell_drop(recorder, work, bench)
     _tell_stable(recorder, work)
     _tell_warnings(recorder, work)
 
@@ -190,7 +193,7 @@ def _tell_drop(recorder: Recorder, work: MujocoWork, bench: Bench | None) -> Non
             check.skip(_LATE)
         elif bench is None:
             check.block("the models for runs could not be set up (KV404)")
-        elif recorder.wants("KV411"):
+        else:
             dropped = drop(bench, work.source)
             work.ends.append(RunEnd(when="it was dropped", speed=dropped.speed, warnings=dropped.warnings))
             find_drop(check, depth=dropped.depth, speed=dropped.speed, settings=bench.settings)

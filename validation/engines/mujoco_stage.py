@@ -57,11 +57,14 @@ def run(request: StageRequest, recorder: Recorder) -> None:
         said=messages,
     )
     _compare_poses(recorder, work)
+    if not recorder.wants(*_IDS[2:]):
+        return
     _look_at_rest(recorder, work)
     if work.sweep is None or work.seen is None:
         _block(recorder, _IDS[3:], "the contacts at rest could not be measured (KV403)")
         return
-    simulate_all(recorder, work, work.seen, work.sweep)
+    if recorder.wants(*_IDS[3:]):
+        simulate_all(recorder, work, work.seen, work.sweep)
 
 
 def _load(

@@ -216,15 +216,15 @@ def _find_lag(check: OpenCheck, case: Case, driven: Driven) -> None:
 
 
 def find_penetrations(check: OpenCheck, case: Case, driven: Sequence[Driven]) -> None:
-    """Add a finding for every pair that gets too deep while a joint that arrives is driven."""
+    """Add a finding for every pair that gets too deep while a joint is driven to an end that it reaches."""
     worst: dict[int, tuple[float, Driven]] = {}
-    for item in driven:
-        stopping = None if case.arrived(item) else blocking_pair(case, item)
+    arrived = [item for item in driven if case.arrived(item)]
+    for item in arrived:
         # What is allowed gives way without force; a stop is then as soft as any contact of the engine.
         for pair in np.flatnonzero(item.excess > case.sweep.tolerance).tolist():
-            if pair != stopping and item.excess[pair] > worst.get(pair, (0.0, item))[0]:
+            if item.excess[pair] > worst.get(pair, (0.0, item))[0]:
                 worst[pair] = (float(item.excess[pair]), item)
-    deepest = max((float(item.excess.max(initial=0.0)) for item in driven), default=0.0)
+    deepest = max((float(item.excess.max(initial=0.0)) for item in arrived), default=0.0)
     check.measured["deepest_beyond_rest"] = deepest + case.sweep.tolerance if deepest > 0.0 else 0.0
     for pair, (excess, item) in sorted(worst.items()):
         _find_penetration(check, case, pair, excess, item)
