@@ -67,6 +67,8 @@ def compare_contacts(check: OpenCheck, left: EngineResults) -> None:
         first, second = sorted(left.body[list(item.overlap.links)].tolist())
         worst.setdefault((first, second), item)
     check.measured["pairs"] = float(len(worst))
+    if left.exact is None:
+        check.reason = "only the engines were compared with each other: the geometry stage left no contacts"
     for item in list(worst.values())[:_TOLD_PAIRS]:
         _tell(check, left, item)
     left.say_absent(check, engines, [view.engine for view in views if view.engine])

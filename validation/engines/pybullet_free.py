@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,14 +61,14 @@ def release(bench: Bench, model: PybulletModel) -> Free:
     return _run(bench, model, steps=_steps(bench, bench.settings.passive_seconds))
 
 
-def release_finely(bench: Bench, model: PybulletModel) -> FloatArray:
-    """Release as in `release` with a quarter of the time step; return the leaders at the same times as there."""
+def release_finely(bench: Bench, model: PybulletModel) -> Free:
+    """Release as in `release` with a quarter of the time step; the values are those at the same times as there."""
     bullet.setPhysicsEngineParameter(fixedTimeStep=bench.step / _FINER, physicsClientId=model.client)
     model.place(bench.values_at_rest)
     model.release(ideal=True)
-    run = _run(bench, model, steps=_FINER * _steps(bench, bench.settings.step_seconds))
+    run = _run(bench, model, steps=_FINER * _steps(bench, bench.settings.passive_seconds))
     bullet.setPhysicsEngineParameter(fixedTimeStep=bench.step, physicsClientId=model.client)
-    return run.q[_FINER - 1 :: _FINER]
+    return replace(run, q=run.q[_FINER - 1 :: _FINER])
 
 
 def _steps(bench: Bench, seconds: float) -> int:
