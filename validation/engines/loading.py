@@ -64,7 +64,7 @@ def compare_with_file(
             _compare_joint(check, engine, described, loaded.joints.get(described.name))
     for link in prepared.links:
         mass = loaded.masses.get(link.link, link.mass)
-        if not np.isclose(mass, link.mass, rtol=mass_error, atol=1e-9):
+        if not link.mass_added and not np.isclose(mass, link.mass, rtol=mass_error, atol=1e-9):
             check.find(
                 f"{engine} gives the link {link.link} {mass:.6g} kg; the file says {link.mass:.6g} kg.",
                 "Write mass and inertia in an <inertial> element with plain decimal numbers.",
