@@ -1,0 +1,140 @@
+"""KV301 to KV304: what the model looks like at rest, and which overlaps are tolerated from then on."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.validation.finding import Severity
+from kinematify.validation.geometry.remark import Remark, configuration, in_document_order, length
+from kinematify.validation.geometry.rest import Reason
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.validation.geometry.overlap import Overlap
+    from kinematify.validation.geometry.rest import Allowance, AtRest
+    from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.validation.geometry.together import Configurations
+
+
+def strangers(scene: Scene, allowance: Allowance) -> Iterator[Remark]:
+    """KV301: bodies that no joint joins, in one another at rest."""
+    limit = scene.settings.rest_overlap * scene.size
+    for rest in allowance.pairs.values():
+        if not rest.joined and rest.depth > limit:
+            yield _overlapping(scene, rest, limit, f"{_how(scene, rest)} at rest, and no joint joins them.")
+
+
+def neighbours(scene: Scene, overlap: Overlap, allowance: Allowance) -> Iterator[Remark]:
+    """KV302: parent and child in one another at rest."""
+    for rest in allowance.pairs.values():
+        limit = scene.settings.rest_joined * min(solid.size for solid in overlap.solids(rest.pair))
+        if rest.joined and rest.depth > limit:
+            joint = scene.connection_of[rest.pair].joints[-1]
+            yield _overlapping(
+                scene, rest, limit, f"{_how(scene, rest)} at rest; the joint {joint} joins them.", joint=joint
+            )
+
+
+def _how(scene: Scene, rest: AtRest) -> str:
+    first, second = in_document_order(scene, rest.pair)
+    if rest.contained:
+        return f"One of {first} and {second} is inside the other one, {length(rest.depth)} deep,"
+    return f"{first} and {second} overlap by {length(rest.depth)}"
+
+
+def _overlapping(scene: Scene, rest: AtRest, limit: float, message: str, joint: str | None = None) -> Remark:
+    wrong = joint is None and rest.depth > scene.settings.wrong * scene.size
+    return Remark(
+        message=message,
+        remedy="Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
+        "in all later checks.",
+        severity=Severity.ERROR if wrong else Severity.WARNING,
+        joint=joint,
+        pair=in_document_order(scene, rest.pair),
+        q=configuration(scene, {}),
+        value=rest.depth,
+        limit=limit,
+        unit="m",
+    )
+
+
+def hovering(scene: Scene, allowance: Allowance) -> Iterator[Remark]:
+    """KV303: a part that does not touch what carries it."""
+    limit = scene.settings.hover * scene.size
+    for connection in scene.connections:
+        rest = allowance.pairs[connection.pair]
+        if rest.gap > limit:
+            parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
+            yield Remark(
+                message=f"{child} is {length(rest.gap)} away from {parent}, on which the joint {connection.joints[-1]} "
+                "hangs it: nothing is seen to carry it.",
+                remedy="Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
+                joint=connection.joints[-1],
+                pair=in_document_order(scene, connection.pair),
+                q=configuration(scene, {}),
+                value=rest.gap,
+                limit=limit,
+                unit="m",
+            )
+
+
+def allowed_pairs(scene: Scene, allowance: Allowance, random: Configurations | None) -> dict[Pair, Reason]:
+    """Return pairs whose contact later checks do not count, with the reason."""
+    reasons = {
+        pair: Reason.ADJACENT if rest.joined else Reason.AT_REST
+        for pair, rest in allowance.pairs.items()
+        if rest.collide or rest.depth > 0.0
+    }
+    if random is not None:
+        share = random.touching.mean(axis=0)
+        for column in np.flatnonzero(share > scene.settings.always).tolist():
+            reasons.setdefault(scene.pairs[column], Reason.ALWAYS)
+    return reasons
+
+
+def allowed_table(scene: Scene, allowance: Allowance, reasons: dict[Pair, Reason]) -> Iterator[Remark]:
+    """KV304: one note per reason, one for links that are fixed together, one for stand-ins."""
+    by_reason: dict[Reason, list[Pair]] = defaultdict(list)
+    for pair, reason in reasons.items():
+        by_reason[reason].append(pair)
+    for reason, pairs in by_reason.items():
+        pairs.sort(key=allowance.at_rest, reverse=True)
+        yield _note(
+            f"Pairs that are {reason.value} ({len(pairs)}); this much overlap is tolerated, and more is reported: "
+            + _listed([_tolerated(scene, allowance, pair) for pair in pairs], scene.settings.listed),
+            "Nothing to do; the table says what later checks do not report.",
+        )
+    links = scene.model.link_by_name
+    solid = [[name for name in body.links if links[name].has_geometry] for body in scene.bodies]
+    fixed = [names for names in solid if len(names) > 1]
+    if fixed:
+        yield _note(
+            "Links that fixed joints hold together are one body and not held against each other: "
+            + _listed([", ".join(names) for names in fixed], scene.settings.listed, sign="; "),
+            "Nothing to do.",
+        )
+    if scene.stand_ins:
+        yield _note(
+            f"{len(scene.stand_ins)} links have no collision geometry; their visual geometry is judged instead: "
+            + _listed(list(scene.stand_ins), scene.settings.listed),
+            "Write <collision> elements; engines see nothing there.",
+        )
+
+
+def _tolerated(scene: Scene, allowance: Allowance, pair: Pair) -> str:
+    first, second = in_document_order(scene, pair)
+    return f"{first} - {second} ({length(allowance.at_rest(pair) + allowance.tolerance(pair))})"
+
+
+def _note(message: str, remedy: str) -> Remark:
+    return Remark(message=message + ".", remedy=remedy, severity=Severity.NOTE)
+
+
+def _listed(names: list[str], most: int, sign: str = ", ") -> str:
+    """The first names, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return sign.join(names[:most]) + more

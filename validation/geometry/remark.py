@@ -1,0 +1,75 @@
+"""What the geometry has to say, before it becomes a finding, and how it writes numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.validation.finding import Blame, Severity
+    from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.validation.stage import OpenCheck
+
+
+@dataclass(frozen=True, kw_only=True)
+class Remark:
+    """One finding; severity and blame are those of the check unless given."""
+
+    message: str
+    remedy: str
+    severity: Severity | None = None
+    blame: Blame | None = None
+    joint: str | None = None
+    link: str | None = None
+    pair: tuple[str, str] | None = None
+    q: Mapping[str, float] | None = None
+    value: float | None = None
+    limit: float | None = None
+    unit: str | None = None
+    line: int | None = None
+
+    def add_to(self, check: OpenCheck) -> None:
+        """Turn it into a finding."""
+        check.find(
+            self.message,
+            self.remedy,
+            severity=self.severity,
+            blame=self.blame,
+            joint=self.joint,
+            link=self.link,
+            pair=self.pair,
+            q=None if self.q is None else dict(self.q),
+            value=self.value,
+            limit=self.limit,
+            unit=self.unit,
+            line=self.line,
+        )
+
+
+def length(metres: float) -> str:
+    """A length as people say it."""
+    return f"{metres * 1e3:.3g} mm" if abs(metres) < 1.0 else f"{metres:.3g} m"
+
+
+def joint_value(value: float, *, turns: bool) -> str:
+    """The value of a joint as a file has it, with degrees beside radians."""
+    return f"{value + 0.0:.4g} rad ({np.degrees(value) + 0.0:.3g} deg)" if turns else f"{value + 0.0:.4g} m"
+
+
+def configuration(scene: Scene, values: Mapping[int, float]) -> dict[str, float]:
+    """Rest with some leaders elsewhere, every joint by name [rad or m]."""
+    row = scene.mechanism.rest.copy()
+    for leader, value in values.items():
+        row[leader] = value
+    return dict(zip(scene.mechanism.joints, scene.mechanism.all_values(row[None])[0].tolist(), strict=True))
+
+
+def in_document_order(scene: Scene, pair: Pair) -> tuple[str, str]:
+    """Names of two bodies in the order of the document."""
+    first, second = scene.name(pair)
+    names = [link.name for link in scene.model.links]
+    return (first, second) if names.index(first) < names.index(second) else (second, first)

@@ -1,0 +1,89 @@
+"""Every pair at rest: how deep, how far apart, and what later checks may therefore ignore, with the reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kinematify.validation.geometry.scene import relative
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.validation.geometry.overlap import Overlap
+    from kinematify.validation.geometry.scene import Pair, Scene
+
+
+class Reason(StrEnum):
+    """Why an overlap of two bodies is tolerated."""
+
+    ADJACENT = "joined and in contact at rest"
+    AT_REST = "in contact at rest without a joint between them"
+    ALWAYS = "in contact in nearly all configurations"
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtRest:
+    """Two bodies at rest."""
+
+    pair: Pair
+    joined: bool
+    collide: bool
+    """FCL's verdict on the surfaces."""
+    depth: float
+    """Deepest point in a closed shell [m]."""
+    contained: bool
+    """One body is inside the other one, and their surfaces do not meet."""
+    gap: float
+    """Distance of neighbours [m]; 0 where they collide or are no neighbours."""
+
+
+class Allowance:
+    """How deep each pair is at rest, and how much deeper it may get."""
+
+    def __init__(self, scene: Scene, overlap: Overlap) -> None:
+        """Keep the scene; pairs are measured when first asked for."""
+        self._scene, self._overlap = scene, overlap
+        self._depth: dict[Pair, float] = {}
+
+    @cached_property
+    def pairs(self) -> Mapping[Pair, AtRest]:
+        """All pairs whose boxes meet, and all neighbours."""
+        found = {pair: self._measure(pair) for pair in self._scene.pairs}
+        return {pair: rest for pair, rest in found.items() if rest is not None}
+
+    def at_rest(self, pair: Pair) -> float:
+        """Depth of a pair at rest [m]."""
+        if pair not in self._depth:
+            T = relative(self._scene.at_rest[None], pair)
+            self._depth[pair] = float(self._overlap.depth(pair, T)[0])
+        return self._depth[pair]
+
+    def joined(self, pair: Pair) -> bool:
+        """True if only joints stand between the two bodies."""
+        return pair in self._scene.connection_of
+
+    def tolerance(self, pair: Pair) -> float:
+        """How much deeper than at rest a pair may get [m]."""
+        settings = self._scene.settings
+        part = min(solid.size for solid in self._overlap.solids(pair))
+        return min(settings.tolerance * self._scene.size, settings.part_tolerance * part)
+
+    def _measure(self, pair: Pair) -> AtRest | None:
+        T = relative(self._scene.at_rest[None], pair)
+        joined = self.joined(pair)
+        collide = bool(self._overlap.collide(pair, T)[0])
+        near = collide or bool(self._overlap.may_contain(pair, T)[0])
+        if not (near or joined):
+            return None
+        depth = self.at_rest(pair) if near else 0.0
+        return AtRest(
+            pair=pair,
+            joined=joined,
+            collide=collide,
+            depth=depth,
+            contained=not collide and depth > 0.0,
+            gap=self._overlap.gap(pair, T[0]) if joined and depth == 0.0 else 0.0,
+        )

@@ -1,0 +1,284 @@
+"""The bodies of a model, what joins them, and where they stand in many configurations at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.robot import rigid_groups
+from kinematify.validation.engines.mechanism import Mechanism
+from kinematify.validation.geometry.solid import Solid
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.assembly.robot import DescribedJoint, RigidGroup
+    from kinematify.validation.declared import DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.validation.engines.mechanism import Travel
+    from kinematify.validation.settings import GeometrySettings
+
+Pair = tuple[int, int]
+"""Two bodies, the smaller index first."""
+
+_UNIT_SHARE = 1e-3  # of the model's size: a good unit for FCL, which takes short lengths for none
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Body:
+    """Links that fixed joints hold together; frame: that of the link nearest the root."""
+
+    name: str
+    """First link that has geometry."""
+    links: tuple[str, ...]
+    group: int
+    """Index among all rigid groups, those without geometry included."""
+    solid: Solid
+    shapes: tuple[FloatArray, ...]
+    """Corners of each declared shape, body frame [m], shape (V, 3): an engine sees the hull of each."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Connection:
+    """Two bodies with nothing but joints (and frames without geometry) between them."""
+
+    parent: int
+    child: int
+    joints: tuple[str, ...]
+    """From the parent to the child."""
+
+    @property
+    def pair(self) -> Pair:
+        """Both bodies, the smaller index first."""
+        return min(self.parent, self.child), max(self.parent, self.child)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scene:
+    """A model as geometry in motion."""
+
+    model: DeclaredModel
+    mechanism: Mechanism
+    bodies: tuple[Body, ...]
+    """In the order of the tree, parents before children; only those with geometry."""
+    settings: GeometrySettings
+    unit: float
+    """Length of one unit of all FCL trees [m]."""
+    stand_ins: tuple[str, ...]
+    """Links without collision geometry, which are judged by their visual geometry."""
+
+    @property
+    def travels(self) -> tuple[Travel, ...]:
+        """Joints that lead, with their ranges."""
+        return self.mechanism.travels
+
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the model's box at rest [m]."""
+        return float(np.linalg.norm(np.ptp(self._corners_at_rest().reshape(-1, 3), axis=0)))
+
+    @cached_property
+    def at_rest(self) -> FloatArray:
+        """Pose of every body at rest, shape (B, 4, 4)."""
+        return np.asarray(self.poses(self.mechanism.rest[None])[0])
+
+    @cached_property
+    def connections(self) -> tuple[Connection, ...]:
+        """Every body with its nearest ancestor that has geometry."""
+        body_of = {body.group: index for index, body in enumerate(self.bodies)}
+        found = []
+        for index, body in enumerate(self.bodies):
+            joints, group = [], body.group
+            while self._above[group] is not None:
+                joint, group = self._above[group] or ("", 0)
+                joints.append(joint)
+                if group in body_of:
+                    found.append(Connection(parent=body_of[group], child=index, joints=tuple(reversed(joints))))
+                    break
+        return tuple(found)
+
+    @cached_property
+    def connection_of(self) -> dict[Pair, Connection]:
+        """Connections keyed by their pair."""
+        return {connection.pair: connection for connection in self.connections}
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """All pairs of bodies."""
+        return tuple(combinations(range(len(self.bodies)), 2))
+
+    def name(self, pair: Pair) -> tuple[str, str]:
+        """Names of both bodies."""
+        return self.bodies[pair[0]].name, self.bodies[pair[1]].name
+
+    def between(self, pair: Pair) -> frozenset[int]:
+        """Leaders that change where the two bodies stand to each other."""
+        ways = [self._ways[self.bodies[index].group] for index in pair]
+        leads = self.mechanism.leads
+        joints = {name: k for k, name in enumerate(self.mechanism.joints)}
+        moving = [leads[joints[name]] for name in ways[0] ^ ways[1]]
+        return frozenset(np.flatnonzero(np.any(np.abs(moving) > 0.0, axis=0)).tolist() if moving else ())
+
+    @cached_property
+    def affected(self) -> tuple[tuple[Pair, ...], ...]:
+        """For every leader the pairs that it moves against each other."""
+        between = {pair: self.between(pair) for pair in self.pairs}
+        return tuple(
+            tuple(pair for pair in self.pairs if leader in between[pair]) for leader in range(len(self.travels))
+        )
+
+    def poses(self, leaders: FloatArray) -> FloatArray:
+        """Pose of every body in the frame of the root link, rows of leaders (n, leaders) -> (n, B, 4, 4)."""
+        values = self.mechanism.all_values(leaders)
+        column = {name: k for k, name in enumerate(self.mechanism.joints)}
+        poses = np.broadcast_to(np.eye(4), (len(leaders), len(self._groups), 4, 4)).copy()
+        for group, joint, above, T_above_joint in self._steps:
+            motion = _motions(joint, values[:, column[joint.name]])
+            poses[:, group] = poses[:, above] @ T_above_joint @ motion
+        return np.ascontiguousarray(poses[:, [body.group for body in self.bodies]])
+
+    @cached_property
+    def _groups(self) -> tuple[RigidGroup, ...]:
+        return rigid_groups(self.model.kinematics)
+
+    @cached_property
+    def _above(self) -> list[tuple[str, int] | None]:
+        """Joint above each group and the group that it hangs on."""
+        group_of = {link: index for index, group in enumerate(self._groups) for link in group.links}
+        above = self.model.kinematics.joint_above
+        joints = [above.get(group.top) for group in self._groups]
+        return [None if joint is None else (joint.name, group_of[joint.parent]) for joint in joints]
+
+    @cached_property
+    def _ways(self) -> list[frozenset[str]]:
+        """Joints between the root and each group."""
+        ways: list[frozenset[str]] = []
+        for above in self._above:
+            ways.append(frozenset() if above is None else ways[above[1]] | {above[0]})
+        return ways
+
+    @cached_property
+    def _steps(self) -> list[tuple[int, DescribedJoint, int, FloatArray]]:
+        """Group, joint above it, group above it, and the joint's frame at zero in that group's frame."""
+        inside = {link: T for group in self._groups for link, T in placed_links(self.model, group).items()}
+        joints = self.model.kinematics.joint_by_name
+        return [
+            (index, joints[above[0]], above[1], inside[joints[above[0]].parent] @ joints[above[0]].T_parent_child)
+            for index, above in enumerate(self._above)
+            if above is not None
+        ]
+
+    def _corners_at_rest(self) -> FloatArray:
+        return np.stack(
+            [transformed(box_corners(body.solid), T) for body, T in zip(self.bodies, self.at_rest, strict=True)]
+        )
+
+
+def read_scene(model: DeclaredModel, settings: GeometrySettings) -> Scene:
+    """Gather the geometry of the bodies; nothing is measured yet."""
+    parts = [(index, group, _shapes(model, group)) for index, group in enumerate(rigid_groups(model.kinematics))]
+    solid = [(index, group, shapes) for index, group, shapes in parts if any(len(faces) for _, faces in shapes)]
+    corners = [vertices for _, _, shapes in solid for vertices, _ in shapes]
+    largest = max(
+        (float(np.linalg.norm(np.ptp(vertices, axis=0))) for vertices in corners if len(vertices)), default=1.0
+    )
+    unit = _UNIT_SHARE * max(largest, 1e-9)
+    return Scene(
+        model=model,
+        mechanism=Mechanism(description=model.kinematics),
+        bodies=tuple(
+            Body(
+                name=next(name for name in group.links if model.link_by_name[name].has_geometry),
+                links=group.links,
+                group=index,
+                solid=_solid(shapes, unit, settings),
+                shapes=tuple(vertices[np.unique(faces)] for vertices, faces in shapes if len(faces)),
+            )
+            for index, group, shapes in solid
+        ),
+        settings=settings,
+        unit=unit,
+        stand_ins=tuple(link.name for link in model.links if link.visuals and not link.collisions),
+    )
+
+
+def placed_links(model: DeclaredModel, group: RigidGroup) -> dict[str, FloatArray]:
+    """Pose of every link of a group in the frame of its top link, shape (4, 4) each."""
+    placed = {group.top: np.eye(4)}
+    for name in group.links[1:]:
+        joint = model.kinematics.joint_above[name]
+        placed[name] = placed[joint.parent] @ joint.T_parent_child
+    return placed
+
+
+def _shapes(model: DeclaredModel, group: RigidGroup) -> list[tuple[FloatArray, IntArray]]:
+    """Vertices (V, 3) and faces (F, 3) of every shape of a group, in the frame of its top link."""
+    return [
+        (transformed(shape.mesh.vertices, T), shape.mesh.faces)
+        for name, T in placed_links(model, group).items()
+        for shape in judged_shapes(model.link_by_name[name])
+    ]
+
+
+def judged_shapes(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+    """Collision geometry, or visual geometry where there is none."""
+    return link.collisions or link.visuals
+
+
+def _solid(shapes: Sequence[tuple[FloatArray, IntArray]], unit: float, settings: GeometrySettings) -> Solid:
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
+    return Solid(
+        np.concatenate([vertices for vertices, _ in shapes]),
+        np.concatenate([faces + start for (_, faces), start in zip(shapes, starts, strict=False)]),
+        unit=unit,
+        hole=settings.hole,
+        points=settings.points,
+    )
+
+
+def transformed(points: FloatArray, T: FloatArray) -> FloatArray:
+    """Points (n, 3) moved by a transform (4, 4)."""
+    return np.asarray(points @ T[:3, :3].T + T[:3, 3])
+
+
+def box_corners(solid: Solid) -> FloatArray:
+    """Corners of a solid's box, body frame [m], shape (8, 3)."""
+    return np.stack(np.meshgrid(*zip(solid.low, solid.high, strict=True), indexing="ij"), axis=-1).reshape(8, 3)
+
+
+def relative(poses: FloatArray, pair: Pair) -> FloatArray:
+    """Pose of the second body in the frame of the first one, shape (n, 4, 4), from poses (n, B, 4, 4)."""
+    first, second = poses[:, pair[0]], poses[:, pair[1]]
+    turned_back = first[:, :3, :3].transpose(0, 2, 1)
+    result = np.zeros_like(second)
+    result[:, :3, :3] = turned_back @ second[:, :3, :3]
+    result[:, :3, 3] = np.einsum("nij,nj->ni", turned_back, second[:, :3, 3] - first[:, :3, 3])
+    result[:, 3, 3] = 1.0
+    return result
+
+
+def inverse(T: FloatArray) -> FloatArray:
+    """Inverses of rigid transforms, shape (n, 4, 4)."""
+    result = np.zeros_like(T)
+    result[:, :3, :3] = T[:, :3, :3].transpose(0, 2, 1)
+    result[:, :3, 3] = -np.einsum("nij,nj->ni", result[:, :3, :3], T[:, :3, 3])
+    result[:, 3, 3] = 1.0
+    return result
+
+
+def _motions(joint: DescribedJoint, values: FloatArray) -> FloatArray:
+    """Motion of a joint at many values [rad or m], shape (n, 4, 4)."""
+    motion = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
+    if joint.kind.turns:
+        x, y, z = joint.axis
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
+        motion[:, :3, :3] += sine * cross + versine * (cross @ cross)
+    elif joint.kind is JointType.PRISMATIC:
+        motion[:, :3, 3] = values[:, None] * joint.axis
+    return motion

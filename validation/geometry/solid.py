@@ -1,0 +1,241 @@
+"""Exact distances to one body: how deep points lie in it, how far they are from it, and its FCL tree.
+
+FCL decides whether two bodies collide; it cannot say how deep (its depth between meshes is meaningless), so depth is
+that of sampled points of one body below the surface of the other one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import fcl
+import igl
+import numpy as np
+
+from kinematify.geometry.rays import RayScene
+from kinematify.geometry.sampling import curve_order, place_samples
+from kinematify.validation.geometry.shells import shells_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.validation.geometry.shells import Shells
+
+    BoolArray = NDArray[np.bool_]
+
+_ASKEW = np.array([0.36, 0.48, 0.8])  # along no edge of furniture
+_SHARP = np.cos(np.radians(30.0))  # edges of facets of a cylinder of 12 sides are no edges
+
+
+class Solid:
+    """One body in its own frame; each structure is built when first asked for."""
+
+    def __init__(self, vertices: FloatArray, faces: IntArray, *, unit: float, hole: float, points: int) -> None:
+        """Keep the mesh.
+
+        Args:
+            vertices: Body frame [m], shape (V, 3).
+            faces: Shape (F, 3), at least one.
+            unit: Length of one unit of the FCL tree [m]; FCL takes short lengths for none.
+            hole: See `shells_of`.
+            points: Number of points that stand for the surface in questions of depth.
+        """
+        self._mesh = vertices, faces
+        self._unit, self._hole, self._count = unit, hole, points
+        used = vertices[np.unique(faces)]
+        self.low, self.high = used.min(axis=0), used.max(axis=0)
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box in the body's frame [m]."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    @property
+    def middle(self) -> FloatArray:
+        """Middle of the box, body frame [m], shape (3,)."""
+        return np.asarray(0.5 * (self.low + self.high))
+
+    @cached_property
+    def shells(self) -> Shells:
+        """Closed shells and sheets."""
+        return shells_of(*self._mesh, hole=self._hole)
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Corners, places on sharp edges and places on the surface, body frame [m], shape (n, 3)."""
+        vertices, faces = self.shells.vertices, self.shells.faces
+        if not len(faces):
+            return vertices
+        share = self._count // 3
+        edges = _sharp_edges(vertices, faces)
+        corners = vertices[np.unique(edges)] if len(edges) else vertices
+        areas = 0.5 * np.linalg.norm(_crosses(vertices, faces), axis=1)
+        picked, weights = place_samples(vertices[faces], areas, curve_order(vertices[faces], areas), share, 0)
+        surface = np.einsum("nk,nkd->nd", weights, vertices[faces[picked]])
+        return np.concatenate([_thinned(corners, share), _along(vertices[edges], share), surface])
+
+    @cached_property
+    def tree(self) -> fcl.BVHModel:
+        """FCL tree, centred at `middle`, in units of `unit`."""
+        vertices, faces = self.shells.vertices, self.shells.faces
+        model = fcl.BVHModel()
+        model.beginModel(len(vertices), len(faces))
+        model.addSubModel((vertices - self.middle) / self._unit, faces)
+        model.endModel()
+        return model
+
+    def inside(self, points: FloatArray) -> FloatArray:
+        """Depth of points in the closed shells [m], 0 outside, body frame (n, 3) -> (n,)."""
+        depth = np.zeros(len(points))
+        if not len(self.shells.closed):
+            return depth
+        near = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
+        near = near[self._may_be_inside(self._local(points[near]))]
+        near = near[np.abs(self._winding.winding_number(self._local(points[near]))) > 0.5] if len(near) else near
+        if len(near):
+            depth[near] = self._closed.nearest(self._local(points[near]))[0]
+        return depth
+
+    def _may_be_inside(self, local: FloatArray) -> BoolArray:
+        """Whether a ray from a point, or the one opposite to it, meets a face from behind first.
+
+        It is quick and sorts out nearly everything; the winding number, which is slow, decides about the rest.
+        """
+        rays, found = self._closed_rays, np.zeros(len(local), dtype=bool)
+        for along in (_ASKEW, -_ASKEW) if len(local) else ():
+            hits = rays.first_hits(local, np.broadcast_to(along, local.shape))
+            found |= hits.met & (rays.face_normals[hits.face] @ along > 0.0)
+        return found
+
+    def beside_sheets(self, points: FloatArray) -> FloatArray:
+        """Distance of points from the sheets [m], body frame (n, 3) -> (n,); 0 where a rim is nearest.
+
+        A point that went through a sheet stands behind it; one that is nearest to a rim may have gone round it.
+        """
+        distance, face, foot = self._sheets.nearest(self._local(points))
+        on_rim = (self._rim[face] & _at_edges(self._sheets.vertices[self._sheets.faces[face]], foot)).any(axis=1)
+        return np.where(on_rim, 0.0, distance)
+
+    def meets(self, starts: FloatArray, steps: FloatArray, *, sheets: bool) -> BoolArray:
+        """Whether segments meet a sheet, or else a closed shell, body frame (n, 3) each -> (n,)."""
+        met = np.zeros(len(starts), dtype=bool)
+        if not len(self.shells.sheets if sheets else self.shells.closed):
+            return met
+        ends = starts + steps
+        near = (np.minimum(starts, ends) <= self.high).all(axis=1) & (np.maximum(starts, ends) >= self.low).all(axis=1)
+        length = np.linalg.norm(steps, axis=1)
+        rows = np.flatnonzero(near & (length > 0.0))
+        if len(rows):
+            along = steps[rows] / length[rows, None]
+            rays = self._sheet_rays if sheets else self._closed_rays
+            met[rows] = rays.first_hits(self._local(starts[rows]), along).distance < length[rows]
+        return met
+
+    def beside_closed(self, points: FloatArray) -> FloatArray:
+        """Distance of points from the closed shells [m], body frame (n, 3) -> (n,)."""
+        return self._closed.nearest(self._local(points))[0]
+
+    def _local(self, points: FloatArray) -> FloatArray:
+        return np.ascontiguousarray(points - self.middle)
+
+    @cached_property
+    def _winding(self) -> igl.FastWindingNumberBVH:
+        tree = igl.FastWindingNumberBVH()
+        tree.init(self._closed.vertices, self._closed.faces)
+        return tree
+
+    @cached_property
+    def _closed(self) -> _Nearest:
+        return _Nearest.of(self._local(self.shells.vertices), self.shells.closed)
+
+    @cached_property
+    def _sheets(self) -> _Nearest:
+        return _Nearest.of(self._local(self.shells.vertices), self.shells.sheets)
+
+    @cached_property
+    def _closed_rays(self) -> RayScene:
+        return RayScene([(self._closed.vertices, self._closed.faces)])
+
+    @cached_property
+    def _sheet_rays(self) -> RayScene:
+        return RayScene([(self._sheets.vertices, self._sheets.faces)])
+
+    @cached_property
+    def _rim(self) -> BoolArray:
+        """Which sides of a sheet's faces no other one has; side k is opposite corner k; shape (S, 3)."""
+        faces = self.shells.sheets
+        sides = np.concatenate([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]])
+        low, high = np.sort(sides, axis=1).T
+        _, name, uses = np.unique(low * len(self.shells.vertices) + high, return_inverse=True, return_counts=True)
+        return np.asarray((uses[name.reshape(-1)] == 1).reshape(3, -1).T)
+
+
+@dataclass(frozen=True, eq=False)
+class _Nearest:
+    """Tree over some of the triangles."""
+
+    tree: igl.AABB
+    vertices: FloatArray
+    faces: IntArray
+
+    @classmethod
+    def of(cls, vertices: FloatArray, faces: IntArray) -> _Nearest:
+        tree, faces = igl.AABB(), np.ascontiguousarray(faces)
+        tree.init(vertices, faces)
+        return cls(tree, vertices, faces)
+
+    def nearest(self, points: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
+        """Distance (n,), face (n,) and place on it (n, 3)."""
+        squares, face, foot = self.tree.squared_distance(self.vertices, self.faces, points)
+        return np.sqrt(np.maximum(squares, 0.0)), face, foot
+
+
+def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:
+    """Whether a place in a triangle lies on the side opposite each corner, shape (n, 3)."""
+    u, v, w = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], foot - corners[:, 0]
+    uu, uv, vv = (np.einsum("nd,nd->n", *pair) for pair in ((u, u), (u, v), (v, v)))
+    wu, wv = np.einsum("nd,nd->n", w, u), np.einsum("nd,nd->n", w, v)
+    scale = np.maximum(uu * vv - uv * uv, 1e-300)
+    second, third = (vv * wu - uv * wv) / scale, (uu * wv - uv * wu) / scale
+    return np.stack([1.0 - second - third, second, third], axis=1) < 1e-6
+
+
+def _crosses(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Normals of faces, twice as long as the face is large, shape (F, 3)."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return np.asarray(np.cross(b - a, c - a))
+
+
+def _sharp_edges(vertices: FloatArray, faces: IntArray) -> IntArray:
+    """Vertex pairs of edges that two faces do not share smoothly, shape (E, 2)."""
+    cross = _crosses(vertices, faces)
+    normals = cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)[:, None]
+    sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    owner = np.tile(np.arange(len(faces)), 3)
+    order = np.argsort(sides[:, 0] * len(vertices) + sides[:, 1], kind="stable")
+    ranked, owner = sides[order], owner[order]
+    start = np.flatnonzero(np.r_[True, (ranked[1:] != ranked[:-1]).any(axis=1)])
+    uses = np.diff(np.r_[start, len(ranked)])
+    second = np.minimum(start + 1, len(ranked) - 1)
+    cosine = np.abs(np.einsum("nd,nd->n", normals[owner[start]], normals[owner[second]]))
+    return np.asarray(ranked[start][(uses != 2) | (cosine < _SHARP)])
+
+
+def _thinned(points: FloatArray, count: int) -> FloatArray:
+    """At most `count` of the points, evenly from their list."""
+    return points[:: max(1, -(-len(points) // max(count, 1)))]
+
+
+def _along(ends: FloatArray, count: int) -> FloatArray:
+    """Places at equal steps along pieces of edges (E, 2, 3) laid end to end, shape (count, 3)."""
+    if not len(ends):
+        return np.empty((0, 3))
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    total = np.cumsum(length)
+    at = (np.arange(count) + 0.5) / count * total[-1]
+    edge = np.minimum(np.searchsorted(total, at), len(ends) - 1)
+    share = (at - total[edge] + length[edge]) / np.maximum(length[edge], 1e-300)
+    return np.asarray(ends[edge, 0] + share[:, None] * (ends[edge, 1] - ends[edge, 0]))

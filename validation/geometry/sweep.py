@@ -1,0 +1,249 @@
+"""One joint moved through its range and beyond while all others rest: what it runs into, where, and how deep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.validation.geometry.scene import box_corners, relative, transformed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.validation.engines.mechanism import Travel
+    from kinematify.validation.geometry.overlap import Overlap
+    from kinematify.validation.geometry.rest import Allowance
+    from kinematify.validation.geometry.scene import Pair, Scene
+
+    BoolArray = NDArray[np.bool_]
+
+_PIECE = 8  # samples beyond the declared range that are looked at in one go
+_COARSE = 9  # configurations from which the length of the way of the corners is estimated
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meeting:
+    """A pair that gets deeper into each other than it may, on the way to one side."""
+
+    pair: Pair
+    first: float
+    """Value of the joint where it begins [rad or m]."""
+    depth: float
+    """Deepest within the declared range, or where it was noticed beyond it [m]."""
+    at: float
+    """Value of the joint at `depth` [rad or m]."""
+    passed: bool
+    """The depth is how far something has gone through a wall, not how deep it is in a solid."""
+    inside: bool
+    """It gets too deep within the declared range; otherwise beyond it, which only neighbours are asked for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Side:
+    """One direction of a joint from rest."""
+
+    sign: float
+    declared: float
+    """Value at the declared end [rad or m]; rest if the range does not go this way."""
+    reached: float
+    """Value up to which it was looked at [rad or m]."""
+    meetings: tuple[Meeting, ...]
+    """The first to begin comes first."""
+    gaps: tuple[tuple[Pair, float, float], ...] = ()
+    """Neighbours with the largest gap that they have within the declared range [m] and the value at which."""
+
+    def free(self, pairs: frozenset[Pair] | None = None) -> float:
+        """Value up to which nothing, or none of some pairs, meets [rad or m]."""
+        return next((m.first for m in self.meetings if pairs is None or m.pair in pairs), self.reached)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointSweep:
+    """Both sides of one leader."""
+
+    leader: int
+    travel: Travel
+    own: frozenset[Pair]
+    """Neighbours that this joint connects."""
+    sides: tuple[Side, Side]
+    """Downwards and upwards."""
+
+    @property
+    def free(self) -> tuple[float, float]:
+        """Range around rest in which nothing collides [rad or m]."""
+        low, high = (side.free() for side in self.sides)
+        return low, high
+
+
+class Sweeper:
+    """Moves the joints of one scene."""
+
+    def __init__(self, scene: Scene, overlap: Overlap, allowance: Allowance) -> None:
+        """Keep what is shared by all joints."""
+        self._scene, self._overlap, self._allowance = scene, overlap, allowance
+
+    def sweep(self, leader: int) -> JointSweep:
+        """Move one joint to both sides."""
+        travel = self._scene.travels[leader]
+        own = frozenset(
+            connection.pair
+            for connection in self._scene.connections
+            if self._leads(leader, connection.joints) and leader in self._scene.between(connection.pair)
+        )
+        low, high = (self._side(leader, sign, own) for sign in (-1.0, 1.0))
+        return JointSweep(leader=leader, travel=travel, own=own, sides=(low, high))
+
+    def rows(self, leader: int, values: FloatArray) -> FloatArray:
+        """Rows of leaders with one joint at `values` (n,) and the others at rest, shape (n, leaders)."""
+        rows = np.tile(self._scene.mechanism.rest, (len(values), 1))
+        rows[:, leader] = values
+        return rows
+
+    def _leads(self, leader: int, joints: tuple[str, ...]) -> bool:
+        names = self._scene.mechanism.joints
+        return any(abs(self._scene.mechanism.leads[names.index(name), leader]) > 0.0 for name in joints)
+
+    def _side(self, leader: int, sign: float, own: frozenset[Pair]) -> Side:
+        travel, scene = self._scene.travels[leader], self._scene
+        declared = travel.upper if sign > 0 else travel.lower
+        values = self._to(leader, travel.rest, declared, sign)
+        poses = scene.poses(self.rows(leader, values))
+        found = {pair: self._within(leader, pair, values, relative(poses, pair)) for pair in scene.affected[leader]}
+        beyond = self._to(leader, float(values[-1]), self._far_end(travel, sign), sign)
+        for pair in own:
+            found[pair] = found[pair] or self._outside(leader, pair, values, beyond)
+        meetings = sorted((m for m in found.values() if m is not None), key=lambda item: abs(item.first - travel.rest))
+        return Side(
+            sign=sign,
+            declared=float(values[-1]),
+            reached=float(beyond[-1]),
+            meetings=tuple(meetings),
+            gaps=tuple(self._widest(pair, values, relative(poses, pair)) for pair in sorted(own)),
+        )
+
+    def _far_end(self, travel: Travel, sign: float) -> float:
+        """How far it is worth looking: one more range, at most half a turn from rest, never less than declared."""
+        declared = travel.upper if sign > 0 else travel.lower
+        if not travel.limited:
+            return declared
+        way = abs(declared + sign * travel.range - travel.rest)
+        way = max(abs(declared - travel.rest), min(way, np.pi)) if travel.turns else way
+        return travel.rest + sign * way
+
+    def _to(self, leader: int, start: float, end: float, sign: float) -> FloatArray:
+        """Values from `start` to `end`, or `start` alone if `end` lies the other way."""
+        if (end - start) * sign < 1e-9:
+            return np.array([start])
+        return np.linspace(start, end, self._count(leader, start, end) + 1)
+
+    def _count(self, leader: int, start: float, end: float) -> int:
+        """Samples so that no corner moves by more than a step from one to the next."""
+        settings, scene = self._scene.settings, self._scene
+        poses = scene.poses(self.rows(leader, np.linspace(start, end, _COARSE)))
+        moved = {body for pair in scene.affected[leader] for body in pair}
+        ways = [
+            np.linalg.norm(
+                np.diff([transformed(box_corners(scene.bodies[body].solid), T) for T in poses[:, body]], axis=0), axis=2
+            )
+            for body in moved
+        ]
+        longest = max((float(way.sum(axis=0).max()) for way in ways), default=0.0)
+        wanted = int(np.ceil(longest / (settings.step * scene.size)))
+        return min(max(wanted, settings.samples_least), settings.samples_most)
+
+    def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray) -> Meeting | None:
+        """Where and how deep a pair meets within the declared range, if it does so beyond what it is allowed."""
+        growth, passed, hit = self._growth(pair, T)
+        events = np.flatnonzero(growth > self._allowance.tolerance(pair))
+        if not len(events):
+            return None
+        first = self._onset(leader, pair, values[: events[0] + 1], growth, hit)
+        return _meeting(pair, first, values, growth, passed, inside=True)
+
+    def _outside(self, leader: int, pair: Pair, values: FloatArray, beyond: FloatArray) -> Meeting | None:
+        """The same beyond the declared range, piece by piece, for the first place is enough."""
+        everything = np.concatenate([values, beyond[1:]])
+        for stop in range(len(values) + _PIECE - 1, len(everything) + _PIECE - 1, _PIECE):
+            some = everything[:stop]
+            T = relative(self._scene.poses(self.rows(leader, some)), pair)
+            growth, passed, hit = self._growth(pair, T, since=max(0, stop - 2 * _PIECE))
+            events = np.flatnonzero(growth > self._allowance.tolerance(pair))
+            if len(events):
+                first = self._onset(leader, pair, some[: events[0] + 1], growth, hit)
+                return _meeting(pair, first, some[: events[0] + 1], growth[: events[0] + 1], passed, inside=False)
+        return None
+
+    def _growth(self, pair: Pair, T: FloatArray, *, since: int = 0) -> tuple[FloatArray, BoolArray, BoolArray]:
+        """Depth beyond that at rest [m], whether something has passed a wall by it, and FCL's verdict, (n,) each.
+
+        Rows before `since` are only the way there; their depth is not asked for.
+        """
+        overlap, settings, size = self._overlap, self._scene.settings, self._scene.size
+        hit = overlap.collide(pair, T)
+        ask = (hit | overlap.may_contain(pair, T)) & (np.arange(len(T)) >= since)
+        growth = np.zeros(len(T))
+        if ask[1:].any():
+            growth[ask] = np.maximum(overlap.depth(pair, T[ask]) - self._allowance.at_rest(pair), 0.0)
+        through = overlap.passed(pair, T, hit, grace=2.0 * settings.tolerance * size)
+        return np.maximum(growth, through), through > growth, hit
+
+    def _onset(self, leader: int, pair: Pair, values: FloatArray, growth: FloatArray, hit: BoolArray) -> float:
+        """First contact of the run of growing depth that leads to the last of the values, found by bisection."""
+        noise = self._scene.settings.noise * self._scene.size
+        start = len(values) - 1
+        while start > 1 and growth[start - 1] > noise:
+            start -= 1
+        low, high = float(values[start - 1]), float(values[start])
+        free = self._relative_free(leader, pair, noise, by_depth=bool(hit[start - 1]))
+        return bisected(free, low, high, self._fine(leader))
+
+    def _relative_free(self, leader: int, pair: Pair, noise: float, *, by_depth: bool) -> Callable[[float], bool]:
+        def free(value: float) -> bool:
+            T = relative(self._scene.poses(self.rows(leader, np.array([value]))), pair)
+            if by_depth:
+                return float(self._overlap.depth(pair, T)[0]) <= self._allowance.at_rest(pair) + noise
+            return not bool(self._overlap.collide(pair, T)[0])
+
+        return free
+
+    def _fine(self, leader: int) -> float:
+        settings = self._scene.settings
+        if self._scene.travels[leader].turns:
+            return float(np.radians(settings.fine_angle))
+        return min(settings.fine_length, 1e-4 * self._scene.size)
+
+    def _widest(self, pair: Pair, values: FloatArray, T: FloatArray) -> tuple[Pair, float, float]:
+        """Largest gap of a pair over some of the poses."""
+        chosen: IntArray = np.unique(
+            np.linspace(0, len(values) - 1, self._scene.settings.gap_samples + 1).astype(np.int64)
+        )
+        gaps = [self._overlap.gap(pair, T[row]) for row in chosen]
+        widest = int(np.argmax(gaps))
+        return pair, gaps[widest], float(values[chosen[widest]])
+
+
+def _meeting(
+    pair: Pair, first: float, values: FloatArray, growth: FloatArray, passed: BoolArray, *, inside: bool
+) -> Meeting:
+    deepest = int(np.argmax(growth))
+    return Meeting(
+        pair=pair,
+        first=first,
+        depth=float(growth[deepest]),
+        at=float(values[deepest]),
+        passed=bool(passed[deepest]),
+        inside=inside,
+    )
+
+
+def bisected(free: Callable[[float], bool], low: float, high: float, fine: float) -> float:
+    """Last value that is free, between `low`, which is, and `high`, which is not."""
+    while abs(high - low) > fine:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if free(middle) else (low, middle)
+    return low
