@@ -1,4 +1,4 @@
-"""Convex pieces with few vertices, and how far they reach beyond the surface that they stand for."""
+"""Convex pieces with few vertices, and points on surfaces."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import igl
 import numpy as np
 
 from kinematify.geometry.hull import convex_hull, thickened
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
 
 _GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
+_KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,6 +30,22 @@ class ConvexPiece:
     def volume(self) -> float:
         """[m^3]."""
         return signed_volume(self.vertices, self.faces)
+
+    @cached_property
+    def low(self) -> FloatArray:
+        """Lower corner of the bounding box, shape (3,)."""
+        return np.asarray(self.vertices.min(axis=0))
+
+    @cached_property
+    def high(self) -> FloatArray:
+        """Upper corner."""
+        return np.asarray(self.vertices.max(axis=0))
+
+    @cached_property
+    def area(self) -> float:
+        """[m^2]."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
 
 
 def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> ConvexPiece:
@@ -67,9 +83,22 @@ def signed_volume(vertices: FloatArray, faces: IntArray) -> float:
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
-def reach(piece: ConvexPiece, tree: igl.AABB, vertices: FloatArray, faces: IntArray) -> float:
-    """How far the surface of a piece lies from a mesh at most [m], over its face centres and edge middles."""
-    corners = piece.vertices[piece.faces]
-    probes = np.concatenate([corners.mean(axis=1), 0.5 * (corners + np.roll(corners, 1, axis=1)).reshape(-1, 3)])
-    squared, _, _ = tree.squared_distance(vertices, faces, np.ascontiguousarray(probes))
-    return float(np.sqrt(np.max(squared, initial=0.0)))
+def surface_points(vertices: FloatArray, faces: IntArray, count: int) -> FloatArray:
+    """Return points on a mesh, evenly by area, shape (count, 3).
+
+    Args:
+        vertices: Shape (V, 3).
+        faces: Shape (F, 3), at least one with an area.
+        count: How many.
+    """
+    corners = vertices[faces]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    ends = np.cumsum(areas)
+    number = np.arange(count)
+    face = np.minimum(np.searchsorted(ends, (number + 0.5) * (ends[-1] / count)), len(faces) - 1)
+    # A low-discrepancy sequence in the unit square, folded into the triangle.
+    first, second = ((number[:, None] * _KRONECKER + 0.5) % 1.0).T
+    over = first + second > 1.0
+    first, second = np.where(over, 1.0 - first, first), np.where(over, 1.0 - second, second)
+    a, b, c = (corners[face, k] for k in range(3))
+    return np.asarray(a + first[:, None] * (b - a) + second[:, None] * (c - a))

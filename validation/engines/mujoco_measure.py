@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from kinematify.validation.engines.mujoco_model import MujocoModel
 
 
+_ROWS_PER_THREAD = 150
+"""Fewer rows are done before a thread has started."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measured:
     """One entry for each row that was asked for."""
@@ -38,9 +42,12 @@ def measure(loaded: MujocoModel, values: FloatArray, *, dynamic: int, threads: i
         dynamic: Mass matrices are kept for the first so many rows.
         threads: MuJoCo computes outside of Python's lock.
     """
-    chunks = np.array_split(np.arange(len(values)), max(1, threads))
-    with ThreadPoolExecutor(max(1, threads)) as pool:
-        parts = list(pool.map(lambda rows: _measure_rows(loaded, values, rows, dynamic), chunks))
+    chunks = np.array_split(np.arange(len(values)), min(threads, 1 + len(values) // _ROWS_PER_THREAD))
+    if len(chunks) == 1:
+        parts = [_measure_rows(loaded, values, chunks[0], dynamic)]
+    else:
+        with ThreadPoolExecutor(len(chunks)) as pool:
+            parts = list(pool.map(lambda rows: _measure_rows(loaded, values, rows, dynamic), chunks))
     row, links, depth = (np.concatenate([part[k] for part in parts]) for k in (1, 2, 3))
     return Measured(
         T_world_link=np.concatenate([part[0] for part in parts]),
@@ -55,24 +62,26 @@ _Part = tuple["FloatArray", "IntArray", "IntArray", "FloatArray", "FloatArray", 
 
 def _measure_rows(loaded: MujocoModel, values: FloatArray, rows: IntArray, dynamic: int) -> _Part:
     model, data = loaded.model, mujoco.MjData(loaded.model)
-    link_of_geom = loaded.link_of_body[model.geom_bodyid]
+    qpos, bodies = loaded.qpos, loaded.body
     poses = np.tile(np.eye(4), (len(rows), len(loaded.body), 1, 1))
     gravity = np.zeros((len(rows), model.nv))
     matrices: list[FloatArray] = []
     found: list[tuple[IntArray, IntArray, FloatArray]] = []
     for k, row in enumerate(rows):
-        data.qpos[loaded.qpos] = values[row]
+        data.qpos[qpos] = values[row]
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_rne(model, data, 0, gravity[k])
-        poses[k, :, :3, :3] = data.xmat[loaded.body].reshape(-1, 3, 3)
-        poses[k, :, :3, 3] = data.xpos[loaded.body]
-        found.append((np.full(data.ncon, row), link_of_geom[data.contact.geom], -data.contact.dist))
+        poses[k, :, :3, :3] = data.xmat[bodies].reshape(-1, 3, 3)
+        poses[k, :, :3, 3] = data.xpos[bodies]
+        if data.ncon:
+            found.append((np.full(data.ncon, row), data.contact.geom.copy(), -data.contact.dist))
         if row < dynamic:
             matrices.append(_mass_matrix(loaded, data))
-    row_of, links, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(3))
+    row_of, geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(3))
+    links = loaded.link_of_body[model.geom_bodyid][geoms.reshape(-1, 2).astype(np.int64)]
     size = len(loaded.joint)
     inertia = np.array(matrices).reshape(len(matrices), size, size)
-    return poses, row_of.astype(np.int64), links.reshape(-1, 2).astype(np.int64), depth, gravity[:, loaded.dof], inertia
+    return poses, row_of.astype(np.int64), links, depth, gravity[:, loaded.dof], inertia
 
 
 def _mass_matrix(loaded: MujocoModel, data: mujoco.MjData) -> FloatArray:

@@ -37,10 +37,11 @@ def deepest(row: IntArray, links: IntArray, depth: FloatArray) -> Contacts:
         depth: [m], shape (n,).
     """
     links = np.sort(links.reshape(-1, 2), axis=1)
-    order = np.lexsort((-depth, links[:, 1], links[:, 0], row))
-    key = np.column_stack([row[order], links[order]])
+    count = int(links.max(initial=0)) + 1
+    key = (row * count + links[:, 0]) * count + links[:, 1]
+    order = np.lexsort((-depth, key))
     first = np.ones(len(key), dtype=bool)
-    first[1:] = np.any(key[1:] != key[:-1], axis=1)
+    first[1:] = np.diff(key[order]) > 0
     kept = order[first]
     return Contacts(row=row[kept], links=links[kept], depth=depth[kept])
 

@@ -1,23 +1,34 @@
-"""The collision geometry of a link as primitives and convex pieces, because engines see every mesh as its hull."""
+"""The collision geometry of a model as primitives and convex pieces, because engines see every mesh as its hull."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import igl
 import numpy as np
 
-from kinematify.assembly.weld import welded
-from kinematify.validation.convex import ConvexPiece, convex_piece, reach, signed_volume
+from kinematify.assembly.mesh_file import RawMesh
+from kinematify.assembly.pieces import connected_pieces
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.validation.asset.bodies import closed_volume
+from kinematify.validation.convex import ConvexPiece, convex_piece
+from kinematify.validation.prepare.cache import cached_cuts
+from kinematify.validation.prepare.cut import Concave, Surface
 from kinematify.validation.prepare.prepared import Method
 
 if TYPE_CHECKING:
-    from kinematify.validation.declared import DeclaredLink, DeclaredShape
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.robot import LinkMesh
+    from kinematify.validation.declared import DeclaredLink, DeclaredModel, DeclaredShape
     from kinematify.validation.settings import PrepareSettings
 
 _KEPT = ("box", "cylinder", "sphere")
+"""Primitives that all engines have; capsules become meshes."""
 _WELD = 1e-6
+"""Vertices nearer than this fraction of the diagonal are one."""
+_EFFORT = list(Method)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,25 +45,155 @@ class Pieces:
     """Volume of the pieces over that of the declared meshes, less one; None where they enclose none."""
 
 
-def decomposed(link: DeclaredLink, settings: PrepareSettings) -> Pieces:
-    """Return the collision geometry of a link, or the visual one where it declares none."""
-    shapes = link.collisions or link.visuals
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Component:
+    """A connected piece of a mesh, or the rest of one that has too many."""
+
+    link: str
+    surface: Surface
+    hull: ConvexPiece
+    gap: float
+    """How far the hull reaches beyond the surface [m]."""
+    tolerance: float
+    """How far pieces may [m]."""
+    thickness: float
+    """Of flat pieces [m]."""
+    alone: bool
+    """True if it is the whole mesh."""
+
+    @property
+    def convex(self) -> bool:
+        return self.gap <= self.tolerance
+
+
+def decomposed(model: DeclaredModel, settings: PrepareSettings) -> dict[str, Pieces]:
+    """Return the collision geometry of every link, or the visual one where it declares none.
+
+    Args:
+        model: The model; hollows that are small beside it are filled.
+        settings: Tolerances and how many cuts.
+    """
+    size = _diagonal(model)
+    components = [
+        component
+        for link in model.links
+        for shape in shapes_of(link)
+        if shape.kind not in _KEPT
+        for component in _components(link, shape.mesh, size, settings)
+    ]
+    concave = [component for component in components if not component.convex]
+    pieces = dict(zip(map(id, concave), _cut(concave, len(model.links), settings), strict=True))
+    return {
+        link.name: _pieces(link, [(item, pieces.get(id(item))) for item in components if item.link == link.name])
+        for link in model.links
+    }
+
+
+def _diagonal(model: DeclaredModel) -> float:
+    """Of the box around the collision geometry at zero [m]; 0 where there is none."""
+    poses = forward_kinematics(model.kinematics, {})
+    ends = [
+        end(shape.mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3], axis=0)
+        for link in model.links
+        for shape in shapes_of(link)
+        if len(shape.mesh.vertices)
+        for end in (np.min, np.max)
+    ]
+    return float(np.linalg.norm(np.ptp(np.array(ends), axis=0))) if ends else 0.0
+
+
+def shapes_of(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+    """Collision shapes of a link, visual ones where it declares none."""
+    return link.collisions or link.visuals
+
+
+def _components(link: DeclaredLink, mesh: LinkMesh, size: float, settings: PrepareSettings) -> list[_Component]:
+    parts = sorted(
+        connected_pieces(RawMesh(name="", vertices=mesh.vertices, faces=mesh.faces), _WELD),
+        key=lambda part: -float(np.linalg.norm(np.ptp(part.vertices, axis=0))),
+    )
+    if not parts:
+        return []
+    diagonal = float(np.linalg.norm(np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)))
+    surfaces = [Surface(part.vertices, part.faces) for part in parts[: settings.most_components]]
+    if len(parts) > settings.most_components:
+        surfaces.append(_joined(parts[settings.most_components :]))
+    tolerance = max(settings.link_gap * diagonal, settings.model_gap * size)
+    thickness = max(settings.thickness * diagonal, settings.least_thickness)
+    found: list[_Component] = []
+    for surface in surfaces:
+        hull = convex_piece(surface.vertices, thickness=thickness, directions=settings.corners)
+        if any(item.convex and _inside(surface.vertices, item.hull) for item in found):
+            continue
+        found.append(
+            _Component(
+                link=link.name,
+                surface=surface,
+                hull=hull,
+                gap=surface.gap(hull, tolerance),
+                tolerance=tolerance,
+                thickness=thickness,
+                alone=len(surfaces) == 1,
+            )
+        )
+    return found
+
+
+def _joined(parts: Sequence[RawMesh]) -> Surface:
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    return Surface(
+        np.concatenate([part.vertices for part in parts]),
+        np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
+    )
+
+
+def _inside(points: FloatArray, hull: ConvexPiece) -> bool:
+    """True if all points lie in a convex piece: nothing touches them there."""
+    if np.any(points.min(axis=0) < hull.low) or np.any(points.max(axis=0) > hull.high):
+        return False
+    a, b, c = (hull.vertices[hull.faces[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    return bool(np.all(points @ normals.T <= np.einsum("ij,ij->i", a, normals)))
+
+
+def _cut(concave: Sequence[_Component], links: int, settings: PrepareSettings) -> list[list[ConvexPiece]]:
+    """Pieces of each concave component; one piece where there were not enough cuts."""
+    bodies = [Concave(surface=item.surface, tolerance=item.tolerance, thickness=item.thickness) for item in concave]
+    return cached_cuts(bodies, max(settings.cuts, settings.cuts_per_link * links), settings)
+
+
+def _pieces(link: DeclaredLink, parts: Sequence[tuple[_Component, list[ConvexPiece] | None]]) -> Pieces:
+    """Put the pieces of a link together; what could not be cut keeps its hull."""
+    shapes = shapes_of(link)
     primitives = tuple(shape for shape in shapes if shape.kind in _KEPT)
     convex: list[ConvexPiece] = []
-    gap, volume = 0.0, 0.0
-    method = Method.PRIMITIVES if primitives else Method.NONE
-    for shape in shapes:
-        if shape.kind in _KEPT:
-            continue
-        vertices, faces = welded(shape.mesh.vertices, shape.mesh.faces, _WELD)
-        diagonal = float(np.linalg.norm(np.ptp(vertices, axis=0)))
-        piece = convex_piece(vertices, thickness=settings.thickness * diagonal, directions=settings.directions)
-        tree = igl.AABB()
-        tree.init(vertices, faces)
-        here = reach(piece, tree, vertices, faces)
-        method = Method.CONVEX if here < settings.convex_gap * diagonal else Method.HULL
-        gap = max(gap, here)
-        volume += max(signed_volume(vertices, faces), 0.0)
-        convex.append(piece)
-    error = sum(piece.volume for piece in convex) / volume - 1.0 if volume > 0.0 else None
-    return Pieces(primitives=primitives, convex=tuple(convex), method=method, gap=gap, volume_error=error)
+    methods = [Method.PRIMITIVES if primitives else Method.NONE]
+    gaps = [0.0]
+    for component, cut in parts:
+        if cut is None:
+            methods.append(Method.CONVEX if component.alone else Method.COMPONENTS)
+            convex.append(component.hull)
+            gaps.append(component.gap)
+        elif len(cut) == 1:
+            methods.append(Method.HULL)
+            convex.append(component.hull)
+            gaps.append(component.gap)
+        else:
+            methods.append(Method.CUT)
+            convex += cut
+            gaps.append(max(component.surface.gap(piece, component.tolerance) for piece in cut))
+    return Pieces(
+        primitives=primitives,
+        convex=tuple(convex),
+        method=max(methods, key=_EFFORT.index),
+        gap=max(gaps),
+        volume_error=_volume_error(shapes, convex),
+    )
+
+
+def _volume_error(shapes: Sequence[DeclaredShape], convex: Sequence[ConvexPiece]) -> float | None:
+    volumes = [closed_volume(shape.mesh) for shape in shapes if shape.kind not in _KEPT]
+    known = [volume for volume in volumes if volume is not None]
+    if not known or len(known) < len(volumes):
+        return None
+    return sum(piece.volume for piece in convex) / sum(known) - 1.0

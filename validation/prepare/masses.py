@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from kinematify.validation.settings import PrepareSettings
 
 
+_ROUNDING = 1e-9
+"""Relative rounding of moments of inertia, well above that of engines that read them."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PreparedInertial:
     """What is written for a link."""
@@ -57,15 +61,20 @@ def usable_mass(inertial: DeclaredInertial | None) -> bool:
     return inertial is not None and inertial.mass > 0.0
 
 
-def usable_tensor(tensor: FloatArray, slack: float) -> bool:
-    """True if a tensor is positive definite and its principal moments can be those of a body, within a relative slack.
+def lifted(tensor: FloatArray) -> FloatArray | None:
+    """Return the tensor with just enough added to all principal moments that no one exceeds the sum of the others.
+
+    MuJoCo refuses what misses that by the last digit of the file. None where a moment is not above zero.
 
     Args:
         tensor: Shape (3, 3), symmetric.
-        slack: How far the largest moment may exceed the sum of the others, fraction of that sum.
     """
     low, middle, high = np.linalg.eigvalsh(tensor)
-    return bool(low > 0.0 and high <= (low + middle) * (1.0 + slack))
+    if low <= _ROUNDING * high or high <= 0.0:
+        return None
+    excess = high - low - middle
+    lift = excess + _ROUNDING * high if excess > -_ROUNDING * high else 0.0
+    return np.asarray(tensor + lift * np.eye(3))
 
 
 def _inertial(link: DeclaredLink, *, weighed: bool, settings: PrepareSettings) -> PreparedInertial:
@@ -73,15 +82,17 @@ def _inertial(link: DeclaredLink, *, weighed: bool, settings: PrepareSettings) -
     if declared is None or not usable_mass(declared):
         part = None if weighed else link_part(link)
         return _ball(settings.frame_mass, settings) if part is None else _from_geometry(part)
-    if usable_tensor(declared.tensor, settings.moment_slack):
-        return PreparedInertial(
-            mass=declared.mass,
-            center_of_mass=declared.center_of_mass,
-            tensor=declared.tensor,
-            mass_added=False,
-            inertia_added=False,
-        )
-    return _with_made_up_tensor(link, declared, settings)
+    tensor = lifted(declared.tensor)
+    if tensor is None:
+        return _with_made_up_tensor(link, declared, settings)
+    changed = float(np.abs(tensor - declared.tensor).max()) > settings.moment_slack * float(np.abs(tensor).max())
+    return PreparedInertial(
+        mass=declared.mass,
+        center_of_mass=declared.center_of_mass,
+        tensor=tensor,
+        mass_added=False,
+        inertia_added=changed,
+    )
 
 
 def _with_made_up_tensor(link: DeclaredLink, declared: DeclaredInertial, settings: PrepareSettings) -> PreparedInertial:

@@ -26,10 +26,10 @@ class Method(StrEnum):
     """The meshes are convex within the tolerance: their hulls are they."""
     COMPONENTS = "components"
     """Each connected component is convex within the tolerance."""
-    COACD = "coacd"
+    CUT = "cut"
     """Concave meshes were cut into nearly convex pieces."""
     HULL = "hull"
-    """Concave, and taken for its hull: there was no time to cut it, or the cutting failed."""
+    """A concave mesh, or a part of one, is taken for its hull: the cuts were spent on worse ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +52,7 @@ class PreparedLink:
     mass_added: bool
     """True if the file has no mass that engines can use; `mass` is then made up."""
     inertia_added: bool
-    """True if the file has no inertia that engines can use."""
+    """True if the file has no inertia that engines can use, or one that had to be changed by more than rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -36,7 +36,7 @@ def prepare(model: DeclaredModel, work: Path, settings: PrepareSettings) -> Prep
     work = work.resolve()
     (work / _MESH_FOLDER).mkdir(exist_ok=True)
     inertials = prepared_inertials(model, settings)
-    shapes = {link.name: decomposed(link, settings) for link in model.links}
+    shapes = decomposed(model, settings)
     robot = document.robot_element()
     for index, link in enumerate(model.links):
         element = document.add_link(robot, link.name, inertials[link.name])
