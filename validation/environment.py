@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from kinematify.validation.settings import ValidationSettings
 
 _PACKAGES = (
-    "numpy", "scipy", "trimesh", "libigl", "python-fcl", "mujoco", "pybullet", "pin", "coacd",
+    "numpy", "scipy", "trimesh", "libigl", "python-fcl", "mujoco", "pybullet", "pin",
 )  # fmt: skip
 
 

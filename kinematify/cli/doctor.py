@@ -30,7 +30,6 @@ MODULES = {
     "embreex": ("embreex", "ray casting"),
     "fast-simplification": ("fast_simplification", "simplifying large meshes"),
     "manifold3d": ("manifold3d", "solids of the built-in generator"),
-    "coacd": ("coacd", "convex pieces for engines"),
     "pydantic": ("pydantic", "configuration"),
     "PyYAML": ("yaml", "configuration"),
     "lxml": ("lxml.etree", "URDF"),

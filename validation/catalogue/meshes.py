@@ -52,7 +52,7 @@ CHECKS: tuple[Check, ...] = (
         severity=Severity.WARNING,
         blame=Blame.ASSET,
         verifies="No mesh is thinner than `flat` times its diagonal; for meshes that are only seen it is a note.",
-        matters="MuJoCo and coacd cannot make a hull of a flat mesh, and nothing rests on it safely.",
+        matters="MuJoCo cannot make a hull of a flat mesh, and nothing rests on it safely.",
         remedy="Give it a thickness, or use a thin box for the collision.",
     ),
     Check(
