@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.families import (
     cabinet,
+    fridge,
     gantry,
     gripper,
     hand,
+    oven,
     quadruped,
     scara,
     serial_arm,
     snake,
+    table,
 )
 
 if TYPE_CHECKING:
@@ -29,6 +32,9 @@ FAMILIES: dict[str, Family] = {
         hand,
         quadruped,
         snake,
+        oven,
+        fridge,
+        table,
     )
 }
 """Keyed by name."""

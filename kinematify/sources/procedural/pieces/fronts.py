@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.pieces.bearings import barrel
+import numpy as np
+
+from kinematify.sources.procedural.pieces.bearings import ALONG_X, at, barrel
 from kinematify.sources.procedural.pieces.handles import handle
-from kinematify.sources.procedural.solids import box, tray, union
+from kinematify.sources.procedural.solids import box, off, tray, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,14 +61,16 @@ class Fitting:
 def carcass(width: float, height: float, depth: float, openings: Sequence[Opening]) -> Manifold:
     """Return a body, its front in y = 0 and its floor in z = 0, with a room behind every opening."""
     body = box((-0.5 * width, 0.0, 0.0), (0.5 * width, depth, height))
-    rooms = [
-        box(
-            (o.left + 0.5 * o.wall, -o.wall, o.bottom + 0.5 * o.wall),
-            (o.right - 0.5 * o.wall, depth - o.wall, o.top - 0.5 * o.wall),
-        )
-        for o in openings
-    ]
-    return body - union(*rooms)
+    return body - union(*(room(opening) for opening in openings))
+
+
+def room(opening: Opening) -> Manifold:
+    """Return what to take away from a solid body to make the room behind an opening."""
+    inset = 0.5 * opening.wall
+    return box(
+        (opening.left + inset, -opening.wall, opening.bottom + inset),
+        (opening.right - inset, opening.depth - opening.wall, opening.top - inset),
+    )
 
 
 def panel(opening: Opening, clearance: float) -> Manifold:
@@ -130,7 +134,11 @@ def add_door(
     level = 0.5 * (opening.bottom + opening.top)
     length = min(0.2, 0.4 * opening.height)
     solids = [panel(opening, clearance), *handle(fitting.grip, (free, front, level), along="z", length=length)]
-    pivot = (at_hinge + sign * 0.5 * (clearance + _REVEAL), back if outermost else front, level)
+    pivot = (
+        at_hinge if outermost else at_hinge + sign * 0.5 * (clearance + _REVEAL),
+        back if outermost else front,
+        level,
+    )
     if hinge == "barrel" and outermost:
         pivot = (at_hinge - sign * (_BARREL[0] + clearance), 0.5 * (front + back), level)
         of_body, of_door = _barrels(opening, pivot, at_hinge, sign, clearance)
@@ -154,3 +162,27 @@ def _barrels(
     halves = barrel(length, radius, clearance, (on_body, on_door))
     of_body, of_door = (half if sign > 0 else half.mirror((1, 0, 0)) for half in halves)
     return of_body.translate(pivot), of_door.translate(pivot)
+
+
+def add_flap(workshop: Workshop, name: str, parent: str, opening: Opening, fitting: Fitting, *, hinge: str) -> None:
+    """Add a door that falls open about a horizontal line at its lower edge; `hinge` as for `add_door`."""
+    clearance = fitting.clearance
+    front, back = -clearance - opening.wall, -clearance
+    middle = 0.5 * (opening.left + opening.right)
+    grip = (middle, front, opening.top - min(0.05, 0.15 * opening.height))
+    solids = [panel(opening, clearance), *handle(fitting.grip, grip, along="x", length=0.7 * opening.width)]
+    pivot = (middle, back, opening.bottom)
+    if hinge == "barrel":
+        pivot = (middle, 0.5 * (front + back), opening.bottom - _BARREL[0] - clearance)
+        level = opening.bottom - pivot[2]
+        on_body = (-pivot[1] + 0.002, -pivot[1] + 0.02, level - 0.003, level + 0.001)
+        start = level + 0.5 * (clearance + _REVEAL)
+        on_door = (-0.5 * opening.wall, -0.5 * opening.wall + 0.003, start, start + 0.02)
+        halves = barrel(_BARREL[1], _BARREL[0], clearance, (on_body, on_door))
+        for share in (-0.35, 0.35):
+            place = at(off(pivot, share * opening.width, 0, 0), ALONG_X[:, :3])
+            of_body, of_door = (half.transform(place) for half in halves)
+            workshop.add(parent, of_body)
+            solids.append(of_door)
+    workshop.body(name, *solids)
+    workshop.turns(name, parent, (1, 0, 0), pivot, (0.0, 0.5 * np.pi), rest=fitting.rest)

@@ -1,0 +1,95 @@
+"""Ovens and stoves: a door that falls open, and knobs above it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.family import Family, Parameter
+from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_knob
+from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
+from kinematify.sources.procedural.solids import box, cylinder
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from kinematify.sources.procedural.family import Values
+    from kinematify.sources.procedural.workshop import Workshop
+
+_WALL = 0.04
+_PLINTH = 0.1  # below the door, so that its handle does not reach the floor [m]
+
+
+def _build(values: Values, workshop: Workshop) -> None:
+    width, height, depth = (values.number(name) for name in ("width", "height", "depth"))
+    clearance, rest = values.number("clearance"), values.number("open")
+    strip = min(0.12, max(0.07, 0.14 * height))
+    opening = Opening(left=-0.5 * width, right=0.5 * width, bottom=_PLINTH, top=height - strip, depth=depth, wall=_WALL)
+    workshop.body("body", carcass(width, height, depth, [opening]), *_grate(opening))
+    if values.choice("top") == "burners":
+        workshop.cut("body", *_burners(width, depth, height))
+    fitting = Fitting(clearance=clearance, grip=values.choice("handle"), rest=rest)
+    add_flap(workshop, "door", "body", opening, fitting, hinge=values.choice("hinge"))
+    workshop.cut("door", _window(opening, clearance))
+    knobs = values.count("knobs")
+    for k in range(knobs):
+        x = ((k + 0.5) / knobs - 0.5) * 0.9 * width
+        mount = Mount(
+            parent="body", place=(x, 0, height - 0.5 * strip), face=FRONT, clearance=clearance, depth=0.5 * strip
+        )
+        add_knob(workshop, f"knob_{k + 1}", mount, min(0.3 * strip, 0.35 * width / knobs), rest=rest)
+
+
+def _grate(opening: Opening) -> list[Manifold]:
+    """A grate of bars from wall to wall in the middle of the room."""
+    level, inner = 0.5 * (opening.bottom + opening.top), 0.5 * _WALL - 1e-3
+    first, last = 0.04, opening.depth - _WALL - 0.02
+    return [
+        box((opening.left + inner, y, level), (opening.right - inner, y + 0.006, level + 0.006))
+        for y in (first + k / 6.0 * (last - first) for k in range(7))
+    ]
+
+
+def _burners(width: float, depth: float, height: float) -> list[Manifold]:
+    """Ring-shaped grooves in the top."""
+    rings = []
+    for x, y, share in ((-1, 0.28, 0.13), (1, 0.28, 0.17), (-1, 0.72, 0.17), (1, 0.72, 0.13)):
+        radius, centre = share * min(width, depth), (0.24 * x * width, y * depth)
+        disc = cylinder(radius, (*centre, height - 0.002), (*centre, height + 0.01))
+        rings.append(disc - cylinder(radius - 0.004, (*centre, height - 0.01), (*centre, height + 0.02)))
+    return rings
+
+
+def _window(opening: Opening, clearance: float) -> Manifold:
+    """A shallow recess in the door's front where the glass is."""
+    front = -clearance - _WALL
+    margin = 0.15 * min(opening.width, opening.height)
+    return box(
+        (opening.left + margin, front - 0.01, opening.bottom + margin),
+        (opening.right - margin, front + 0.003, opening.top - 0.3 * opening.height),
+    )
+
+
+FAMILY = Family(
+    name="oven",
+    title="oven or stove",
+    words=("oven", "stove", "cooker", "range", "kitchen stove", "range cooker"),
+    material="metal",
+    parameters=(
+        Parameter(name="width", default=0.6, unit="m", bounds=(0.35, 1.2), usual=(0.5, 0.9), help="Outer width."),
+        Parameter(name="height", default=0.85, unit="m", bounds=(0.45, 1.2), usual=(0.6, 0.95), help="Outer height."),
+        Parameter(
+            name="depth", default=0.6, unit="m", bounds=(0.35, 0.9), usual=(0.5, 0.65), help="Outer depth of the body."
+        ),
+        Parameter(name="knobs", default=4, bounds=(0, 8), usual=(2, 6), words=("dial",), help="Knobs above the door."),
+        Parameter(
+            name="top",
+            default="burners",
+            choices=("burners", "plain"),
+            help="A cooktop, or a plain top.",
+            choice_words={"burners": ("cooktop", "hob"), "plain": ("built in",)},
+        ),
+        Parameter(name="handle", default="bar", choices=("bar", "edge", "cup"), help="What the door is pulled by."),
+        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+    ),
+    build=_build,
+)

@@ -1,0 +1,90 @@
+"""What fingers turn and press: knobs and buttons, each in its own hole of the part that carries it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.sources.procedural.pieces.bearings import at
+from kinematify.sources.procedural.solids import bore, box, cylinder
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.sources.procedural.solids import Point
+    from kinematify.sources.procedural.workshop import Workshop
+
+FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns what is built to look along z so that it looks along -y, with its y up."""
+TOP = np.eye(3)
+"""Leaves what is built to look along z as it is."""
+_SPAN = 4.7  # a knob with stops turns so far [rad], about 270 degrees
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mount:
+    """Where a control sits on a surface."""
+
+    parent: str
+    """Body that carries it; it gets the hole."""
+    place: Point
+    """Where its middle meets the surface [m]."""
+    face: FloatArray
+    """`FRONT`, `TOP` or another rotation, shape (3, 3), that takes z to the outer normal."""
+    clearance: float
+    """[m]."""
+    depth: float
+    """Of solid material behind the surface that the hole may use [m]."""
+
+    def placed(self, solid: Manifold) -> Manifold:
+        """Bring a solid from the origin, where the surface is z = 0, to the surface."""
+        return solid.transform(at(self.place, self.face))
+
+    @property
+    def outward(self) -> FloatArray:
+        """Unit normal of the surface, shape (3,)."""
+        return self.face[:, 2]
+
+
+def add_knob(
+    workshop: Workshop, name: str, mount: Mount, radius: float, *, endless: bool = False, rest: float = 0.0
+) -> None:
+    """Add a knob with a pointer, turned clockwise by its shaft in a bore; without stops if it is endless."""
+    shaft, height, clearance = 0.3 * radius, 0.7 * radius, mount.clearance
+    bottom = -mount.depth + clearance
+    workshop.cut(mount.parent, mount.placed(bore(shaft, clearance, (0, 0, -mount.depth), (0, 0, radius))))
+    solids = (
+        cylinder(radius, (0, 0, clearance), (0, 0, clearance + height)),
+        box((-0.12 * radius, 0.0, 0.5 * height), (0.12 * radius, 0.95 * radius, clearance + 1.3 * height)),
+        cylinder(shaft, (0, 0, bottom), (0, 0, clearance + 0.5 * height)),
+    )
+    workshop.body(name, *(mount.placed(solid) for solid in solids))
+    limits = None if endless else (0.0, _SPAN)
+    workshop.turns(name, mount.parent, -mount.outward, mount.place, limits, rest=rest)
+
+
+def add_button(
+    workshop: Workshop, name: str, mount: Mount, size: tuple[float, float], *, travel: float, rest: float = 0.0
+) -> None:
+    """Add a rectangular button that is pressed into its pocket; `size` is across and up [m]."""
+    clearance = mount.clearance
+    x, y = 0.5 * size[0], 0.5 * size[1]
+    pocket = box((-x - clearance, -y - clearance, -mount.depth), (x + clearance, y + clearance, mount.depth))
+    cap = box((-x, -y, -mount.depth + travel + clearance), (x, y, 1.5 * travel))
+    workshop.cut(mount.parent, mount.placed(pocket))
+    workshop.body(name, mount.placed(cap))
+    workshop.slides(name, mount.parent, -mount.outward, mount.place, (0.0, travel), rest=rest)
+
+
+def grid(count: int, columns: int, size: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return the middles of `count` fields in rows of `columns`, first row on top, on an area around the origin."""
+    columns = min(columns, count) or 1
+    rows = -(-count // columns)
+    pitch = size[0] / columns, size[1] / rows
+    return [
+        ((k % columns + 0.5) * pitch[0] - 0.5 * size[0], 0.5 * size[1] - (k // columns + 0.5) * pitch[1])
+        for k in range(count)
+    ]
