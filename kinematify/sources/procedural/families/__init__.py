@@ -6,16 +6,20 @@ from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.families import (
     cabinet,
+    dishwasher,
     fridge,
     gantry,
     gripper,
     hand,
+    microwave,
     oven,
     quadruped,
+    safe,
     scara,
     serial_arm,
     snake,
     table,
+    washing_machine,
 )
 
 if TYPE_CHECKING:
@@ -35,6 +39,10 @@ FAMILIES: dict[str, Family] = {
         oven,
         fridge,
         table,
+        microwave,
+        dishwasher,
+        washing_machine,
+        safe,
     )
 }
 """Keyed by name."""

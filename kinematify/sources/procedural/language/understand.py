@@ -38,6 +38,7 @@ _PLACES = {
     *("left", "right", "above", "below", "under", "beneath", "over", "top", "bottom", "beside", "next", "stacked"),
     *("column", "row", "grid", "lower", "upper"),
 }
+_OPENABLE = ("door", "lid", "drawer", "flap", "cover", "leaf", "window")
 _JOINING = ("x", "by")
 
 
@@ -322,6 +323,7 @@ def _choices(reading: _Reading) -> None:
                         where = list(range(k, k + len(words)))
                         if reading.text(where[-1] + 1) in (parameter.name, f"{parameter.name}s"):
                             where.append(where[-1] + 1)
+                        where += [i for i in range(len(reading.tokens)) if reading.text(i) == parameter.name]
                         reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *where)
 
 
@@ -341,6 +343,8 @@ def _openness(reading: _Reading) -> None:
                 share = _FRACTIONS[reading.text(k + 1)]
                 reading.used.update((k + 1, k + 2) if reading.text(k + 2) == "way" else (k + 1,))
         reading.take("open", share, f"{share:.0%} open", *range(first, k + 1))
+        if reading.text(first - 1) in _OPENABLE:  # `its door ajar`: what stands so is one of the moving parts
+            reading.used.add(first - 1)
 
 
 def _looks(reading: _Reading) -> None:
