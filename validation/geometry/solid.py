@@ -93,22 +93,28 @@ class Solid:
         if not len(self.shells.closed):
             return depth
         near = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
-        near = near[self._may_be_inside(self._local(points[near]))]
-        near = near[np.abs(self._winding.winding_number(self._local(points[near]))) > 0.5] if len(near) else near
+        near = near[self._is_inside(self._local(points[near]))]
         if len(near):
             depth[near] = self._closed.nearest(self._local(points[near]))[0]
         return depth
 
-    def _may_be_inside(self, local: FloatArray) -> BoolArray:
-        """Whether a ray from a point, or the one opposite to it, meets a face from behind first.
+    def _is_inside(self, local: FloatArray) -> BoolArray:
+        """Whether points are inside: two opposite rays both meet a face from behind first.
 
-        It is quick and sorts out nearly everything; the winding number, which is slow, decides about the rest.
+        Where the rays disagree, as in shells that overlap, the winding number decides; it is slow.
         """
-        rays, found = self._closed_rays, np.zeros(len(local), dtype=bool)
-        for along in (_ASKEW, -_ASKEW) if len(local) else ():
-            hits = rays.first_hits(local, np.broadcast_to(along, local.shape))
-            found |= hits.met & (rays.face_normals[hits.face] @ along > 0.0)
-        return found
+        if not len(local):
+            return np.zeros(0, dtype=bool)
+        first, second = (self._meets_from_behind(local, along) for along in (_ASKEW, -_ASKEW))
+        inside = first & second
+        doubtful = np.flatnonzero(first ^ second)
+        if len(doubtful):
+            inside[doubtful] = np.abs(self._winding.winding_number(np.ascontiguousarray(local[doubtful]))) > 0.5
+        return inside
+
+    def _meets_from_behind(self, local: FloatArray, along: FloatArray) -> BoolArray:
+        hits = self._closed_rays.first_hits(local, np.broadcast_to(along, local.shape))
+        return np.asarray(hits.met & (self._closed_rays.face_normals[hits.face] @ along > 0.0))
 
     def beside_sheets(self, points: FloatArray) -> FloatArray:
         """Distance of points from the sheets [m], body frame (n, 3) -> (n,); 0 where a rim is nearest.

@@ -158,7 +158,8 @@ class Sweeper:
 
     def _within(self, leader: int, pair: Pair, values: FloatArray, T: FloatArray) -> Meeting | None:
         """Where and how deep a pair meets within the declared range, if it does so beyond what it is allowed."""
-        growth, passed, hit = self._growth(pair, T)
+        hit = self._overlap.collide(pair, T)
+        growth, passed = self._growth(pair, T, hit)
         events = np.flatnonzero(growth > self._allowance.tolerance(pair))
         if not len(events):
             return None
@@ -167,30 +168,34 @@ class Sweeper:
 
     def _outside(self, leader: int, pair: Pair, values: FloatArray, beyond: FloatArray) -> Meeting | None:
         """The same beyond the declared range, piece by piece, for the first place is enough."""
-        everything = np.concatenate([values, beyond[1:]])
-        for stop in range(len(values) + _PIECE - 1, len(everything) + _PIECE - 1, _PIECE):
-            some = everything[:stop]
-            T = relative(self._scene.poses(self.rows(leader, some)), pair)
-            growth, passed, hit = self._growth(pair, T, since=max(0, stop - 2 * _PIECE))
+        # What is on its way through a wall when the range ends is followed from a piece before.
+        way = np.concatenate([values[-_PIECE:], beyond[1:]])
+        T = relative(self._scene.poses(self.rows(leader, way)), pair)
+        hit = np.zeros(len(way), dtype=bool)
+        for start in range(0, len(way), _PIECE):
+            new = slice(start, start + _PIECE)
+            hit[new] = self._overlap.collide(pair, T[new])
+            until = len(hit[: new.stop])
+            growth, passed = self._growth(pair, T[:until], hit[:until], since=start)
             events = np.flatnonzero(growth > self._allowance.tolerance(pair))
             if len(events):
-                first = self._onset(leader, pair, some[: events[0] + 1], growth, hit)
-                return _meeting(pair, first, some[: events[0] + 1], growth[: events[0] + 1], passed, inside=False)
+                stop = int(events[0]) + 1
+                first = self._onset(leader, pair, way[:stop], growth, hit)
+                return _meeting(pair, first, way[:stop], growth[:stop], passed, inside=False)
         return None
 
-    def _growth(self, pair: Pair, T: FloatArray, *, since: int = 0) -> tuple[FloatArray, BoolArray, BoolArray]:
-        """Depth beyond that at rest [m], whether something has passed a wall by it, and FCL's verdict, (n,) each.
+    def _growth(self, pair: Pair, T: FloatArray, hit: BoolArray, *, since: int = 0) -> tuple[FloatArray, BoolArray]:
+        """Depth beyond that at rest [m] and whether something has passed a wall by it, (n,) each.
 
         Rows before `since` are only the way there; their depth is not asked for.
         """
         overlap, settings, size = self._overlap, self._scene.settings, self._scene.size
-        hit = overlap.collide(pair, T)
         ask = (hit | overlap.may_contain(pair, T)) & (np.arange(len(T)) >= since)
         growth = np.zeros(len(T))
-        if ask[1:].any():
+        if ask.any():
             growth[ask] = np.maximum(overlap.depth(pair, T[ask]) - self._allowance.at_rest(pair), 0.0)
         through = overlap.passed(pair, T, hit, grace=2.0 * settings.tolerance * size)
-        return np.maximum(growth, through), through > growth, hit
+        return np.maximum(growth, through), through > growth
 
     def _onset(self, leader: int, pair: Pair, values: FloatArray, growth: FloatArray, hit: BoolArray) -> float:
         """First contact of the run of growing depth that leads to the last of the values, found by bisection."""

@@ -32,7 +32,7 @@ class Configurations:
     rows: FloatArray
     """Values of the leaders [rad or m], shape (n, leaders)."""
     touching: BoolArray
-    """Surfaces meet, shape (n, pairs of the scene)."""
+    """Surfaces meet, shape (n, pairs of the scene); False for neighbours."""
     meeting: BoolArray
     """They meet although they do not touch at rest, or are deeper than they may be, shape (n, pairs)."""
 
@@ -58,11 +58,13 @@ def random_rows(scene: Scene, seed: int) -> FloatArray:
 
 
 def looked_at(scene: Scene, overlap: Overlap, allowance: Allowance, rows: FloatArray) -> Configurations:
-    """Ask about every pair in every row."""
+    """Ask about every pair in every row but neighbours, which the sweeps of their joints judge."""
     poses = scene.poses(rows)
     touching = np.zeros((len(rows), len(scene.pairs)), dtype=bool)
     meeting = np.zeros_like(touching)
     for column, pair in enumerate(scene.pairs):
+        if allowance.joined(pair):
+            continue
         T = relative(poses, pair)
         touching[:, column] = overlap.collide(pair, T)
         meeting[:, column] = _beyond(overlap, allowance, pair, T, touching[:, column])
@@ -70,10 +72,8 @@ def looked_at(scene: Scene, overlap: Overlap, allowance: Allowance, rows: FloatA
 
 
 def _beyond(overlap: Overlap, allowance: Allowance, pair: Pair, T: FloatArray, hit: BoolArray) -> BoolArray:
-    """Which of the hits go beyond what the pair may; neighbours are judged in the sweeps of their joints."""
+    """Which of the hits go beyond what the pair may."""
     found = np.zeros(len(T), dtype=bool)
-    if allowance.joined(pair):
-        return found
     rest = allowance.pairs.get(pair)
     if rest is None or not rest.collide:
         return hit
