@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.families import (
+    box,
     cabinet,
     dishwasher,
     fridge,
     gantry,
     gripper,
     hand,
+    laptop,
     microwave,
     oven,
     quadruped,
@@ -43,6 +45,8 @@ FAMILIES: dict[str, Family] = {
         dishwasher,
         washing_machine,
         safe,
+        laptop,
+        box,
     )
 }
 """Keyed by name."""

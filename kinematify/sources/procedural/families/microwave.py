@@ -22,9 +22,10 @@ def _build(values: Values, workshop: Workshop) -> None:
     width, height, depth = (values.number(name) for name in ("width", "height", "depth"))
     clearance = values.number("clearance")
     border = (0.5 - _PANEL) * width
-    opening = Opening(left=-0.5 * width, right=border, bottom=0.0, top=height, depth=depth, wall=_WALL)
+    behind = depth - _WALL - clearance  # the panel stands out as far as the door
+    opening = Opening(left=-0.5 * width, right=border, bottom=0.0, top=height, depth=behind, wall=_WALL)
     panel = box((border + 0.002, -_WALL - clearance, 0), (0.5 * width, 1e-3, height))
-    workshop.body("body", carcass(width, height, depth, [opening]), panel)
+    workshop.body("body", carcass(width, height, behind, [opening]), panel)
     fitting = Fitting(clearance=clearance, grip=values.choice("handle"), rest=values.number("open"))
     add_door(workshop, "door", "body", opening, fitting, side="left", outermost=True, hinge=values.choice("hinge"))
     margin, front = 0.15 * opening.width, -clearance - _WALL
@@ -42,7 +43,7 @@ def _add_turntable(workshop: Workshop, opening: Opening, clearance: float) -> No
     boss, hole, rotor = stub(pivot, (0, 0, 1), 0.015, clearance, length=0.012)
     workshop.add("body", boss)
     workshop.cut("body", hole)
-    level = pivot[2] + 0.012 + clearance
+    level = pivot[2] + 0.011 + clearance  # the plate's bottom is one with the flange
     plate = cylinder(radius, (*centre, level), (*centre, level + 0.012))
     hollow = cylinder(radius - 0.006, (*centre, level + 0.005), (*centre, level + 0.02))
     workshop.body("turntable", rotor, plate - hollow, material="glass")
@@ -63,8 +64,7 @@ def _add_controls(values: Values, workshop: Workshop, x: float, front: float) ->
         radius = min(0.3 * width, 0.3 * height / knobs)
         z = border + (knobs - k - 0.5) * (0.95 * height - border) / knobs
         add_knob(workshop, f"knob_{k + 1}", mount(0.0, z), min(radius, 0.17 * height / knobs), rest=rest)
-    columns = 3 if buttons > 3 else 1
-    rows = max(1, -(-buttons // columns))
+    columns, rows = (3, -(-buttons // 3)) if buttons > 3 else (1, max(1, buttons))
     size = (0.8 * width, border - 0.1 * height)
     pitch = min(size[0] / columns, 0.03), min(size[1] / rows, 0.03)
     area = (pitch[0] * columns, pitch[1] * rows)
@@ -82,9 +82,7 @@ FAMILY = Family(
     parameters=(
         Parameter(name="width", default=0.5, unit="m", bounds=(0.4, 0.8), usual=(0.42, 0.6), help="Outer width."),
         Parameter(name="height", default=0.28, unit="m", bounds=(0.22, 0.5), usual=(0.25, 0.35), help="Outer height."),
-        Parameter(
-            name="depth", default=0.36, unit="m", bounds=(0.25, 0.6), usual=(0.3, 0.45), help="Outer depth of the body."
-        ),
+        Parameter(name="depth", default=0.36, unit="m", bounds=(0.25, 0.6), usual=(0.3, 0.45), help="Outer depth."),
         Parameter(name="buttons", default=6, bounds=(0, 12), usual=(1, 12), words=("key",), help="On the panel."),
         Parameter(name="knobs", default=0, bounds=(0, 2), usual=(0, 2), words=("dial",), help="Above the buttons."),
         Parameter(name="handle", default="bar", choices=("bar", "edge", "none"), help="What the door is pulled by."),

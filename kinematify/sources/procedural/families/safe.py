@@ -29,13 +29,13 @@ def _build(values: Values, workshop: Workshop) -> None:
         return Mount(parent="door", place=(x, front, z), face=FRONT, clearance=clearance, depth=0.7 * wall)
 
     if values.choice("lock") == "dial":
-        add_knob(workshop, "dial", mount(0.0, 0.65 * height), min(0.05, 0.12 * size), endless=True)
+        add_knob(workshop, "dial", mount(0.0, 0.68 * height), min(0.05, 0.12 * size), endless=True)
     else:
-        pad = min(0.12, 0.36 * size)
+        pad = min(0.12, 0.3 * size)
         for k, (x, z) in enumerate(grid(12, 3, (0.75 * pad, pad))):
             cap = 0.2 * pad - 2 * clearance
             add_button(workshop, f"button_{k + 1}", mount(x, 0.68 * height + z), (cap, 0.9 * cap), travel=0.002)
-    _add_lever(values, workshop, mount(0.0, 0.3 * height), min(0.12, 0.3 * size))
+    _add_lever(values, workshop, mount(0.0, 0.3 * height), min(0.12, 0.22 * size))
 
 
 def _add_lever(values: Values, workshop: Workshop, mount: Mount, length: float) -> None:
@@ -82,7 +82,7 @@ FAMILY = Family(
             help="What draws the bolts.",
             choice_words={"wheel": ("spoked handle", "hand wheel")},
         ),
-        Parameter(name="hinge", default="barrel", choices=("barrel", "edge"), help="Visible hinges, or hidden ones."),
+        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

@@ -32,8 +32,10 @@ def barrel(
     """Return the two sides of a barrel hinge about the z axis, centred at the origin.
 
     Knuckles alternate between the sides; the first side, which has the outer ones, owns the pin. Each knuckle
-    reaches out to the rectangle of its side, which must overlap the body that it carries.
+    reaches out to the rectangle of its side, which must overlap the body that it carries. A clearance that is large
+    beside the radius is cut, so that there is a wall around the pin.
     """
+    clearance = min(clearance, 0.3 * radius)
     pitch = length / knuckles
     sides: list[list[Manifold]] = [[], []]
     for k in range(knuckles):
@@ -44,7 +46,7 @@ def barrel(
         sides[k % 2].append(hull(round_part, box((x0, y0, lower), (x1, y1, upper))))
     ends = (0, 0, -0.5 * length), (0, 0, 0.5 * length - clearance)
     pinned = union(*sides[0], cylinder(0.5 * radius, *ends))
-    return pinned, union(*sides[1]) - bore(0.5 * radius, clearance, *ends)
+    return pinned, union(*sides[1]) - bore(0.5 * radius, clearance, (0, 0, -length), (0, 0, length))
 
 
 def fork(width: float, radius: float, clearance: float, reach: float) -> tuple[Manifold, Manifold]:

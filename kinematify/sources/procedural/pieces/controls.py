@@ -81,8 +81,8 @@ def add_button(
 
 def grid(count: int, columns: int, size: tuple[float, float]) -> list[tuple[float, float]]:
     """Return the middles of `count` fields in rows of `columns`, first row on top, on an area around the origin."""
-    columns = min(columns, count) or 1
-    rows = -(-count // columns)
+    columns = max(1, min(columns, count))
+    rows = max(1, -(-count // columns))
     pitch = size[0] / columns, size[1] / rows
     return [
         ((k % columns + 0.5) * pitch[0] - 0.5 * size[0], 0.5 * size[1] - (k // columns + 0.5) * pitch[1])

@@ -1,0 +1,62 @@
+"""Laptops: a screen that is hinged at the back edge of a slab with keys."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.family import Family, Parameter
+from kinematify.sources.procedural.pieces.controls import grid
+from kinematify.sources.procedural.pieces.lids import BackEdge, add_barrels
+from kinematify.sources.procedural.solids import box
+
+if TYPE_CHECKING:
+    from kinematify.sources.procedural.family import Values
+    from kinematify.sources.procedural.workshop import Workshop
+
+_RADIUS = 0.005  # of the hinges [m]
+_OPENS = 2.2  # [rad]
+
+
+def _build(values: Values, workshop: Workshop) -> None:
+    width, depth = values.number("width"), values.number("depth")
+    base, screen = values.number("base"), values.number("screen")
+    clearance = values.number("clearance")
+    back = depth - 2.0 * _RADIUS - clearance - 0.001  # behind it stand the barrels
+    level = base + clearance
+    slab = box((-0.5 * width, 0, 0), (0.5 * width, back, base))
+    keys = [
+        box((x - 0.007, y - 0.007, -0.002), (x + 0.007, y + 0.007, 0.002)).translate((0, 0.58 * back, base))
+        for x, y in grid(48, 12, (min(0.9 * width, 0.3), min(0.4 * depth, 0.1)))
+    ]
+    pad = box((-0.18 * width, 0.06 * back, base - 0.0005), (0.18 * width, 0.3 * back, base + 0.01))
+    lid = box((-0.5 * width, 0, level), (0.5 * width, back, level + screen))
+    # The lid is hollow below where the keys stand up.
+    hollow = box((-0.46 * width, 0.04 * back, level - 1.0), (0.46 * width, 0.96 * back, level + 0.0025))
+    workshop.body("base", slab - pad, *keys)
+    workshop.body("screen", lid - hollow)
+    edge = BackEdge(y=back, level=level, below=base, above=screen, clearance=clearance)
+    places, knuckles = (-0.32 * width, 0.32 * width), values.count("knuckles")
+    pivot = add_barrels(
+        workshop, ("base", "screen"), edge, places, length=0.16 * width, radius=_RADIUS, knuckles=knuckles
+    )
+    workshop.turns("screen", "base", (-1, 0, 0), pivot, (0.0, _OPENS), rest=values.number("open"))
+
+
+FAMILY = Family(
+    name="laptop",
+    title="laptop",
+    words=("laptop", "notebook", "notebook computer", "laptop computer", "portable computer"),
+    material="metal",
+    parameters=(
+        Parameter(name="width", default=0.34, unit="m", bounds=(0.2, 0.5), usual=(0.28, 0.4), help="Outer width."),
+        Parameter(name="depth", default=0.24, unit="m", bounds=(0.15, 0.4), usual=(0.2, 0.28), help="Outer depth."),
+        Parameter(
+            name="base", default=0.014, unit="m", bounds=(0.008, 0.04), usual=(0.01, 0.024), help="Thickness below."
+        ),
+        Parameter(
+            name="screen", default=0.007, unit="m", bounds=(0.005, 0.02), usual=(0.005, 0.01), help="Thickness above."
+        ),
+        Parameter(name="knuckles", default=3, bounds=(2, 5), usual=(3, 5), help="Of each of the two hinges."),
+    ),
+    build=_build,
+)
