@@ -8,6 +8,7 @@ from kinematify.sources.procedural.families import (
     box,
     cabinet,
     dishwasher,
+    faucet,
     fridge,
     gantry,
     gripper,
@@ -21,6 +22,8 @@ from kinematify.sources.procedural.families import (
     serial_arm,
     snake,
     table,
+    toilet,
+    trash_can,
     washing_machine,
 )
 
@@ -47,6 +50,9 @@ FAMILIES: dict[str, Family] = {
         safe,
         laptop,
         box,
+        trash_can,
+        toilet,
+        faucet,
     )
 }
 """Keyed by name."""
