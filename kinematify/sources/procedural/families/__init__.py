@@ -8,7 +8,6 @@ from kinematify.sources.procedural.families import (
     box,
     cabinet,
     dishwasher,
-    faucet,
     fridge,
     gantry,
     gripper,
@@ -22,8 +21,6 @@ from kinematify.sources.procedural.families import (
     serial_arm,
     snake,
     table,
-    toilet,
-    trash_can,
     washing_machine,
 )
 
@@ -50,9 +47,6 @@ FAMILIES: dict[str, Family] = {
         safe,
         laptop,
         box,
-        trash_can,
-        toilet,
-        faucet,
     )
 }
 """Keyed by name."""
