@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.validation.prepare.cut import Concave
     from kinematify.validation.settings import PrepareSettings
 
-_VERSION = b"1"
+_VERSION = b"2"
 """Changes whenever the same input would be cut differently."""
 
 
@@ -64,7 +64,7 @@ def _key(bodies: Sequence[Concave], cuts: int) -> str:
 def _load(path: Path, bodies: int) -> list[list[ConvexPiece]] | None:
     """What was stored; None where there is nothing, or a file that someone damaged."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             body, corners, triangles = file["body"], file["corners"], file["triangles"]
             vertices = np.split(file["vertices"], np.cumsum(corners)[:-1])
             faces = np.split(file["faces"], np.cumsum(triangles)[:-1])

@@ -28,6 +28,8 @@ _CORNERS = 48
 """Vertices of a hull while cuts are compared, at most."""
 _PROBES = 128
 """Points of a hull at which its distance from the surface is measured."""
+_BESIDE = 0.01
+"""How far beside a face a plane stands, fraction of `_RIND`."""
 _UNIFORM = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Places of planes between the ends of a piece that are tried whatever its faces are."""
 _FACE_PLANES = 6
@@ -38,8 +40,6 @@ _ALONG = 0.99
 """Cosine from which a face counts as lying across an axis."""
 _RIND = 0.01
 """Planes nearer to the end of a piece are moved there, fraction of its extent: walls may have no thickness."""
-_UNEVEN = 0.02
-"""What a cut loses by being uneven."""
 _HOLES = 0.02
 """Share of open edges, and of the area that is missing, up to which a surface is closed."""
 _PATIENCE = 16
@@ -91,6 +91,10 @@ class Surface:
 
     def gap(self, piece: ConvexPiece, tolerance: float) -> float:
         """How far a piece reaches beyond the surface at most [m]; what lies inside it does not count."""
+        return float(self.gaps(piece, tolerance).max())
+
+    def gaps(self, piece: ConvexPiece, tolerance: float) -> FloatArray:
+        """Distances of points on a piece from the surface [m], 0 inside it; `tolerance` is near enough to be on it."""
         points = np.ascontiguousarray(surface_points(piece.vertices, piece.faces, _PROBES))
         squared, _, _ = self._tree.squared_distance(self.vertices, self.faces, points)
         distances = np.sqrt(np.maximum(squared, 0.0))
@@ -98,7 +102,7 @@ class Surface:
         if self.closed and far.any():
             winding = self._winding.winding_number(points[far])
             distances[far] = np.where(np.abs(winding) > 0.5, 0.0, distances[far])
-        return float(distances.max())
+        return np.asarray(distances)
 
     def few_triangles(self) -> FloatArray:
         """Return the corners of its triangles, shape (n, 3, 3), simplified where there are many."""
@@ -175,7 +179,9 @@ class Concave:
         """Measure some triangles of the surface, shape (n, 3, 3)."""
         points = outermost(triangles.reshape(-1, 3), _CORNERS)
         piece = convex_piece(points, thickness=self.thickness, directions=_CORNERS)
-        return Chunk(triangles=triangles, piece=piece, gap=self.surface.gap(piece, self.tolerance))
+        gaps = self.surface.gaps(piece, self.tolerance)
+        hollow = (piece.volume + self.tolerance * piece.area) * float((gaps**4).mean()) ** 0.25
+        return Chunk(triangles=triangles, piece=piece, gap=float(gaps.max()), hollow=hollow)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -187,6 +193,9 @@ class Chunk:
     piece: ConvexPiece
     gap: float
     """How far the hull reaches beyond the surface [m]."""
+    hollow: float
+    """How much there is to cut: volume of the hull, flat ones as thick as is tolerated, times a mean of order four of
+    the distances between hull and surface [m^4]. The largest distance alone would depend on where it is probed."""
 
 
 class _Cutting:
@@ -249,64 +258,58 @@ def cut_worst_first(bodies: Sequence[Concave], cuts: int) -> list[list[Chunk]]:
 def _best_cut(body: Concave, chunk: Chunk) -> list[Chunk]:
     """The two sides that have the least left to cut; empty where no plane parts the chunk."""
     best, chosen = np.inf, list[Chunk]()
-    for heights, offset in _planes(chunk.triangles, body.axes):
+    for heights, offset in _planes(chunk.triangles, body.axes, closed=body.surface.closed):
         sides = split(chunk.triangles, heights - offset)
         if min(map(len, sides)) == 0:
             continue
         chunks = [body.chunk(side) for side in sides]
-        left = _left_to_cut(chunks, body.tolerance)
+        left = sum(side.hollow for side in chunks)
         if left < best:
             best, chosen = left, chunks
     return chosen
 
 
-def _left_to_cut(chunks: list[Chunk], tolerance: float) -> float:
-    """Volume of both hulls, each by how far it reaches beyond the surface; flat ones count as thick as is tolerated.
-
-    The first cuts through a ring make none of this less: then halves are better than slices.
-    """
-    volumes = [chunk.piece.volume + tolerance * chunk.piece.area for chunk in chunks]
-    uneven = abs(volumes[0] - volumes[1]) / sum(volumes)
-    left = sum(volume * chunk.gap for volume, chunk in zip(volumes, chunks, strict=True))
-    return left * (1.0 + _UNEVEN * uneven)
-
-
-def _planes(triangles: FloatArray, axes: FloatArray) -> Iterator[tuple[FloatArray, float]]:
+def _planes(triangles: FloatArray, axes: FloatArray, *, closed: bool) -> Iterator[tuple[FloatArray, float]]:
     """Heights of all corners across an axis (n, 3) and the height of a plane, for the most promising planes.
 
     Promising are planes whose two sides have the smallest boxes together, some across each axis.
     """
     frame = triangles @ axes.T
-    low, high = frame.min(axis=1), frame.max(axis=1)
+    following = np.roll(frame, -1, axis=1)
     for number in range(3):
         heights = frame[:, :, number]
-        offsets = _offsets(triangles, heights, axes[number])
-        if len(offsets):
-            boxes = _boxes(low, high, number, offsets) + _boxes(-high, -low, number, -offsets)
-            for index in np.argsort(boxes, kind="stable")[:_PER_AXIS]:
-                yield heights, float(offsets[index])
+        offsets = _offsets(triangles, heights, axes[number], closed=closed)
+        boxes = np.array([_boxes(frame, following, number, offset) for offset in offsets])
+        for index in np.argsort(boxes, kind="stable")[:_PER_AXIS]:
+            yield heights, float(offsets[index])
 
 
-def _boxes(low: FloatArray, high: FloatArray, number: int, offsets: FloatArray) -> FloatArray:
-    """Volumes of the boxes around all triangles that reach below each of some planes, cut off at the plane.
+def _boxes(frame: FloatArray, following: FloatArray, number: int, offset: float) -> float:
+    """Volume of the boxes around the two sides of a plane.
 
     Args:
-        low: Lower corner of the box of each triangle, shape (n, 3).
-        high: Upper corner, shape (n, 3).
-        number: Axis that the planes stand across.
-        offsets: Heights of the planes, shape (k,), all above the lowest corner.
+        frame: Corners of triangles, shape (n, 3, 3).
+        following: The corner after each, shape (n, 3, 3).
+        number: Axis that the plane stands across.
+        offset: Height of the plane.
     """
-    order = np.argsort(low[:, number], kind="stable")
-    lowest = np.minimum.accumulate(low[order], axis=0)
-    highest = np.maximum.accumulate(high[order], axis=0)
-    last = np.searchsorted(low[order, number], offsets) - 1
-    extents = highest[last] - lowest[last]
-    extents[:, number] = np.minimum(highest[last, number], offsets) - lowest[last, number]
-    return np.asarray(extents.prod(axis=1))
+    start, end = frame[:, :, number] - offset, following[:, :, number] - offset
+    crossing = start * end < 0.0
+    share = (start[crossing] / (start[crossing] - end[crossing]))[:, None]
+    on_plane = frame[crossing] + share * (following[crossing] - frame[crossing])
+    volume = 0.0
+    for side in (frame[start <= 0.0], frame[start >= 0.0]):
+        low = np.minimum(side.min(axis=0, initial=np.inf), on_plane.min(axis=0, initial=np.inf))
+        high = np.maximum(side.max(axis=0, initial=-np.inf), on_plane.max(axis=0, initial=-np.inf))
+        volume += float(np.prod(np.maximum(high - low, 0.0)))
+    return volume
 
 
-def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray) -> FloatArray:
-    """Places of planes across an axis: the largest faces that lie across it, and some in between."""
+def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray, *, closed: bool) -> FloatArray:
+    """Places of planes across an axis, the most telling first: large faces across it, some in between, the ends.
+
+    Open surfaces may be walls without thickness, which stand at the ends.
+    """
     low, high = float(heights.min()), float(heights.max())
     rind = _RIND * (high - low)
     if rind == 0.0:
@@ -318,9 +321,13 @@ def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray) -> Fl
     places = np.round((levels - low) / rind).astype(np.int64)
     total = np.bincount(places, weights=areas[across])
     largest = [place for place in np.argsort(-total, kind="stable")[:_FACE_PLANES] if total[place] > 0.0]
-    exact = [float(np.median(levels[places == place])) for place in largest]
+    exact = np.array([np.median(levels[places == place]) for place in largest])
+    at_end = (exact < low + rind) | (exact > high - rind)
     uniform = low + (high - low) * np.array(_UNIFORM)
-    return np.unique(np.clip(np.concatenate([exact, uniform]), low + rind, high - rind))
+    # A face in the very plane belongs to one side; which one is not known where surfaces are open.
+    beside = (exact[~at_end, None] + _BESIDE * rind * np.array([-1.0, 1.0])).reshape(-1)
+    ordered = [beside, uniform, exact[at_end]] if closed else [exact[at_end], beside, uniform]
+    return np.asarray(np.clip(np.concatenate(ordered), low + rind, high - rind))
 
 
 def split(triangles: FloatArray, signed: FloatArray) -> tuple[FloatArray, FloatArray]:

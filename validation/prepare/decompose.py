@@ -28,6 +28,8 @@ _KEPT = ("box", "cylinder", "sphere")
 """Primitives that all engines have; capsules become meshes."""
 _WELD = 1e-6
 """Vertices nearer than this fraction of the diagonal are one."""
+_FILLED = 3.0
+"""A surface that was not cut is said to be filled if its hull reaches so many times beyond what is tolerated."""
 _EFFORT = list(Method)
 
 
@@ -170,18 +172,15 @@ def _pieces(link: DeclaredLink, parts: Sequence[tuple[_Component, list[ConvexPie
     methods = [Method.PRIMITIVES if primitives else Method.NONE]
     gaps = [0.0]
     for component, cut in parts:
-        if cut is None:
-            methods.append(Method.CONVEX if component.alone else Method.COMPONENTS)
-            convex.append(component.hull)
-            gaps.append(component.gap)
-        elif len(cut) == 1:
-            methods.append(Method.HULL)
-            convex.append(component.hull)
-            gaps.append(component.gap)
-        else:
+        if cut is not None and len(cut) > 1:
             methods.append(Method.CUT)
             convex += cut
             gaps.append(max(component.surface.gap(piece, component.tolerance) for piece in cut))
+            continue
+        simple = Method.CONVEX if component.alone else Method.COMPONENTS
+        methods.append(Method.HULL if component.gap > _FILLED * component.tolerance else simple)
+        convex.append(component.hull)
+        gaps.append(component.gap)
     return Pieces(
         primitives=primitives,
         convex=tuple(convex),

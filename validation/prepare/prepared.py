@@ -29,7 +29,7 @@ class Method(StrEnum):
     CUT = "cut"
     """Concave meshes were cut into nearly convex pieces."""
     HULL = "hull"
-    """A concave mesh, or a part of one, is taken for its hull: the cuts were spent on worse ones."""
+    """A part of the mesh with a hollow was not cut, since cuts did not help or were spent on worse ones."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,358 @@
+"""Declared physics: every slip that engines refuse or misread is found at its link or joint, and good models pass."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+
+import pytest
+import trimesh
+from lxml import etree
+
+from kinematify.validation.asset.stage import PROBES, run
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.catalogue.physics import CHECKS
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.settings import load_settings
+from kinematify.validation.stage import Recorder, StageRequest
+from tests.validation.engine_models import Box, Model, Part
+
+SETTINGS = load_settings()
+
+
+def cabinet() -> Model:
+    """A body of boards with a door and a drawer that carries a knob; masses and inertias are those of the boxes."""
+    boards = (
+        Box(size=(0.6, 0.5, 0.02), at=(0, 0, 0.01)),
+        Box(size=(0.6, 0.5, 0.02), at=(0, 0, 0.79)),
+        Box(size=(0.02, 0.5, 0.76), at=(-0.29, 0, 0.4)),
+        Box(size=(0.02, 0.5, 0.76), at=(0.29, 0, 0.4)),
+        Box(size=(0.56, 0.02, 0.76), at=(0, 0.24, 0.4)),
+    )
+    return Model(
+        parts=(
+            Part(name="body", boxes=boards, mass=12.0, inertia=(1.0, 1.0, 0.9), center=(0, 0.02, 0.4)),
+            Part(
+                name="door",
+                parent="body",
+                kind="revolute",
+                at=(-0.28, -0.26, 0.6),
+                axis=(0, 0, 1),
+                limits=(-1.8, 0.0),
+                boxes=(Box(size=(0.54, 0.02, 0.36), at=(0.27, 0, 0)),),
+                mass=3.0,
+                inertia=(0.0325, 0.1053, 0.073),
+                center=(0.27, 0, 0),
+            ),
+            Part(
+                name="drawer",
+                parent="body",
+                kind="prismatic",
+                at=(0, -0.1, 0.2),
+                axis=(0, -1, 0),
+                limits=(0.0, 0.3),
+                boxes=(Box(size=(0.5, 0.3, 0.2)),),
+                mass=4.0,
+                inertia=(0.043, 0.1, 0.11),
+            ),
+            Part(
+                name="knob",
+                parent="drawer",
+                boxes=(Box(size=(0.03, 0.06, 0.03)),),
+                at=(0, -0.18, 0),
+                mass=0.05,
+                inertia=(1.9e-5, 7.5e-6, 1.9e-5),
+            ),
+        )
+    )
+
+
+@pytest.fixture
+def good(tmp_path: Path) -> Path:
+    return cabinet().write(tmp_path)
+
+
+def checked(urdf: Path) -> dict[str, CheckResult]:
+    """What the asset stage tells of declared physics."""
+    results: list[CheckResult] = []
+    request = StageRequest(
+        urdf=urdf,
+        package_dirs=(),
+        work=urdf.parent,
+        settings=SETTINGS,
+        selected=frozenset(CATALOGUE),
+        deadline=time.time() + 60.0,
+    )
+    run(request, Recorder(results.append, request.selected))
+    return {result.check: result for result in results if result.check in PROBES}
+
+
+def edited(urdf: Path, path: str, **attributes: str | None) -> Path:
+    """Change attributes of the first element at an XPath; None removes one."""
+    tree = etree.parse(urdf)
+    (element, *_) = tree.xpath(path)
+    for name, value in attributes.items():
+        if value is None:
+            element.attrib.pop(name)
+        else:
+            element.set(name, value)
+    tree.write(urdf)
+    return urdf
+
+
+def removed(urdf: Path, path: str) -> Path:
+    tree = etree.parse(urdf)
+    for element in tree.xpath(path):
+        element.getparent().remove(element)
+    tree.write(urdf)
+    return urdf
+
+
+def counted(urdf: Path) -> list[Finding]:
+    """Warnings and errors."""
+    found = [finding for result in checked(urdf).values() for finding in result.findings]
+    return [finding for finding in found if finding.severity is not Severity.NOTE]
+
+
+def only(urdf: Path, check: str) -> Finding:
+    """The one finding that counts, which must be of this check."""
+    (finding,) = counted(urdf)
+    assert finding.check == check
+    assert finding.message
+    assert finding.remedy
+    return finding
+
+
+def test_every_check_is_told_once_and_a_good_model_passes(good: Path) -> None:
+    results = checked(good)
+    assert set(results) == {check.id for check in CHECKS}
+    assert not counted(good)
+    skipped = {name for name, result in results.items() if result.status is not Status.PASS}
+    assert skipped == {"KV225"}, "nothing mimics here"
+    assert results["KV225"].reason
+
+
+def test_without_readable_meshes_nothing_is_said_of_physics(tmp_path: Path) -> None:
+    urdf = tmp_path / "model.urdf"
+    (tmp_path / "part.obj").write_text("not a mesh")
+    urdf.write_text(
+        '<robot name="r"><link name="a"><visual><geometry><mesh filename="part.obj"/></geometry></visual></link>'
+        "</robot>"
+    )
+    assert not checked(urdf)
+
+
+# ---- masses ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("mass", ["-1", "0", "2e8"])
+def test_a_bad_mass_is_an_error_at_its_link(good: Path, mass: str) -> None:
+    found = counted(edited(good, "//link[@name='door']/inertial/mass", value=mass))
+    assert {finding.link for finding in found} == {"door"}
+    assert {finding.blame for finding in found} == {Blame.PHYSICS}
+    assert Severity.ERROR in {finding.severity for finding in found}
+
+
+def test_no_mass_on_a_part_of_a_body_that_has_one_is_less_bad(good: Path) -> None:
+    finding = only(edited(good, "//link[@name='knob']/inertial/mass", value="0"), "KV202")
+    assert (finding.link, finding.severity) == ("knob", Severity.WARNING)
+
+
+def test_a_frame_that_is_fixed_to_a_mass_needs_none(good: Path) -> None:
+    removed(good, "//link[@name='knob']/*")
+    assert not counted(good)
+
+
+def test_a_moving_body_without_mass_is_a_warning_and_all_of_them_are_one(good: Path) -> None:
+    finding = only(removed(good, "//link[@name='door']/inertial"), "KV201")
+    assert (finding.link, finding.severity) == ("door", Severity.WARNING)
+    (finding,) = (item for item in counted(removed(good, "//inertial")) if item.check == "KV201")
+    assert "None of the 2" in finding.message
+
+
+def test_a_heavy_body_on_a_light_one_is_found_at_the_joint(tmp_path: Path) -> None:
+    size = (0.1, 0.1, 0.1)
+    small = {"boxes": (Box(size=size),), "inertia": (0.01, 0.01, 0.01)}
+    chain = Model(
+        parts=(
+            Part(name="base", mass=1.0, **small),
+            Part(name="arm", parent="base", kind="revolute", mass=0.03, boxes=(Box(size=size),), inertia=(5e-5,) * 3),
+            Part(name="load", parent="arm", kind="revolute", mass=5.0, **small),
+        )
+    )
+    urdf = chain.write(tmp_path)
+    assert not [item for item in counted(urdf) if item.check == "KV209"]
+    edited(urdf, "//link[@name='arm']/inertial/mass", value="0.001")
+    (finding,) = (item for item in counted(urdf) if item.check == "KV209")
+    assert finding.joint == "load_joint"
+    assert finding.value == pytest.approx(5000.0)
+
+
+# ---- inertias --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("check", "attributes"),
+    [
+        ("KV204", {"ixx": "-0.03"}),
+        ("KV204", {"ixx": "0", "iyy": "0", "izz": "0"}),
+        ("KV204", {"ixy": "0.2"}),
+        ("KV205", {"izz": "1.5"}),
+    ],
+)
+def test_an_inertia_that_no_body_has_is_an_error_where_it_moves(good: Path, check: str, attributes: dict) -> None:
+    found = counted(edited(good, "//link[@name='door']/inertial/inertia", **attributes))
+    assert (found[0].check, found[0].link, found[0].severity) == (check, "door", Severity.ERROR)
+    assert found[0].blame is Blame.PHYSICS
+
+
+def test_an_inertia_in_the_base_harms_less(good: Path) -> None:
+    finding = only(edited(good, "//link[@name='body']/inertial/inertia", ixx="-1"), "KV204")
+    assert (finding.link, finding.severity) == ("body", Severity.WARNING)
+
+
+def test_the_remedy_for_an_inertia_is_right(good: Path) -> None:
+    finding = counted(edited(good, "//link[@name='door']/inertial/inertia", ixx="-0.03"))[0]
+    expected = 3.0 / 12.0 * (0.02**2 + 0.36**2)
+    assert f"ixx={expected:.3g}" in finding.remedy
+
+
+def test_rounding_in_an_inertia_is_a_note(good: Path) -> None:
+    urdf = edited(good, "//link[@name='door']/inertial/inertia", ixx="0.033", iyy="0.107", izz="0.0735")
+    assert not counted(urdf)
+    assert [finding.severity for finding in checked(urdf)["KV205"].findings] == [Severity.NOTE]
+
+
+def test_an_inertia_in_another_unit_does_not_fit_the_geometry(good: Path) -> None:
+    values = {"ixx": "33", "iyy": "110", "izz": "80"}
+    finding = only(edited(good, "//link[@name='door']/inertial/inertia", **values), "KV207")
+    assert finding.link == "door"
+    assert finding.value == pytest.approx(math.sqrt(110.0 / 3.0))
+
+
+@pytest.mark.parametrize(("x", "severity"), [("0.27", None), ("0.75", Severity.WARNING), ("2.7", Severity.ERROR)])
+def test_a_centre_of_mass_outside_the_geometry_is_found(good: Path, x: str, severity: Severity | None) -> None:
+    found = counted(edited(good, "//link[@name='door']/inertial/origin", xyz=f"{x} 0 0"))
+    centres = [finding for finding in found if finding.check == "KV208"]
+    assert [finding.severity for finding in centres] == ([] if severity is None else [severity])
+    assert {finding.link for finding in found} <= {"door"}
+
+
+# ---- joints ----------------------------------------------------------------------------------------------------------
+
+
+def test_degrees_for_radians_are_an_error_at_the_joint(good: Path) -> None:
+    finding = only(edited(good, "//joint[@name='door_joint']/limit", lower="-90", upper="90"), "KV220")
+    assert (finding.joint, finding.severity, finding.blame) == ("door_joint", Severity.ERROR, Blame.KINEMATICS)
+    assert "1.5708" in finding.remedy
+
+
+@pytest.mark.parametrize(
+    ("degrees", "severity"), [(350.0, None), (360.0, None), (400.0, Severity.WARNING), (2000.0, Severity.ERROR)]
+)
+def test_wrists_may_turn_by_round_numbers_of_degrees(good: Path, degrees: float, severity: Severity | None) -> None:
+    ends = {"lower": repr(-math.radians(degrees)), "upper": repr(math.radians(degrees))}
+    found = counted(edited(good, "//joint[@name='door_joint']/limit", **ends))
+    assert [finding.severity for finding in found] == ([] if severity is None else [severity])
+
+
+def test_a_small_range_in_degrees_is_no_round_angle(good: Path) -> None:
+    ends = {"lower": repr(math.degrees(-0.0698)), "upper": repr(math.degrees(0.0698))}
+    finding = only(edited(good, "//joint[@name='door_joint']/limit", **ends), "KV220")
+    assert finding.severity is Severity.WARNING
+
+
+@pytest.mark.parametrize(("upper", "severity"), [("0.9", None), ("4", Severity.WARNING), ("300", Severity.ERROR)])
+def test_slides_longer_than_the_model_are_found(good: Path, upper: str, severity: Severity | None) -> None:
+    found = counted(edited(good, "//joint[@name='drawer_joint']/limit", upper=upper))
+    assert [(item.check, item.severity) for item in found] == ([] if severity is None else [("KV220", severity)])
+
+
+def test_an_empty_range_and_a_range_without_zero_are_told(good: Path) -> None:
+    finding = only(edited(good, "//joint[@name='drawer_joint']/limit", upper="0"), "KV221")
+    assert finding.joint == "drawer_joint"
+    edited(good, "//joint[@name='drawer_joint']/limit", lower="0.1", upper="0.3")
+    assert [item.joint for item in checked(good)["KV222"].findings] == ["drawer_joint"]
+    assert not counted(good), "it is a note"
+
+
+@pytest.mark.parametrize("attribute", ["effort", "velocity"])
+@pytest.mark.parametrize("value", [None, "0", "-1"])
+def test_a_joint_without_a_drive_is_named(good: Path, attribute: str, value: str | None) -> None:
+    finding = only(edited(good, "//joint[@name='drawer_joint']/limit", **{attribute: value}), "KV223")
+    assert (finding.joint, finding.blame) == ("drawer_joint", Blame.PHYSICS)
+    assert attribute in finding.message
+
+
+def test_negative_damping_is_an_error(good: Path) -> None:
+    tree = etree.parse(good)
+    etree.SubElement(tree.xpath("//joint[@name='door_joint']")[0], "dynamics", damping="-1", friction="0")
+    tree.write(good)
+    finding = only(good, "KV224")
+    assert (finding.joint, finding.severity) == ("door_joint", Severity.ERROR)
+
+
+@pytest.mark.parametrize(("multiplier", "expected"), [("0.1", []), ("1", ["KV225"]), ("0", ["KV225"])])
+def test_a_follower_stays_within_its_limits(good: Path, multiplier: str, expected: list[str]) -> None:
+    tree = etree.parse(good)
+    (joint,) = tree.xpath("//joint[@name='drawer_joint']")
+    etree.SubElement(joint, "mimic", joint="door_joint", multiplier=multiplier, offset="0.2")
+    tree.write(good)
+    assert [finding.check for finding in counted(good)] == expected
+
+
+def test_weight_is_compared_with_effort(tmp_path: Path) -> None:
+    arm = Part(
+        name="arm",
+        parent="base",
+        kind="revolute",
+        axis=(0, 1, 0),
+        limits=(-1.5, 1.5),
+        boxes=(Box(size=(1.0, 0.1, 0.1), at=(0.5, 0, 0)),),
+        center=(0.5, 0, 0),
+        mass=2.0,
+        inertia=(0.01, 0.2, 0.2),
+        effort=9.0,
+    )
+    base = Part(name="base", boxes=(Box(size=(0.1, 0.1, 0.1)),), inertia=(0.01, 0.01, 0.01))
+    finding = only(Model(parts=(base, arm)).write(tmp_path), "KV226")
+    assert finding.joint == "arm_joint"
+    assert finding.value == pytest.approx(9.0 / (2.0 * 9.81 * 0.5), rel=0.02)
+
+
+# ---- collision geometry ----------------------------------------------------------------------------------------------
+
+
+def test_one_link_without_collision_is_named_and_all_are_one_finding(good: Path) -> None:
+    finding = only(removed(good, "//link[@name='drawer']/collision"), "KV240")
+    assert (finding.link, finding.blame) == ("drawer", Blame.PHYSICS)
+    finding = only(removed(good, "//collision"), "KV240")
+    assert "None of the 3 bodies" in finding.message
+
+
+@pytest.mark.parametrize(("shift", "severity"), [(0.001, None), (0.03, Severity.WARNING), (0.3, Severity.ERROR)])
+def test_collision_geometry_beside_the_visual_one_is_found(good: Path, shift: float, severity: Severity | None) -> None:
+    found = counted(edited(good, "//link[@name='door']/collision/origin", xyz=f"{0.27 + shift} 0 0"))
+    offset = [(item.check, item.link, item.severity) for item in found]
+    assert offset == ([] if severity is None else [("KV241", "door", severity)])
+
+
+def test_coarse_collision_geometry_is_fine(good: Path) -> None:
+    removed(good, "//link[@name='body']/collision[position()>1]")
+    edited(good, "//link[@name='body']/collision/geometry/box", size="0.66 0.56 0.86")
+    edited(good, "//link[@name='body']/collision/origin", xyz="0 0 0.4")
+    assert not counted(good)
+
+
+def test_a_hollow_collision_mesh_is_a_note(tmp_path: Path) -> None:
+    ring = trimesh.creation.annulus(0.4, 0.5, 0.2)
+    ring.export(tmp_path / "ring.stl")
+    shape = '<geometry><mesh filename="ring.stl"/></geometry>'
+    urdf = tmp_path / "model.urdf"
+    urdf.write_text(
+        f'<robot name="r"><link name="ring"><visual>{shape}</visual><collision>{shape}</collision></link></robot>'
+    )
+    (finding,) = checked(urdf)["KV242"].findings
+    assert (finding.link, finding.severity) == ("ring", Severity.NOTE)
+    assert finding.value == pytest.approx(0.25 / (0.25 - 0.16), rel=0.02)

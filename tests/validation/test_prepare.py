@@ -1,0 +1,425 @@
+"""The file that engines are given: the joints and masses of the original, and collision geometry that stays hollow."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import igl
+import mujoco
+import numpy as np
+import pinocchio
+import pybullet
+import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+from manifold3d import Manifold
+from trimesh.transformations import euler_matrix
+
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.convex import ConvexPiece, convex_piece, surface_points
+from kinematify.validation.prepare.cache import cache_folder
+from kinematify.validation.prepare.cut import Concave, Surface, cut_worst_first, split
+from kinematify.validation.prepare.document import roll_pitch_yaw
+from kinematify.validation.prepare.masses import lifted
+from kinematify.validation.prepare.prepared import Method, Prepared, load_prepared
+from kinematify.validation.prepare.stage import run
+from kinematify.validation.read import read_model
+from kinematify.validation.settings import ValidationSettings, load_settings
+from kinematify.validation.stage import Recorder, StageRequest
+from tests.engines import quiet
+
+SETTINGS = load_settings()
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache of its own for each test."""
+    folder = tmp_path_factory.mktemp("cache")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(folder))
+    return folder
+
+
+def changed(**prepare: float) -> ValidationSettings:
+    """The settings with some of this stage replaced."""
+    return SETTINGS.model_copy(update={"prepare": SETTINGS.prepare.model_copy(update=prepare)})
+
+
+def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Prepared:
+    """What the stage leaves."""
+    work = urdf.parent / "work"
+    work.mkdir(exist_ok=True)
+    told: list[object] = []
+    request = StageRequest(
+        urdf=urdf,
+        package_dirs=(),
+        work=work,
+        settings=settings,
+        selected=frozenset(CATALOGUE),
+        deadline=time.time() + 60.0,
+    )
+    run(request, Recorder(told.append, request.selected))
+    assert not told, "it tells no checks"
+    return load_prepared(work)
+
+
+def link(name: str, inside: str) -> str:
+    return f'<link name="{name}">{inside}</link>\n'
+
+
+def mesh(name: str, tag: str = "collision", extra: str = "") -> str:
+    return f'<{tag}><geometry><mesh filename="{name}" {extra}/></geometry></{tag}>'
+
+
+INERTIAL = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+BOX = '<collision><geometry><box size="0.1 0.2 0.3"/></geometry></collision>'
+
+
+def written(folder: Path, *links: str, joints: str = "") -> Path:
+    urdf = folder / "model.urdf"
+    urdf.write_text(f'<robot name="{"long" * 400}">{"".join(links)}{joints}</robot>')
+    return urdf
+
+
+def joint(name: str, parent: str, child: str, kind: str = "revolute", inside: str = "") -> str:
+    limit = '<limit lower="-1" upper="2" effort="5" velocity="3"/>' if kind != "fixed" else ""
+    ends = f'<parent link="{parent}"/><child link="{child}"/>'
+    return f'<joint name="{name}" type="{kind}">{ends}{limit}{inside}</joint>'
+
+
+# ---- the file --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    """A base with a hinge, a slide below it that mimics, a frame, primitives and a scaled, mirrored mesh."""
+    trimesh.creation.icosphere(radius=50.0).export(tmp_path / "ball.stl")
+    origin = '<origin xyz="0.1 -0.2 0.3" rpy="0.4 1.5707963267948966 -0.7"/>'
+    return written(
+        tmp_path,
+        link("base", INERTIAL + BOX),
+        link("arm", mesh("ball.stl", "visual", 'scale="0.001 -0.001 0.001"')),
+        link("tip", INERTIAL + '<collision><geometry><cylinder radius="0.1" length="0.2"/></geometry></collision>'),
+        link("frame", ""),
+        joints=joint("hinge", "base", "arm", inside=f'{origin}<axis xyz="0 0.6 0.8"/>')
+        + joint("slide", "arm", "tip", "prismatic", inside='<mimic joint="hinge" multiplier="0.5" offset="0.1"/>')
+        + joint("mount", "tip", "frame", "fixed"),
+    )
+
+
+def test_every_engine_reads_the_joints_and_poses_of_the_original(machine: Path) -> None:
+    urdf = prepared(machine).urdf
+    poses = forward_kinematics(read_model(machine).kinematics, {"hinge": 0.7})  # the slide follows to 0.45
+    for read in (mujoco_positions, pybullet_positions, pinocchio_positions):
+        positions = read(urdf, {"hinge": 0.7, "slide": 0.45})
+        for name in ("arm", "tip"):
+            np.testing.assert_allclose(positions[name], poses[name][:3, 3], atol=1e-5)
+
+
+def mujoco_positions(urdf: Path, q: dict[str, float]) -> dict[str, np.ndarray]:
+    spec = mujoco.MjSpec.from_file(str(urdf))
+    spec.compiler.fusestatic = False
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    assert {model.joint(index).name for index in range(model.njnt)} == set(q)
+    np.testing.assert_allclose(model.joint("hinge").range, (-1.0, 2.0))
+    for name, value in q.items():
+        data.joint(name).qpos = value
+    mujoco.mj_kinematics(model, data)
+    return {model.body(index).name: data.xpos[index] for index in range(model.nbody)}
+
+
+def pybullet_positions(urdf: Path, q: dict[str, float]) -> dict[str, np.ndarray]:
+    client = pybullet.connect(pybullet.DIRECT)
+    with quiet():
+        body = pybullet.loadURDF(str(urdf), useFixedBase=1, physicsClientId=client)
+    infos = [pybullet.getJointInfo(body, index, client) for index in range(pybullet.getNumJoints(body, client))]
+    moving = {info[1].decode(): info for info in infos if info[2] != pybullet.JOINT_FIXED}
+    assert set(moving) == set(q)
+    assert moving["hinge"][8:10] == pytest.approx((-1.0, 2.0))
+    for name, value in q.items():
+        pybullet.resetJointState(body, moving[name][0], value, physicsClientId=client)
+    # The base's frame is given by that of its centre of mass, which is its origin here.
+    found = {info[12].decode(): np.array(pybullet.getLinkState(body, info[0], 0, 1, client)[4]) for info in infos}
+    pybullet.disconnect(client)
+    return found
+
+
+def pinocchio_positions(urdf: Path, q: dict[str, float]) -> dict[str, np.ndarray]:
+    model = pinocchio.buildModelFromUrdf(str(urdf))
+    assert set(model.names) - {"universe"} == set(q)
+    data = model.createData()
+    pinocchio.framesForwardKinematics(model, data, np.array([q[name] for name in list(model.names)[1:]]))
+    return {frame.name: placement.translation.copy() for frame, placement in zip(model.frames, data.oMf, strict=True)}
+
+
+def test_what_was_made_up_is_recorded(machine: Path) -> None:
+    record = prepared(machine)
+    made_up = {item.link for item in record.links if item.mass_added}
+    assert made_up == {"arm", "frame"}
+    assert record.link_by_name["arm"].from_visual
+    assert record.link_by_name["tip"].method is Method.PRIMITIVES
+    assert record.link_by_name["frame"].method is Method.NONE
+    assert record.link_by_name["frame"].mass < 1e-5, "it adds nothing to the body that it is fixed to"
+    ball = 1000.0 * 4.0 / 3.0 * np.pi * 0.05**3
+    assert record.link_by_name["arm"].mass == pytest.approx(ball, rel=0.02)
+    assert not record.drives_added
+
+
+def test_missing_drives_are_made_up(tmp_path: Path) -> None:
+    text = joint("hinge", "a", "b").replace('effort="5"', 'effort="0"')
+    record = prepared(written(tmp_path, link("a", INERTIAL + BOX), link("b", INERTIAL + BOX), joints=text))
+    assert record.drives_added == ("hinge",)
+    assert f'effort="{SETTINGS.prepare.effort}"' in record.urdf.read_text()
+
+
+def test_a_body_without_mass_and_geometry_weighs_little(tmp_path: Path) -> None:
+    links = (link("a", INERTIAL + BOX), link("b", ""), link("c", INERTIAL + BOX))
+    record = prepared(written(tmp_path, *links, joints=joint("one", "a", "b") + joint("two", "b", "c")))
+    assert record.link_by_name["b"].mass == SETTINGS.prepare.dummy_mass
+    mujoco.MjModel.from_xml_path(str(record.urdf))  # refuses bodies without mass
+
+
+def test_no_line_is_long_and_mesh_names_are_unique(tmp_path: Path) -> None:
+    trimesh.creation.box((1, 1, 1)).export(tmp_path / "part.stl")
+    record = prepared(written(tmp_path, link("a", mesh("part.stl") * 3)))
+    text = record.urdf.read_text()
+    assert max(map(len, text.splitlines())) < 1000
+    assert text.count("part") == 0
+    assert len(list((tmp_path / "work" / "prepared_meshes").glob("*.obj"))) == 3
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.0, 1.0 + 1e-7, 1.005, 1.3])
+def test_moments_are_lifted_to_what_mujoco_takes(ratio: float, tmp_path: Path) -> None:
+    moments = np.array([0.02, 0.05, 0.07 * ratio])
+    axes = euler_matrix(0.3, 0.8, -1.1)[:3, :3]
+    tensor = axes @ np.diag(moments) @ axes.T
+    keys = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "ixz": (0, 2), "iyz": (1, 2)}
+    text = " ".join(
+        f'{key}="{tensor[place]!r}"'.replace("np.float64(", "").replace(")", "") for key, place in keys.items()
+    )
+    inertial = f'<inertial><mass value="1"/><inertia {text}/></inertial>'
+    urdf = written(tmp_path, link("a", INERTIAL + BOX), link("b", inertial + BOX), joints=joint("hinge", "a", "b"))
+    record = prepared(urdf)
+    model = mujoco.MjModel.from_xml_path(str(record.urdf))
+    np.testing.assert_allclose(np.sort(model.body_inertia[-1]), moments, rtol=1e-6 + 1.2 * max(0.0, ratio - 1.0) * 4)
+    assert record.link_by_name["b"].inertia_added is (ratio > 1.1)
+
+
+def test_a_tensor_that_is_not_positive_is_not_lifted() -> None:
+    assert lifted(np.diag([-1.0, 1.0, 1.0])) is None
+    assert lifted(np.diag([0.0, 1.0, 1.0])) is None
+    assert lifted(np.zeros((3, 3))) is None
+
+
+@given(st.tuples(*[st.floats(-3.1, 3.1)] * 3), st.sampled_from([None, 0.5 * np.pi, -0.5 * np.pi]))
+def test_angles_are_those_of_the_matrix(angles: tuple[float, float, float], pitch: float | None) -> None:
+    roll, tilt, yaw = angles
+    matrix = euler_matrix(roll, tilt if pitch is None else pitch, yaw)[:3, :3]
+    np.testing.assert_allclose(euler_matrix(*roll_pitch_yaw(matrix))[:3, :3], matrix, atol=1e-7)
+
+
+# ---- pieces ----------------------------------------------------------------------------------------------------------
+
+
+def solid(shape: Manifold) -> Surface:
+    data = shape.to_mesh()
+    return Surface(np.array(data.vert_properties[:, :3], dtype=float), np.array(data.tri_verts, dtype=np.int64))
+
+
+def board(size: tuple[float, float, float], at: tuple[float, float, float]) -> Manifold:
+    return Manifold.cube(list(size), True).translate(list(at))
+
+
+def carcass() -> Surface:
+    """A cabinet in one closed mesh, open in front, with a shelf."""
+    inside = board((0.96, 1.0, 0.96), (0, -0.04, 0))
+    return solid(board((1, 1, 1), (0, 0, 0)) - inside + board((1, 0.96, 0.04), (0, -0.02, 0.1)))
+
+
+def frame() -> Surface:
+    """A ring of four bars: no single cut makes it less concave."""
+    return solid(board((1, 0.05, 1), (0, 0, 0)) - board((0.8, 0.1, 0.8), (0, 0, 0)))
+
+
+def shell() -> Surface:
+    """A tray of five sheets without thickness."""
+    box = trimesh.creation.box((1.0, 0.6, 0.3))
+    kept = box.triangles_center[:, 2] < 0.14
+    return Surface(np.asarray(box.vertices), np.asarray(box.faces)[kept])
+
+
+def bowl() -> Surface:
+    """Half a hollow ball with many faces."""
+    ball = Manifold.sphere(0.5, 96) - Manifold.sphere(0.42, 96)
+    return solid(ball - board((2, 2, 1), (0, 0, 0.5)))
+
+
+def cuts(surface: Surface, most: int = 48, tolerance: float = 0.03) -> list[ConvexPiece]:
+    body = Concave(surface=surface, tolerance=tolerance, thickness=1e-3)
+    return [chunk.piece for chunk in cut_worst_first([body], most)[0]]
+
+
+def distance(pieces: list[ConvexPiece], points: np.ndarray) -> np.ndarray:
+    """Signed distance from the pieces together, a little too small outside near edges."""
+    found = []
+    for piece in pieces:
+        a, b, c = (piece.vertices[piece.faces[:, k]] for k in range(3))
+        normals = np.cross(b - a, c - a)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        found.append((points @ normals.T - np.einsum("ij,ij->i", a, normals)).max(axis=1))
+    return np.min(found, axis=0)
+
+
+def test_boards_of_furniture_come_out_exact() -> None:
+    pieces = cuts(carcass())
+    assert len(pieces) == 7
+    inside = np.random.default_rng(0).uniform((-0.47, -0.49, -0.47), (0.47, 0.45, 0.07), (500, 3))
+    assert distance(pieces, inside).min() > -1e-6, "nothing fills the room below the shelf"
+    assert sum(piece.volume for piece in pieces) == pytest.approx(1 - 0.96 * 0.96 * 0.96 + 0.96 * 0.92 * 0.04, rel=0.02)
+
+
+@pytest.mark.parametrize("make", [carcass, frame, shell, bowl])
+def test_pieces_cover_the_surface_and_leave_hollows_free(make) -> None:
+    surface = make()
+    pieces = cuts(surface)
+    on_surface = surface_points(surface.vertices, surface.faces, 2000)
+    assert distance(pieces, on_surface).max() < 0.02
+    body = Concave(surface=surface, tolerance=0.03, thickness=1e-3)
+    whole = body.chunk(body.triangles).gap
+    assert whole > 0.1
+    probes = np.random.default_rng(1).uniform(surface.vertices.min(axis=0), surface.vertices.max(axis=0), (3000, 3))
+    squared, _, _ = igl.point_mesh_squared_distance(probes, surface.vertices, surface.faces)
+    inside = distance(pieces, probes) < 0.0
+    if surface.closed:
+        inside &= np.abs(igl.fast_winding_number(surface.vertices, surface.faces, probes)) < 0.5
+    assert np.sqrt(squared[inside]).max(initial=0.0) < 0.06
+
+
+def test_a_frame_takes_four_pieces() -> None:
+    assert len(cuts(frame())) == 4
+
+
+def test_a_surface_is_left_whole_where_cuts_are_spent() -> None:
+    bodies = [Concave(surface=make(), tolerance=0.03, thickness=1e-3) for make in (frame, bowl)]
+    found = cut_worst_first(bodies, 0)
+    assert [len(chunks) for chunks in found] == [1, 1]
+
+
+def test_simplification_never_closes_a_pot() -> None:
+    surface = bowl()
+    assert len(surface.faces) > 1000
+    triangles = surface.few_triangles()
+    assert len(triangles) < 0.5 * len(surface.faces)
+    squared, _, _ = igl.point_mesh_squared_distance(triangles.mean(axis=1), surface.vertices, surface.faces)
+    assert np.sqrt(squared.max()) < 0.05
+
+
+def triangles_and_planes() -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    random = np.random.default_rng(2)
+    for count in (1, 5, 200):
+        axis = random.normal(size=3)
+        yield random.normal(size=(count, 3, 3)), axis / np.linalg.norm(axis), float(random.normal())
+    grid = np.array(
+        [[[0, 0, 0], [1, 0, 0], [0, 0, 1]], [[0, 0, 1], [1, 0, 0], [1, 0, 2]], [[0, 0, 1], [1, 0, 1], [1, 1, 1]]]
+    )
+    yield grid.astype(float), np.array([0.0, 0.0, 1.0]), 1.0
+
+
+def area(triangles: np.ndarray) -> float:
+    sides = triangles[:, 1:] - triangles[:, :1]
+    return float(0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum())
+
+
+@pytest.mark.parametrize(("triangles", "axis", "offset"), list(triangles_and_planes()))
+def test_splitting_keeps_the_area_and_the_sides(triangles: np.ndarray, axis: np.ndarray, offset: float) -> None:
+    below, above = split(triangles, triangles @ axis - offset)
+    assert area(below) + area(above) == pytest.approx(area(triangles))
+    assert (below @ axis).max(initial=-np.inf) <= offset + 1e-9
+    assert (above @ axis).min(initial=np.inf) >= offset - 1e-9
+
+
+def test_flat_geometry_becomes_a_thin_piece() -> None:
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    piece = convex_piece(square, thickness=0.01, directions=64)
+    assert piece.volume == pytest.approx(0.01)
+
+
+# ---- whole models ----------------------------------------------------------------------------------------------------
+
+
+def tray(folder: Path) -> Path:
+    """A link with a hollow mesh, and one with a convex one."""
+    surface = carcass()
+    trimesh.Trimesh(surface.vertices, surface.faces, process=False).export(folder / "body.stl")
+    trimesh.creation.box((0.5, 0.5, 0.5)).export(folder / "block.stl")
+    bodies = link("body", INERTIAL + mesh("body.stl")), link("block", INERTIAL + mesh("block.stl"))
+    return written(folder, *bodies, joints=joint("hinge", "body", "block"))
+
+
+def test_how_each_link_was_made_is_recorded(tmp_path: Path) -> None:
+    record = prepared(tray(tmp_path))
+    body, block = record.links
+    assert (body.method, block.method) == (Method.CUT, Method.CONVEX)
+    assert body.pieces > 4
+    assert block.pieces == 1
+    assert body.gap < 0.04
+    assert block.volume_error == pytest.approx(0.0, abs=1e-6)
+    assert body.volume_error == pytest.approx(0.0, abs=0.05)
+
+
+def test_without_cuts_a_hollow_mesh_is_its_hull(tmp_path: Path) -> None:
+    record = prepared(tray(tmp_path), changed(cuts=0, cuts_per_link=0))
+    body = record.links[0]
+    assert (body.method, body.pieces) == (Method.HULL, 1)
+    assert body.gap > 0.2
+
+
+def test_boxes_in_one_mesh_are_components(tmp_path: Path) -> None:
+    boxes = [trimesh.creation.box((0.1, 0.1, 1.0)).apply_translation((x, 0, 0)) for x in (0.0, 1.0, 2.0)]
+    trimesh.util.concatenate(boxes).export(tmp_path / "legs.stl")
+    record = prepared(written(tmp_path, link("legs", mesh("legs.stl"))))
+    assert (record.links[0].method, record.links[0].pieces) == (Method.COMPONENTS, 3)
+
+
+def test_many_components_are_bounded(tmp_path: Path) -> None:
+    random = np.random.default_rng(0)
+    screws = [trimesh.creation.box((0.02,) * 3).apply_translation(random.uniform(size=3)) for _ in range(120)]
+    trimesh.util.concatenate(screws).export(tmp_path / "screws.stl")
+    record = prepared(written(tmp_path, link("plate", mesh("screws.stl"))))
+    settings = SETTINGS.prepare
+    assert settings.most_components < record.links[0].pieces <= settings.most_components + settings.cuts + 1
+
+
+def test_the_second_run_takes_the_pieces_from_the_cache(tmp_path: Path, cache: Path) -> None:
+    urdf = tray(tmp_path)
+    first = prepared(urdf)
+    (file,) = cache_folder().iterdir()
+    assert cache in file.parents
+    with np.load(file) as stored:
+        arrays = dict(stored)
+    np.savez(file, **{**arrays, "vertices": arrays["vertices"] + 1.0})  # to see that it is read
+    assert prepared(urdf).links[0].gap > 0.5
+    file.write_bytes(file.read_bytes()[:100])
+    assert prepared(urdf).links == first.links, "a damaged file is not used"
+    file.unlink()
+    assert prepared(urdf, changed(cached_files=0)).links == first.links
+    assert not list(cache_folder().iterdir())
+
+
+def test_the_cache_keeps_so_many_files(tmp_path: Path) -> None:
+    for number, cut_count in enumerate((5, 6, 7)):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        prepared(tray(folder), changed(cached_files=2, cuts=cut_count, cuts_per_link=0))
+    assert len(list(cache_folder().glob("*.npz"))) == 2
+
+
+def test_a_cache_that_cannot_be_written_costs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    occupied = tmp_path / "file"
+    occupied.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(occupied))
+    assert prepared(tray(tmp_path)).links[0].method is Method.CUT
