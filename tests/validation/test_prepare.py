@@ -287,7 +287,7 @@ def test_pieces_cover_the_surface_and_leave_hollows_free(make) -> None:
     surface = make()
     pieces = cuts(surface)
     on_surface = surface_points(surface.vertices, surface.faces, 2000)
-    assert distance(pieces, on_surface).max() < 0.02
+    assert distance(pieces, on_surface).max() < 0.03  # many faces are simplified first
     body = Concave(surface=surface, tolerance=0.03, thickness=1e-3)
     whole = body.chunk(body.triangles).gap
     assert whole > 0.1
