@@ -10,8 +10,6 @@ from itertools import permutations, product
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
@@ -45,23 +43,21 @@ def find_clusters(
     areas = np.array([surface.part.area for surface in surfaces])
     sizes = np.array([np.linalg.norm(points, axis=1).max() for points in shapes])
     alike = _alike(prints, areas, sizes, config.cluster_tolerance)
-    rows, columns = [], []
+    labels = np.arange(len(surfaces))
     for a, b in zip(*np.nonzero(np.triu(alike, k=1)), strict=True):
         limit = config.cluster_tolerance * 2 * max(sizes[a], sizes[b])
-        if aligned_chamfer(shapes[a], shapes[b]) <= limit:
-            rows.append(int(a))
-            columns.append(int(b))
-    n = len(surfaces)
-    _, labels = connected_components(coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n)), directed=False)
-    groups = [tuple(np.flatnonzero(labels == label).tolist()) for label in range(labels.max() + 1)]
+        # Only the groups matter: what others have joined already needs no comparison of its own.
+        if labels[a] != labels[b] and aligned_chamfer(shapes[a], shapes[b], enough=limit) <= limit:
+            labels[labels == labels[b]] = labels[a]
+    groups = [tuple(np.flatnonzero(labels == label).tolist()) for label in np.unique(labels)]
     return tuple(sorted(group for group in groups if len(group) > 1))
 
 
-def aligned_chamfer(first: FloatArray, second: FloatArray) -> float:
+def aligned_chamfer(first: FloatArray, second: FloatArray, *, enough: float = 0.0) -> float:
     """Mean nearest-neighbour distance [m], both ways, of two centred clouds after the best alignment of their axes.
 
     Principal axes are tried with all signs and, since equal spreads leave their order open, all orders, so mirrored
-    twins match. Clouds of shape (n, 3) and (m, 3).
+    twins match. Clouds of shape (n, 3) and (m, 3). The first alignment that is at most `enough` apart ends the search.
     """
     one, other = first @ _principal_axes(first), second @ _principal_axes(second)
     tree_of_one, tree_of_other = cKDTree(one), cKDTree(other)
@@ -72,6 +68,8 @@ def aligned_chamfer(first: FloatArray, second: FloatArray) -> float:
             if there < 2 * best:  # the way back can halve the mean at best
                 back = float(tree_of_other.query((one * signs)[:, np.argsort(order)])[0].mean())
                 best = min(best, 0.5 * (there + back))
+                if best <= enough:
+                    return best
     return best
 
 
