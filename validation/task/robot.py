@@ -1,0 +1,336 @@
+"""The robot that uses the object: the project's own arm, or a user's robot with its gripper found by geometry.
+
+A user's gripper may point anywhere in its own link frame. `user_robot` therefore writes a copy of the file with one
+more link, whose frame is the grasp frame of all planning: +z approaches, +y closes, origin between the finger tips.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from lxml import etree
+
+from kinematify.assembly.description import parse_description
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.robot import forward_kinematics, joint_values, rest_configuration
+from kinematify.assembly.urdf_geometry import geometry_source
+from kinematify.errors import InputError
+from kinematify.validation.prepare.document import numbers, roll_pitch_yaw
+from kinematify.validation.read import read_parsed
+from kinematify.validation.task import arm
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.robot import DescribedJoint, RobotDescription
+    from kinematify.validation.declared import DeclaredModel
+
+ROBOT_FILE = "robot.urdf"
+GRASP_LINK = "kinematify_grasp_frame"
+"""Link that is added to a user's robot."""
+
+_TIP_DEPTH = 0.01  # a finger holds with the last centimetre; the origin stands so far behind its end [m]
+_TIP_SHARE = 0.35  # of a finger's length: its end, where the gap between the fingers is measured
+_NARROW = 0.004  # a gripper that opens less holds nothing [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskRobot:
+    """A robot as planning and execution need it; joints that are in neither list stay at rest."""
+
+    urdf: Path
+    """Absolute; every mesh path in it is absolute too."""
+    tool: str
+    """Link whose frame is the grasp frame: +z approach direction, +y closing direction of the fingers, origin between
+    the finger tips."""
+    arm_joints: tuple[str, ...]
+    """Joints that lead (no followers) between the root and the tool, from the root on."""
+    finger_joints: tuple[str, ...]
+    """Joints of the fingers, followers included."""
+    opening: float
+    """Largest gap between the pads [m]."""
+    fingers_open: tuple[float, ...]
+    """Values of `finger_joints` with the fingers apart [rad or m]."""
+    fingers_closed: tuple[float, ...]
+    """The same with the fingers together."""
+    home: tuple[float, ...]
+    """Values of `arm_joints` from which a reach starts [rad or m]."""
+
+
+def builtin_robot(folder: Path) -> TaskRobot:
+    """Write the project's own arm into an existing folder and describe it.
+
+    Raises:
+        OSError: The folder cannot be written.
+    """
+    path = folder.resolve() / ROBOT_FILE
+    arm.write_arm(path)
+    return TaskRobot(
+        urdf=path,
+        tool=arm.TOOL,
+        arm_joints=arm.ARM_JOINTS,
+        finger_joints=arm.FINGERS,
+        opening=2.0 * arm.TRAVEL,
+        fingers_open=(arm.TRAVEL, arm.TRAVEL),
+        fingers_closed=(0.0, 0.0),
+        home=arm.HOME,
+    )
+
+
+def user_robot(
+    urdf: Path,
+    tool: str,
+    gripper: Sequence[str] = (),
+    *,
+    folder: Path,
+    package_dirs: Sequence[Path] = (),
+) -> TaskRobot:
+    """Describe a user's robot and write a copy with the grasp frame as a link of its own.
+
+    Args:
+        urdf: The robot.
+        tool: Link of the gripper: the one that carries the fingers, or a frame between them.
+        gripper: Joints of the fingers; if none are given, those that hang on the tool link or on what it is fixed to.
+        folder: Existing folder for the copy.
+        package_dirs: Where packages lie (``package://``).
+
+    Raises:
+        InputError: The robot cannot be read, has no such link or joints, or its fingers do not open.
+        OSError: The folder cannot be written.
+    """
+    document = parse_description(urdf)
+    model = read_parsed(document, urdf, geometry_source(urdf, package_dirs))
+    robot = model.kinematics
+    if tool not in robot.link_by_name:
+        raise InputError(
+            f"The robot {urdf} has no link {tool!r}, which --tool names. Its links are "
+            f"{', '.join(robot.link_by_name)}. Name the link that carries the fingers."
+        )
+    fingers = _named_fingers(robot, urdf, gripper) if gripper else _found_fingers(robot, urdf, tool)
+    chain = _arm_joints(robot, tool)
+    if not chain:
+        raise InputError(
+            f"No movable joint leads from the root of {urdf} to the link {tool!r}: there is no arm. Name the link at "
+            "the end of the arm with --tool."
+        )
+    hand = _Hand(model=model, tool=tool, fingers=fingers)
+    frame, opening = hand.measured(urdf)
+    path = folder.resolve() / ROBOT_FILE
+    _write_copy(document, model, path, tool, frame)
+    rest = rest_configuration(robot)
+    return TaskRobot(
+        urdf=path,
+        tool=GRASP_LINK,
+        arm_joints=chain,
+        finger_joints=tuple(joint.name for joint in fingers),
+        opening=opening,
+        fingers_open=tuple(hand.apart[joint.name] for joint in fingers),
+        fingers_closed=tuple(hand.together[joint.name] for joint in fingers),
+        home=tuple(rest[name] for name in chain),
+    )
+
+
+def _arm_joints(robot: RobotDescription, tool: str) -> tuple[str, ...]:
+    above, link, found = robot.joint_above, tool, []
+    while link in above:
+        joint = above[link]
+        if joint.kind is not JointType.FIXED and joint.mimic is None:
+            found.append(joint.name)
+        link = joint.parent
+    return tuple(reversed(found))
+
+
+def _named_fingers(robot: RobotDescription, urdf: Path, names: Sequence[str]) -> tuple[DescribedJoint, ...]:
+    movable = {joint.name: joint for joint in robot.joints if joint.kind is not JointType.FIXED}
+    for name in names:
+        if name not in movable:
+            raise InputError(
+                f"The robot {urdf} has no movable joint {name!r}, which --gripper names. Its movable joints are "
+                f"{', '.join(movable)}. Name the joints of the fingers, separated by commas."
+            )
+    followers = [joint for joint in movable.values() if joint.mimic is not None and joint.mimic.joint in names]
+    return tuple(dict.fromkeys([*(movable[name] for name in names), *followers]))
+
+
+def _found_fingers(robot: RobotDescription, urdf: Path, tool: str) -> tuple[DescribedJoint, ...]:
+    """First movable joints below the tool link, or below the body that it is fixed to."""
+    top = tool
+    while top in robot.joint_above and robot.joint_above[top].kind is JointType.FIXED:
+        top = robot.joint_above[top].parent
+    found: list[DescribedJoint] = []
+    frontier = [top]
+    for link in frontier:
+        for joint in robot.joints_below[link]:
+            if joint.kind is JointType.FIXED:
+                frontier.append(joint.child)
+            else:
+                found.append(joint)
+    if not found or len(frontier) > len(robot.links):
+        raise InputError(
+            f"Nothing moves on the link {tool!r} of {urdf}, so there are no fingers that could hold a handle. Name the "
+            "link that carries the fingers with --tool, or their joints with --gripper."
+        )
+    return tuple(found)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Hand:
+    """The fingers of a gripper and where their surfaces are, in the frame of the tool link."""
+
+    model: DeclaredModel
+    tool: str
+    fingers: tuple[DescribedJoint, ...]
+
+    @property
+    def apart(self) -> dict[str, float]:
+        """Values of the finger joints that bring the fingers farthest from each other [rad or m]."""
+        return self._ends()[1]
+
+    @property
+    def together(self) -> dict[str, float]:
+        """The opposite ends of the same joints [rad or m]."""
+        return self._ends()[0]
+
+    def measured(self, urdf: Path) -> tuple[FloatArray, float]:
+        """Grasp frame in the tool frame, shape (4, 4), and the gap between the open fingers [m].
+
+        Raises:
+            InputError: The fingers have no geometry or do not open.
+        """
+        points = self._surfaces(self.apart)
+        if len(points) < 2 or any(not len(part) for part in points):
+            raise InputError(
+                f"The gripper at {self.tool!r} of {urdf} needs two fingers with geometry, and "
+                f"{', '.join(joint.name for joint in self.fingers)} move {sum(map(bool, map(len, points)))}. Name the "
+                "joints of two opposite fingers with --gripper."
+            )
+        first, second = points[0], points[1]
+        closing = self._closing(first, second)
+        approach = self._approach(np.concatenate([first, second]), closing)
+        frame = np.eye(4)
+        frame[:3, :3] = np.column_stack([np.cross(closing, approach), closing, approach])
+        ends = [part[part @ approach > np.quantile(part @ approach, 1.0 - _TIP_SHARE)] for part in (first, second)]
+        ends = [end if len(end) else part for end, part in zip(ends, (first, second), strict=True)]
+        low, high = sorted(((float((e @ closing).min()), float((e @ closing).max())) for e in ends), key=sum)
+        gap = high[0] - low[1]
+        if gap < _NARROW:
+            raise InputError(
+                f"The fingers at {self.tool!r} of {urdf} stand {max(gap, 0.0) * 1e3:.1f} mm apart when open, which "
+                "holds nothing. Check the limits of their joints, or name the joints of two opposite fingers with "
+                "--gripper."
+            )
+        both = np.concatenate([first, second])
+        side = frame[:3, 0]
+        middle = 0.5 * ((both @ side).min() + (both @ side).max())
+        reach = float((both @ approach).max()) - _TIP_DEPTH
+        frame[:3, 3] = middle * side + 0.5 * (high[0] + low[1]) * closing + reach * approach
+        return frame, gap
+
+    def _ends(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Values of the finger joints closed and open, leaders taken to the end that parts the fingers."""
+        robot = self.model.kinematics
+        leaders = list(dict.fromkeys(j.name if j.mimic is None else j.mimic.joint for j in self.fingers))
+        ends = {name: self._bounds(name) for name in leaders}
+        rest = {name: min(max(0.0, low), high) for name, (low, high) in ends.items()}
+        apart, together = {}, {}
+        for name, (low, high) in ends.items():
+            spread = [self._spread({**rest, name: value}) for value in (low, high)]
+            apart[name], together[name] = (low, high) if spread[0] > spread[1] else (high, low)
+        names = [joint.name for joint in self.fingers]
+        opened, closed = joint_values(robot, apart), joint_values(robot, together)
+        return {name: closed[name] for name in names}, {name: opened[name] for name in names}
+
+    def _bounds(self, name: str) -> tuple[float, float]:
+        joint = self.model.kinematics.joint_by_name[name]
+        turn = 0.25 * np.pi  # a finger without limits: an eighth of a turn either way
+        return (joint.lower, joint.upper) if np.isfinite(joint.upper - joint.lower) else (-turn, turn)
+
+    def _spread(self, q: dict[str, float]) -> float:
+        """Distance of the middles of the first two fingers [m]."""
+        points = [part for part in self._surfaces(q) if len(part)]
+        return float(np.linalg.norm(points[0].mean(axis=0) - points[1].mean(axis=0))) if len(points) > 1 else 0.0
+
+    def _surfaces(self, q: dict[str, float]) -> list[FloatArray]:
+        """Corners of every finger in the tool frame [m], shape (n, 3) each."""
+        robot = self.model.kinematics
+        poses = forward_kinematics(robot, {**rest_configuration(robot), **q})
+        T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
+        return [self._corners(joint.child, T_tool_world, poses) for joint in self.fingers]
+
+    def _corners(self, top: str, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
+        robot = self.model.kinematics
+        links = [top]
+        for link in links:
+            links += [joint.child for joint in robot.joints_below[link] if joint not in self.fingers]
+        found = [np.empty((0, 3))]
+        for link in links:
+            T = T_tool_world @ poses[link]
+            declared = self.model.link_by_name[link]
+            for shape in declared.collisions or declared.visuals:
+                used = shape.mesh.vertices[np.unique(shape.mesh.faces)]
+                found.append(used @ T[:3, :3].T + T[:3, 3])
+        return np.concatenate(found)
+
+    def _closing(self, first: FloatArray, second: FloatArray) -> FloatArray:
+        """Unit direction in which the fingers move against each other, tool frame, shape (3,)."""
+        here, there = self._surfaces(self.apart), self._surfaces(self.together)
+        motion = (here[0].mean(axis=0) - there[0].mean(axis=0)) - (here[1].mean(axis=0) - there[1].mean(axis=0))
+        between = first.mean(axis=0) - second.mean(axis=0)
+        direction = motion if float(np.linalg.norm(motion)) > 1e-6 else between
+        return np.asarray(direction / np.linalg.norm(direction))
+
+    def _approach(self, fingers: FloatArray, closing: FloatArray) -> FloatArray:
+        """Unit direction from what carries the fingers to their tips, tool frame, shape (3,)."""
+        robot = self.model.kinematics
+        poses = forward_kinematics(robot, {**rest_configuration(robot), **self.apart})
+        T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
+        carrier = self._carrier(T_tool_world, poses)
+        away = fingers.mean(axis=0) - carrier
+        away = away - (away @ closing) * closing
+        # Fingers are longer than they are wide: their long side across the closing direction is the approach.
+        centred = fingers - fingers.mean(axis=0)
+        centred = centred - np.outer(centred @ closing, closing)
+        axes = np.linalg.svd(centred, full_matrices=False)[2]
+        candidates = [axis for axis in axes if abs(float(axis @ closing)) < 0.5][:2]
+        best = max(candidates, key=lambda axis: abs(float(axis @ away)))
+        best = best - (best @ closing) * closing
+        return np.asarray(best / np.linalg.norm(best) * (1.0 if float(best @ away) >= 0.0 else -1.0))
+
+    def _carrier(self, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
+        """Middle of the body that the fingers hang on, tool frame [m], shape (3,)."""
+        robot = self.model.kinematics
+        link = self.fingers[0].parent
+        found = [self._alone(link, T_tool_world, poses)]
+        while not len(np.concatenate(found)) and link in robot.joint_above:
+            link = robot.joint_above[link].parent
+            found.append(self._alone(link, T_tool_world, poses))
+        points = np.concatenate(found)
+        if len(points):
+            return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
+        return np.asarray((T_tool_world @ poses[self.fingers[0].parent])[:3, 3])
+
+    def _alone(self, link: str, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
+        T = T_tool_world @ poses[link]
+        declared = self.model.link_by_name[link]
+        shapes = declared.collisions or declared.visuals
+        parts = [shape.mesh.vertices @ T[:3, :3].T + T[:3, 3] for shape in shapes]
+        return np.concatenate([np.empty((0, 3)), *parts])
+
+
+def _write_copy(document: etree._Element, model: DeclaredModel, path: Path, tool: str, frame: FloatArray) -> None:
+    """Write the robot with absolute mesh paths and the grasp frame as a link of its own."""
+    for element, link in zip(document.findall("link"), model.links, strict=True):
+        for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
+            for block, shape in zip(element.findall(tag), shapes, strict=True):
+                if shape.file is not None:
+                    block.find("geometry/mesh").set("filename", str(shape.file))  # type: ignore[union-attr]  # as read
+    etree.SubElement(document, "link", name=GRASP_LINK)
+    joint = etree.SubElement(document, "joint", name=f"{GRASP_LINK}_joint", type="fixed")
+    etree.SubElement(joint, "parent", link=tool)
+    etree.SubElement(joint, "child", link=GRASP_LINK)
+    etree.SubElement(joint, "origin", xyz=numbers(frame[:3, 3]), rpy=numbers(roll_pitch_yaw(frame[:3, :3])))
+    etree.ElementTree(document).write(path, pretty_print=True, xml_declaration=True, encoding="utf-8")
