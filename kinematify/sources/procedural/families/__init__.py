@@ -8,6 +8,7 @@ from kinematify.sources.procedural.families import (
     box,
     cabinet,
     dishwasher,
+    door,
     fridge,
     gantry,
     gripper,
@@ -22,6 +23,7 @@ from kinematify.sources.procedural.families import (
     snake,
     table,
     washing_machine,
+    window,
 )
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ FAMILIES: dict[str, Family] = {
         safe,
         laptop,
         box,
+        window,
+        door,
     )
 }
 """Keyed by name."""

@@ -105,6 +105,7 @@ def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
     family, where = _family(sentence, tokens, names)
     reading = _Reading(tokens=tokens, family=family, used=set(where))
     reading.understood.append(family.title)
+    _counted_name(reading, where)
     for step in (_sizes, _products, _counts, _choices, _openness, _looks):
         step(reading)
     _arrangement(reading)
@@ -273,6 +274,15 @@ def _count(reading: _Reading, parameter: Parameter, where: range) -> None:
     reading.mentions.append(
         Mention(kind=_kind(parameter), count=int(count), first=min(first, where.start), last=where.stop - 1)
     )
+
+
+def _counted_name(reading: _Reading, where: range) -> None:
+    """`a double door` has two of what a door is made of, where the family counts them by its own name."""
+    name = " ".join(reading.text(i) for i in where)
+    number, first = _number_before(reading, where.start)
+    parameter = next((p for p in reading.family.parameters if isinstance(p.default, int) and name in _nouns(p)), None)
+    if parameter is not None and number is not None and number > 1:
+        reading.take(parameter.name, number, f"{number} {parameter.name}", *range(first, where.start))
 
 
 def _kind(parameter: Parameter) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.sources.procedural.pieces.bearings import at
-from kinematify.sources.procedural.solids import bore, box, cylinder
+from kinematify.sources.procedural.solids import bore, box, cylinder, rod
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -64,6 +64,43 @@ def add_knob(
     workshop.body(name, *(mount.placed(solid) for solid in solids))
     limits = None if endless else (0.0, _SPAN)
     workshop.turns(name, mount.parent, -mount.outward, mount.place, limits, rest=rest)
+
+
+def add_lever(
+    workshop: Workshop,
+    name: str,
+    mount: Mount,
+    length: float,
+    *,
+    arm: float,
+    swing: float,
+    through: bool,
+    rest: float = 0.0,
+) -> None:
+    """Add a lever handle: an arm on a spindle in the leaf that carries it.
+
+    Args:
+        workshop: Where it is added.
+        name: Of the lever.
+        mount: Its depth is the thickness of the leaf.
+        length: Of an arm [m].
+        arm: Direction of the arms at zero, from the right, anticlockwise seen from outside [rad].
+        swing: How far it turns, anticlockwise seen from outside if positive [rad].
+        through: True if the spindle goes through the leaf and has another arm behind it.
+        rest: Share of the way that it stands turned.
+    """
+    radius, clearance, depth = 0.07 * length, mount.clearance, mount.depth
+    out, back = clearance + 0.3 * length, -depth if through else -0.8 * depth
+    hole = back - 0.01 if through else back - clearance
+    workshop.cut(mount.parent, mount.placed(bore(radius, clearance, (0, 0, hole), (0, 0, 0.01))))
+    x, y = length * np.cos(arm), length * np.sin(arm)
+    solids = [cylinder(radius, (0, 0, back - (out if through else 0.0)), (0, 0, out))]
+    for start, sign in ((0.0, 1.0), (-depth, -1.0))[: 2 if through else 1]:
+        level = start + sign * out
+        rose = cylinder(2.2 * radius, (0, 0, start + sign * clearance), (0, 0, start + sign * (clearance + radius)))
+        solids += [rose, rod(radius, (0, 0, level), (x, y, level))]
+    workshop.body(name, *(mount.placed(solid) for solid in solids))
+    workshop.turns(name, mount.parent, np.sign(swing) * mount.outward, mount.place, (0.0, abs(swing)), rest=rest)
 
 
 def add_button(
