@@ -12,12 +12,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.geometry.remark import Remark, configuration, in_document_order, joint_value, length
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.remark import (
+    SLIMMER,
+    UNSEEN,
+    Remark,
+    configuration,
+    in_document_order,
+    joint_value,
+    length,
+)
 from kinematify.validation.geometry.scene import relative, transformed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from kinematify.validation.geometry.overlap import Overlap
     from kinematify.validation.geometry.rest import Allowance
@@ -33,6 +41,8 @@ class MotionCase:
     overlap: Overlap
     allowance: Allowance
     sweep: JointSweep
+    visible: Callable[[int], JointSweep] | None
+    """The sweep of a leader by visual geometry; None where that is the same."""
 
     @cached_property
     def joint(self) -> str:
@@ -67,12 +77,14 @@ class MotionCase:
         return joint_value(value, turns=self.sweep.travel.turns)
 
     def remark(self, meeting: Meeting, message: str, remedy: str, *, severity: Severity | None = None) -> Remark:
-        """A remark about a meeting; an error if it is clearly too deep."""
+        """A remark about a meeting; an error if it is clearly too deep, and not in the collision geometry alone."""
         wrong = meeting.depth > self.scene.settings.wrong * self.scene.size
+        unseen = severity is not Severity.NOTE and self.unseen(meeting)
         return Remark(
-            message=message,
-            remedy=remedy,
-            severity=severity or (Severity.ERROR if wrong else Severity.WARNING),
+            message=f"{message} {UNSEEN}" if unseen else message,
+            remedy=SLIMMER if unseen else remedy,
+            severity=severity or (Severity.ERROR if wrong and not unseen else Severity.WARNING),
+            blame=Blame.PHYSICS if unseen else None,
             joint=self.joint,
             pair=in_document_order(self.scene, meeting.pair),
             q=configuration(self.scene, {self.sweep.leader: meeting.at}),
@@ -80,6 +92,13 @@ class MotionCase:
             limit=self.allowance.tolerance(meeting.pair),
             unit="m",
         )
+
+    def unseen(self, meeting: Meeting) -> bool:
+        """Whether the visible surfaces of the two stay clear of each other where their collision geometry meets."""
+        if self.visible is None:
+            return False
+        sides = self.visible(self.sweep.leader).sides
+        return not any(seen.pair == meeting.pair and seen.inside for side in sides for seen in side.meetings)
 
     def words(self, meeting: Meeting) -> str:
         """What meets, how deep and where."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.geometry.remark import Remark, configuration, in_document_order, length
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.remark import SLIMMER, UNSEEN, Remark, configuration, in_document_order, length
 from kinematify.validation.geometry.rest import Reason
 
 if TYPE_CHECKING:
@@ -20,23 +20,28 @@ if TYPE_CHECKING:
     from kinematify.validation.geometry.together import Configurations
 
 
-def strangers(scene: Scene, allowance: Allowance) -> Iterator[Remark]:
+def strangers(scene: Scene, allowance: Allowance, visible: Allowance | None) -> Iterator[Remark]:
     """KV301: bodies that no joint joins, in one another at rest."""
     limit = scene.settings.rest_overlap * scene.size
     for rest in allowance.pairs.values():
         if not rest.joined and rest.depth > limit:
-            yield _overlapping(scene, rest, limit, f"{_how(scene, rest)} at rest, and no joint joins them.")
+            message = f"{_how(scene, rest)} at rest, and no joint joins them."
+            yield _overlapping(scene, rest, limit, message, unseen=_unseen(visible, rest, limit))
 
 
-def neighbours(scene: Scene, overlap: Overlap, allowance: Allowance) -> Iterator[Remark]:
+def neighbours(scene: Scene, overlap: Overlap, allowance: Allowance, visible: Allowance | None) -> Iterator[Remark]:
     """KV302: parent and child in one another at rest."""
     for rest in allowance.pairs.values():
         limit = scene.settings.rest_joined * min(solid.size for solid in overlap.solids(rest.pair))
         if rest.joined and rest.depth > limit:
             joint = scene.connection_of[rest.pair].joints[-1]
-            yield _overlapping(
-                scene, rest, limit, f"{_how(scene, rest)} at rest; the joint {joint} joins them.", joint=joint
-            )
+            message = f"{_how(scene, rest)} at rest; the joint {joint} joins them."
+            yield _overlapping(scene, rest, limit, message, joint=joint, unseen=_unseen(visible, rest, limit))
+
+
+def _unseen(visible: Allowance | None, rest: AtRest, limit: float) -> bool:
+    """Whether the visible surfaces do not overlap as much as the collision geometry does."""
+    return visible is not None and visible.at_rest(rest.pair) <= limit
 
 
 def _how(scene: Scene, rest: AtRest) -> str:
@@ -46,12 +51,17 @@ def _how(scene: Scene, rest: AtRest) -> str:
     return f"{first} and {second} overlap by {length(rest.depth)}"
 
 
-def _overlapping(scene: Scene, rest: AtRest, limit: float, message: str, joint: str | None = None) -> Remark:
-    wrong = joint is None and rest.depth > scene.settings.wrong * scene.size
+def _overlapping(
+    scene: Scene, rest: AtRest, limit: float, message: str, *, joint: str | None = None, unseen: bool
+) -> Remark:
+    wrong = joint is None and rest.depth > scene.settings.wrong * scene.size and not unseen
     return Remark(
-        message=message,
-        remedy="Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
+        message=f"{message} {UNSEEN}" if unseen else message,
+        remedy=SLIMMER
+        if unseen
+        else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
         "in all later checks.",
+        blame=Blame.PHYSICS if unseen else None,
         severity=Severity.ERROR if wrong else Severity.WARNING,
         joint=joint,
         pair=in_document_order(scene, rest.pair),

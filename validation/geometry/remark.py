@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from kinematify.validation.stage import OpenCheck
 
 
+UNSEEN = "Only the collision geometry does so; the visible surfaces stay clear."
+SLIMMER = "Make the collision geometry of the two links follow the visible one more closely; the joint may be right."
+
+
 @dataclass(frozen=True, kw_only=True)
 class Remark:
     """One finding; severity and blame are those of the check unless given."""

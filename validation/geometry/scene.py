@@ -15,7 +15,7 @@ from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.geometry.solid import Solid
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.assembly.robot import DescribedJoint, RigidGroup
@@ -179,9 +179,35 @@ class Scene:
         )
 
 
-def read_scene(model: DeclaredModel, settings: GeometrySettings) -> Scene:
+def judged_shapes(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+    """Collision geometry, or visual geometry where there is none."""
+    return link.collisions or link.visuals
+
+
+def visible_shapes(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+    """Visual geometry, or collision geometry where there is none."""
+    return link.visuals or link.collisions
+
+
+def simplified(model: DeclaredModel) -> bool:
+    """Whether the collision geometry of some link is not simply its visual geometry."""
+
+    def described(shapes: tuple[DeclaredShape, ...]) -> list[tuple[object, ...]]:
+        return [(shape.kind, shape.file, shape.size, shape.T_link_shape.tobytes()) for shape in shapes]
+
+    both = [link for link in model.links if link.visuals and link.collisions]
+    return any(described(link.visuals) != described(link.collisions) for link in both)
+
+
+def read_scene(
+    model: DeclaredModel,
+    settings: GeometrySettings,
+    shapes_of: Callable[[DeclaredLink], tuple[DeclaredShape, ...]] = judged_shapes,
+) -> Scene:
     """Gather the geometry of the bodies; nothing is measured yet."""
-    parts = [(index, group, _shapes(model, group)) for index, group in enumerate(rigid_groups(model.kinematics))]
+    parts = [
+        (index, group, _shapes(model, group, shapes_of)) for index, group in enumerate(rigid_groups(model.kinematics))
+    ]
     solid = [(index, group, shapes) for index, group, shapes in parts if any(len(faces) for _, faces in shapes)]
     corners = [vertices for _, _, shapes in solid for vertices, _ in shapes]
     largest = max(
@@ -216,18 +242,15 @@ def placed_links(model: DeclaredModel, group: RigidGroup) -> dict[str, FloatArra
     return placed
 
 
-def _shapes(model: DeclaredModel, group: RigidGroup) -> list[tuple[FloatArray, IntArray]]:
+def _shapes(
+    model: DeclaredModel, group: RigidGroup, shapes_of: Callable[[DeclaredLink], tuple[DeclaredShape, ...]]
+) -> list[tuple[FloatArray, IntArray]]:
     """Vertices (V, 3) and faces (F, 3) of every shape of a group, in the frame of its top link."""
     return [
         (transformed(shape.mesh.vertices, T), shape.mesh.faces)
         for name, T in placed_links(model, group).items()
-        for shape in judged_shapes(model.link_by_name[name])
+        for shape in shapes_of(model.link_by_name[name])
     ]
-
-
-def judged_shapes(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
-    """Collision geometry, or visual geometry where there is none."""
-    return link.collisions or link.visuals
 
 
 def _solid(shapes: Sequence[tuple[FloatArray, IntArray]], unit: float, settings: GeometrySettings) -> Solid:

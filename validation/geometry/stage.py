@@ -20,7 +20,7 @@ from kinematify.validation.geometry.judge_rest import allowed_pairs, allowed_tab
 from kinematify.validation.geometry.judge_together import free_configurations, in_each_others_way
 from kinematify.validation.geometry.overlap import Overlap
 from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import read_scene
+from kinematify.validation.geometry.scene import read_scene, simplified, visible_shapes
 from kinematify.validation.geometry.sweep import Sweeper
 from kinematify.validation.geometry.together import joint_pairs, looked_at, random_rows
 from kinematify.validation.read import read_model
@@ -74,6 +74,7 @@ class _Looks:
         self.overlap = Overlap(scene)
         self.allowance = Allowance(scene, self.overlap)
         self.sweeper = Sweeper(scene, self.overlap, self.allowance)
+        self._sweep_of: dict[int, JointSweep] = {}
 
     @property
     def in_time(self) -> bool:
@@ -86,8 +87,23 @@ class _Looks:
         for leader in range(len(self.scene.travels)):
             if not self.in_time:
                 break
-            found.append(self.sweeper.sweep(leader))
+            found.append(self.sweep(leader))
         return found
+
+    @cached_property
+    def visible(self) -> _Looks | None:
+        """The same of the visual geometry; None where the collision geometry is a copy of it."""
+        if not simplified(self.scene.model):
+            return None
+        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes)
+        same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
+        return _Looks(scene, self.request) if same else None
+
+    def sweep(self, leader: int) -> JointSweep:
+        """Sweep of one joint."""
+        if leader not in self._sweep_of:
+            self._sweep_of[leader] = self.sweeper.sweep(leader)
+        return self._sweep_of[leader]
 
     @cached_property
     def late(self) -> str | None:
@@ -98,7 +114,13 @@ class _Looks:
     @cached_property
     def cases(self) -> list[MotionCase]:
         return [
-            MotionCase(scene=self.scene, overlap=self.overlap, allowance=self.allowance, sweep=sweep)
+            MotionCase(
+                scene=self.scene,
+                overlap=self.overlap,
+                allowance=self.allowance,
+                sweep=sweep,
+                visible=self.visible.sweep if self.visible else None,
+            )
             for sweep in self.sweeps
         ]
 
@@ -120,8 +142,9 @@ def _tell(recorder: Recorder, name: str, remarks: Callable[[], Iterable[Remark]]
 
 def _tell_rest(recorder: Recorder, looks: _Looks) -> None:
     scene, allowance = looks.scene, looks.allowance
-    _tell(recorder, "KV301", lambda: strangers(scene, allowance))
-    _tell(recorder, "KV302", lambda: neighbours(scene, looks.overlap, allowance))
+    visible = looks.visible.allowance if looks.visible else None
+    _tell(recorder, "KV301", lambda: strangers(scene, allowance, visible))
+    _tell(recorder, "KV302", lambda: neighbours(scene, looks.overlap, allowance, visible))
     _tell(recorder, "KV303", lambda: hovering(scene, allowance))
     with recorder.check("KV304") as check:
         reasons = allowed_pairs(scene, allowance, looks.random)
