@@ -78,12 +78,13 @@ class MotionCase:
 
     def remark(self, meeting: Meeting, message: str, remedy: str, *, severity: Severity | None = None) -> Remark:
         """A remark about a meeting; an error if it is clearly too deep, and not in the collision geometry alone."""
-        wrong = meeting.depth > self.scene.settings.wrong * self.scene.size
-        unseen = severity is not Severity.NOTE and self.unseen(meeting)
+        seen = meeting.depth if severity is Severity.NOTE else self.seen(meeting)
+        unseen = seen == 0.0
+        wrong = min(meeting.depth, seen) > self.scene.settings.wrong * self.scene.size
         return Remark(
             message=f"{message} {UNSEEN}" if unseen else message,
             remedy=SLIMMER if unseen else remedy,
-            severity=severity or (Severity.ERROR if wrong and not unseen else Severity.WARNING),
+            severity=severity or (Severity.ERROR if wrong else Severity.WARNING),
             blame=Blame.PHYSICS if unseen else None,
             joint=self.joint,
             pair=in_document_order(self.scene, meeting.pair),
@@ -93,12 +94,12 @@ class MotionCase:
             unit="m",
         )
 
-    def unseen(self, meeting: Meeting) -> bool:
-        """Whether the visible surfaces of the two stay clear of each other where their collision geometry meets."""
+    def seen(self, meeting: Meeting) -> float:
+        """How deep the visible geometry of the two gets into each other [m], 0 where it stays clear."""
         if self.visible is None:
-            return False
-        sides = self.visible(self.sweep.leader).sides
-        return not any(seen.pair == meeting.pair and seen.inside for side in sides for seen in side.meetings)
+            return meeting.depth
+        found = [seen for side in self.visible(self.sweep.leader).sides for seen in side.meetings]
+        return max((seen.depth for seen in found if seen.pair == meeting.pair and seen.inside), default=0.0)
 
     def words(self, meeting: Meeting) -> str:
         """What meets, how deep and where."""

@@ -26,7 +26,7 @@ def strangers(scene: Scene, allowance: Allowance, visible: Allowance | None) -> 
     for rest in allowance.pairs.values():
         if not rest.joined and rest.depth > limit:
             message = f"{_how(scene, rest)} at rest, and no joint joins them."
-            yield _overlapping(scene, rest, limit, message, unseen=_unseen(visible, rest, limit))
+            yield _overlapping(scene, rest, limit, message, seen=_seen(visible, rest))
 
 
 def neighbours(scene: Scene, overlap: Overlap, allowance: Allowance, visible: Allowance | None) -> Iterator[Remark]:
@@ -36,12 +36,12 @@ def neighbours(scene: Scene, overlap: Overlap, allowance: Allowance, visible: Al
         if rest.joined and rest.depth > limit:
             joint = scene.connection_of[rest.pair].joints[-1]
             message = f"{_how(scene, rest)} at rest; the joint {joint} joins them."
-            yield _overlapping(scene, rest, limit, message, joint=joint, unseen=_unseen(visible, rest, limit))
+            yield _overlapping(scene, rest, limit, message, joint=joint, seen=_seen(visible, rest))
 
 
-def _unseen(visible: Allowance | None, rest: AtRest, limit: float) -> bool:
-    """Whether the visible surfaces do not overlap as much as the collision geometry does."""
-    return visible is not None and visible.at_rest(rest.pair) <= limit
+def _seen(visible: Allowance | None, rest: AtRest) -> float:
+    """How deep the visible geometry is in each other [m]."""
+    return rest.depth if visible is None else visible.at_rest(rest.pair)
 
 
 def _how(scene: Scene, rest: AtRest) -> str:
@@ -52,9 +52,10 @@ def _how(scene: Scene, rest: AtRest) -> str:
 
 
 def _overlapping(
-    scene: Scene, rest: AtRest, limit: float, message: str, *, joint: str | None = None, unseen: bool
+    scene: Scene, rest: AtRest, limit: float, message: str, *, joint: str | None = None, seen: float
 ) -> Remark:
-    wrong = joint is None and rest.depth > scene.settings.wrong * scene.size and not unseen
+    unseen = seen <= limit
+    wrong = joint is None and min(rest.depth, seen) > scene.settings.wrong * scene.size
     return Remark(
         message=f"{message} {UNSEEN}" if unseen else message,
         remedy=SLIMMER
