@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config import StageConfig, load_values, validated
+from kinematify.validation.task.settings import TaskSettings
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -392,6 +393,7 @@ class ValidationSettings(StageConfig):
     evidence: EvidenceSettings
     engines: EngineSettings
     agreement: AgreementSettings
+    task: TaskSettings
 
 
 def load_settings(name_or_path: str | Path = "validation", **overrides: Any) -> ValidationSettings:

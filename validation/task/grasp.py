@@ -1,0 +1,332 @@
+"""Where a parallel gripper takes hold of a moving part: handles, knobs and rims, found from geometry alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import fcl
+import numpy as np
+
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.errors import InputError
+from kinematify.validation.task.grasp_search import GraspSearch, Tally
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.validation.engines.mechanism import Travel
+    from kinematify.validation.geometry.scene import Scene
+    from kinematify.validation.task.grasp_search import Candidates
+    from kinematify.validation.task.settings import GraspSettings
+
+    BoolArray = NDArray[np.bool_]
+
+HANDLE, KNOB, RIM = "handle", "knob", "rim"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Grasp:
+    """One way to hold a part; turning it by half a turn about the approach direction holds it as well."""
+
+    T_link_grasp: FloatArray
+    """Pose in the frame of the joint's child link: +z approaches, +y closes, origin between the pads, shape (4, 4)."""
+    width: float
+    """Of what is held [m]."""
+    spread: float
+    """Gap between the pads for which the way in was found free [m]."""
+    clearance: float
+    """Room beside the fingers, the smaller of both sides [m]."""
+    lever: float
+    """Hinges: distance from the axis, or half the width where the grasp turns about its own approach direction [m].
+    Slides: distance from the middle of the part across the axis; pulling there tilts the part [m]."""
+    kind: str
+    """``handle``, ``knob`` (small both ways) or ``rim`` (of a plate that goes on behind it)."""
+    held: str
+    """Body that is held: the joint's own, or one that it carries."""
+    score: float
+    """Rank in [0, 1]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GraspReport:
+    """What a search found and what became of the rest."""
+
+    grasps: tuple[Grasp, ...]
+    """The best first."""
+    tally: Tally
+    reason: str | None
+    """Why there are none."""
+
+
+def find_grasps(
+    scene: Scene,
+    joint: str,
+    opening: float,
+    *,
+    settings: GraspSettings,
+    point: FloatArray | None = None,
+    leaders: FloatArray | None = None,
+    seed: int = 0,
+) -> list[Grasp]:
+    """Return the grasps of `search_grasps`."""
+    report = search_grasps(scene, joint, opening, settings=settings, point=point, leaders=leaders, seed=seed)
+    return list(report.grasps)
+
+
+def search_grasps(
+    scene: Scene,
+    joint: str,
+    opening: float,
+    *,
+    settings: GraspSettings,
+    point: FloatArray | None = None,
+    leaders: FloatArray | None = None,
+    seed: int = 0,
+) -> GraspReport:
+    """Find where a gripper can hold what a joint moves.
+
+    Args:
+        scene: The object, in metres, z up.
+        joint: Joint that leads.
+        opening: Largest gap between the pads [m].
+        settings: Sizes of the hand and weights of the rank.
+        point: Hold it there, frame of the root link [m], shape (3,); anywhere if None.
+        leaders: Values of all leading joints [rad or m], shape (leaders,); rest if None.
+        seed: Of the places that are looked at.
+
+    Raises:
+        InputError: The object has no such leading joint, or `point` is not on what it moves.
+    """
+    values = scene.mechanism.rest if leaders is None else leaders
+    poses = scene.poses(values[None])[0]
+    bodies, carried = moved_bodies(scene, joint)
+    if point is not None:
+        moved = [*bodies, *carried]
+        nearest = min((_distance(scene, poses, body, point) for body in moved), default=np.inf)
+        if nearest > settings.near_point:
+            raise InputError(
+                f"The grasp point {point.tolist()} is {nearest:.3f} m from what {joint} moves "
+                f"({', '.join(scene.bodies[body].name for body in moved) or 'nothing with geometry'}); a point on it "
+                f"is at most {settings.near_point} m off. Give it in metres in the frame of the root link, after scaling."
+            )
+    last = GraspReport(grasps=(), tally=_no_tally(), reason=f"Nothing that {joint} moves has geometry.")
+    for body in [*bodies, *carried]:
+        search = GraspSearch(scene, poses, body, settings)
+        places = search.places(seed) if point is None else _around(point, settings, seed)
+        candidates, tally = search.candidates(places, opening)
+        ranked = _Ranked(scene, joint, values, search, candidates)
+        grasps = _distinct(ranked, _Room(scene, poses, settings), scene.bodies[body].name, settings)
+        last = GraspReport(grasps=tuple(grasps), tally=tally, reason=None if grasps else _reason(tally, opening))
+        if grasps:
+            break
+    return last
+
+
+def moved_bodies(scene: Scene, joint: str) -> tuple[list[int], list[int]]:
+    """Bodies that hang on a joint with no other body between, and those that these carry.
+
+    Raises:
+        InputError: The object has no such leading joint.
+    """
+    names = [travel.joint for travel in scene.travels]
+    if joint not in names:
+        raise InputError(
+            f"The object has no joint {joint!r} that a robot could move. Its joints that move by themselves are "
+            f"{', '.join(names) or 'none'}."
+        )
+    own = [c.child for c in scene.connections if joint in c.joints]
+    carried: list[int] = []
+    for body in [*own, *carried]:
+        carried += [c.child for c in scene.connections if c.parent == body]
+    for body in carried:
+        carried += [c.child for c in scene.connections if c.parent == body and c.child not in carried]
+    return own, carried
+
+
+def opening_sign(travel: Travel) -> float:
+    """Direction in which a joint opens: towards the farther end of its range from rest."""
+    return 1.0 if travel.upper - travel.rest >= travel.rest - travel.lower else -1.0
+
+
+class _Ranked:
+    """Candidates with what their rank depends on."""
+
+    def __init__(
+        self, scene: Scene, joint: str, leaders: FloatArray, search: GraspSearch, candidates: Candidates
+    ) -> None:
+        settings = search.settings
+        self.candidates, self.search = candidates, search
+        values = dict(zip((t.joint for t in scene.travels), leaders.tolist(), strict=True))
+        described = scene.model.kinematics.joint_by_name[joint]
+        poses = forward_kinematics(scene.model.kinematics, values)
+        self.T_root_link = poses[described.child]
+        self.axis = self.T_root_link[:3, :3] @ described.axis
+        travel = next(t for t in scene.travels if t.joint == joint)
+        self.sign = opening_sign(travel)
+        self.turns = travel.turns
+        self.lever, pull = self._lever_and_pull()
+        self.plate = search.is_plate(candidates)
+        self.extent = search.extent(candidates)
+        largest = float(self.lever.max(initial=1e-9))
+        reach = self.lever / largest if self.turns else 1.0 - self.lever / largest
+        self.score = (
+            settings.lever_weight * reach
+            + settings.clearance_weight * np.minimum(candidates.clearance / settings.plenty, 1.0)
+            + settings.pull_weight * pull
+            + settings.handle_weight * ~self.plate
+        )
+
+    def kind(self, row: int) -> str:
+        """Name what is held."""
+        if self.plate[row]:
+            return RIM
+        small = max(float(self.candidates.width[row]), float(self.extent[row]))
+        return KNOB if small <= self.search.settings.knob else HANDLE
+
+    def _lever_and_pull(self) -> tuple[FloatArray, FloatArray]:
+        """Lever arms [m] and how well each grasp pulls in [0, 1], shape (n,) each."""
+        found = self.candidates
+        offset = found.center - self.T_root_link[:3, 3]
+        across = offset - np.outer(offset @ self.axis, self.axis)
+        if not self.turns:
+            vertices = self.search.meshes[self.search.body][0]
+            flat = vertices - np.outer(vertices @ self.axis, self.axis)
+            middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
+            centred = found.center - np.outer(found.center @ self.axis, self.axis) - middle
+            motion = np.broadcast_to(self.sign * self.axis, found.center.shape)
+            return np.linalg.norm(centred, axis=1), _pull(found, motion)
+        radius = np.linalg.norm(across, axis=1)
+        motion = self.sign * np.cross(self.axis, across) / np.maximum(radius, 1e-9)[:, None]
+        # A knob is turned by twisting: the pads are the lever.
+        twist = 0.5 * found.width * np.abs(found.approach @ self.axis)
+        return np.maximum(radius, twist), np.where(twist > radius, 1.0, _pull(found, motion))
+
+
+def _pull(found: Candidates, motion: FloatArray) -> FloatArray:
+    """1 where the motion leads away from the palm or onto a pad, less where it slides sideways or onto the palm."""
+    back = -np.einsum("nd,nd->n", found.approach, motion)
+    onto_pad = np.abs(np.einsum("nd,nd->n", found.closing, motion))
+    return np.asarray(np.maximum(np.maximum(back, onto_pad), 0.0))
+
+
+class _Room:
+    """Whether the hand and its straight way in are free of the object, exactly."""
+
+    def __init__(self, scene: Scene, poses: FloatArray, settings: GraspSettings) -> None:
+        self._settings, self._unit = settings, scene.unit
+        self._manager = fcl.DynamicAABBTreeCollisionManager()
+        self._objects = [
+            fcl.CollisionObject(
+                body.solid.tree, fcl.Transform(T[:3, :3], (T[:3, :3] @ body.solid.middle + T[:3, 3]) / scene.unit)
+            )
+            for body, T in zip(scene.bodies, poses, strict=True)
+        ]
+        self._manager.registerObjects(self._objects)
+        self._manager.setup()
+
+    def free(self, T_root_grasp: FloatArray, spread: float) -> bool:
+        """Ask for both fingers and the palm, drawn out by the length of the approach."""
+        settings = self._settings
+        outward = 0.5 * (spread + settings.finger_thickness)
+        length = settings.finger_length + settings.approach
+        finger = np.array([settings.finger_width, settings.finger_thickness, length])
+        behind = settings.palm_length + settings.approach
+        palm = np.array([settings.palm_thickness, settings.palm_width, behind])
+        parts = [(finger, np.array([0.0, sign * outward, settings.tip - 0.5 * length])) for sign in (-1.0, 1.0)]
+        parts.append((palm, np.array([0.0, 0.0, settings.tip - settings.finger_length - 0.5 * behind])))
+        return not any(self._meets(T_root_grasp, size, middle) for size, middle in parts)
+
+    def _meets(self, T: FloatArray, size: FloatArray, middle: FloatArray) -> bool:
+        place = (T[:3, :3] @ middle + T[:3, 3]) / self._unit
+        box = fcl.CollisionObject(fcl.Box(*(size / self._unit)), fcl.Transform(T[:3, :3], place))
+        data = fcl.CollisionData()
+        self._manager.collide(box, data, fcl.defaultCollisionCallback)
+        return bool(data.result.is_collision)
+
+
+def _distinct(ranked: _Ranked, room: _Room, held: str, settings: GraspSettings) -> list[Grasp]:
+    """Take the best candidates with room, leaving out those that are nearly the same as a better one."""
+    found, order = ranked.candidates, np.argsort(-ranked.score, kind="stable")
+    alive = np.ones(len(found), dtype=bool)
+    grasps: list[Grasp] = []
+    tries = 0
+    for row in order.tolist():
+        if not alive[row]:
+            continue
+        if tries == settings.tries or len(grasps) == settings.most:
+            break
+        tries += 1
+        spread = float(found.width[row]) + 2.0 * settings.slack
+        T_root_grasp = _frame(found, row)
+        if not room.free(T_root_grasp, spread):
+            continue
+        grasps.append(
+            Grasp(
+                T_link_grasp=_inverse(ranked.T_root_link) @ T_root_grasp,
+                width=float(found.width[row]),
+                spread=spread,
+                clearance=float(found.clearance[row]),
+                lever=float(ranked.lever[row]),
+                kind=ranked.kind(row),
+                held=held,
+                score=float(ranked.score[row]),
+            )
+        )
+        alive &= ~_alike(found, row, settings)
+    return grasps
+
+
+def _alike(found: Candidates, row: int, settings: GraspSettings) -> BoolArray:
+    cosine = np.cos(np.radians(settings.same_deg))
+    near = np.linalg.norm(found.center - found.center[row], axis=1) < settings.same_place
+    same = (found.approach @ found.approach[row] > cosine) & (np.abs(found.closing @ found.closing[row]) > cosine)
+    return np.asarray(near & same)
+
+
+def _frame(found: Candidates, row: int) -> FloatArray:
+    T = np.eye(4)
+    T[:3, :3] = np.column_stack([found.side[row], found.closing[row], found.approach[row]])
+    T[:3, 3] = found.center[row]
+    return T
+
+
+def _inverse(T: FloatArray) -> FloatArray:
+    back = np.eye(4)
+    back[:3, :3] = T[:3, :3].T
+    back[:3, 3] = -T[:3, :3].T @ T[:3, 3]
+    return back
+
+
+def _around(point: FloatArray, settings: GraspSettings, seed: int) -> FloatArray:
+    """Places in the ball around a point, the point itself first, shape (n, 3)."""
+    rng = np.random.default_rng(seed)
+    offsets = rng.normal(size=(settings.points // 8, 3))
+    offsets *= settings.near_point * rng.random((len(offsets), 1)) / np.linalg.norm(offsets, axis=1)[:, None]
+    return np.concatenate([point[None], point + offsets])
+
+
+def _distance(scene: Scene, poses: FloatArray, body: int, point: FloatArray) -> float:
+    solid, T = scene.bodies[body].solid, poses[body]
+    tree = fcl.CollisionObject(solid.tree, fcl.Transform(T[:3, :3], (T[:3, :3] @ solid.middle + T[:3, 3]) / scene.unit))
+    dot = fcl.CollisionObject(fcl.Sphere(1e-3), fcl.Transform(point / scene.unit))
+    distance = fcl.distance(tree, dot, fcl.DistanceRequest(), fcl.DistanceResult())
+    return scene.unit * max(0.0, float(distance))
+
+
+def _no_tally() -> Tally:
+    return Tally(seen=0, held=0, free=0)
+
+
+def _reason(tally: Tally, opening: float) -> str:
+    if not tally.seen:
+        return "No place on the part can be seen from outside."
+    if not tally.held:
+        return (
+            f"Nothing on the part that can be reached from outside has opposite sides within {opening * 1e3:.0f} mm, "
+            "which the gripper spans."
+        )
+    if not tally.free:
+        return "Everything that the gripper could span lacks room for its fingers beside it."
+    return "Everything that the fingers could hold lacks room for the hand behind them."

@@ -1,0 +1,279 @@
+"""Places where two parallel pads can hold a part, found by rays from outside; nothing is known of names.
+
+Seen along an approach direction, a place is a candidate if it is the first surface that is met, if rays from both sides
+along a closing direction meet the part within the opening of the gripper with surfaces that face the pads, and if both
+fingers find free lanes beside it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from kinematify.assembly.robot import rotation_about
+from kinematify.geometry.rays import RayScene
+from kinematify.geometry.sampling import curve_order, place_samples
+from kinematify.validation.geometry.scene import transformed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.validation.geometry.scene import Scene
+    from kinematify.validation.task.settings import GraspSettings
+
+    BoolArray = NDArray[np.bool_]
+
+_COARSE_NORMAL = 4.0  # normals in one cell of a quarter are one side of a piece
+_FLOOR = 0.01  # the hand stays so far above the lowest point of the object [m]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Candidates:
+    """Possible grasps, frame of the root link."""
+
+    center: FloatArray
+    """Between the pads [m], shape (n, 3)."""
+    approach: FloatArray
+    """Unit, shape (n, 3)."""
+    closing: FloatArray
+    """Unit, shape (n, 3)."""
+    width: FloatArray
+    """Of what is held [m], shape (n,)."""
+    clearance: FloatArray
+    """Room beside the fingers, the smaller of both sides, at most `plenty` [m], shape (n,)."""
+
+    def __len__(self) -> int:
+        """Number of candidates."""
+        return len(self.width)
+
+    def __getitem__(self, rows: BoolArray | IntArray | slice) -> Candidates:
+        """Return some of them."""
+        return Candidates(
+            center=self.center[rows],
+            approach=self.approach[rows],
+            closing=self.closing[rows],
+            width=self.width[rows],
+            clearance=self.clearance[rows],
+        )
+
+    @property
+    def side(self) -> FloatArray:
+        """Unit, across approach and closing direction, shape (n, 3)."""
+        return np.cross(self.closing, self.approach)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tally:
+    """What became of the places that were looked at."""
+
+    seen: int
+    """Places with approach and closing directions that are met first from outside."""
+    held: int
+    """Of these, with opposite surfaces within the opening of the gripper."""
+    free: int
+    """Of these, with room for both fingers."""
+
+
+class GraspSearch:
+    """Looks at one body of a scene in one configuration."""
+
+    def __init__(self, scene: Scene, poses: FloatArray, body: int, settings: GraspSettings) -> None:
+        """Place all bodies.
+
+        Args:
+            scene: The object.
+            poses: Pose of every body, frame of the root link, shape (B, 4, 4).
+            body: The one to hold.
+            settings: Sizes of the hand.
+        """
+        self.settings, self.body = settings, body
+        self.meshes = [
+            (transformed(item.solid.shells.vertices, T), item.solid.shells.faces)
+            for item, T in zip(scene.bodies, poses, strict=True)
+        ]
+        self.rays = RayScene(self.meshes)
+        """All bodies; the index of a mesh is that of its body."""
+        self._far = self.rays.size
+
+    def places(self, seed: int) -> FloatArray:
+        """Points on the surface of the body, small pieces and narrow sides favoured, shape (n, 3)."""
+        vertices, faces = self.meshes[self.body]
+        corners = vertices[faces]
+        cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        areas = 0.5 * np.linalg.norm(cross, axis=1)
+        solid = areas > 0.0
+        corners, areas, cross = corners[solid], areas[solid], cross[solid]
+        side = _sides(faces[solid], cross, len(vertices))
+        weights = areas / np.sqrt(np.bincount(side, areas)[side])
+        count = self.settings.points
+        picked, barycentric = place_samples(corners, weights, curve_order(corners, weights), count, seed)
+        return np.asarray(np.einsum("nk,nkd->nd", barycentric, corners[picked]))
+
+    def directions(self) -> FloatArray:
+        """Approach directions: along the three main directions of the body's faces, and between any two, (18, 3)."""
+        vertices, faces = self.meshes[self.body]
+        axes = main_directions(vertices, faces)
+        signs = [np.array([i, j, k]) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)]
+        chosen = np.array([sign for sign in signs if 1 <= np.abs(sign).sum() <= 2], dtype=np.float64)
+        return np.asarray(chosen / np.linalg.norm(chosen, axis=1)[:, None] @ axes)
+
+    def candidates(self, places: FloatArray, opening: float) -> tuple[Candidates, Tally]:
+        """Look at places (n, 3) along all approach and closing directions."""
+        found, tallies = [], []
+        for approach in self.directions():
+            seen = self._seen(places, approach)
+            for depth in self.settings.depths:
+                for closing in _across(approach, self.settings.closing_steps):
+                    some, tally = self._held(seen + depth * approach, approach, closing, opening)
+                    found.append(some)
+                    tallies.append(tally)
+        return _joined(found), Tally(
+            seen=sum(tally.seen for tally in tallies),
+            held=sum(tally.held for tally in tallies),
+            free=sum(tally.free for tally in tallies),
+        )
+
+    def is_plate(self, candidates: Candidates) -> BoolArray:
+        """Whether what is held goes on with the same thickness deeper in, shape (n,)."""
+        deeper = candidates.center + self.settings.plate * candidates.approach
+        half = 0.5 * candidates.width + self.settings.slack
+        first = self._first(deeper + half[:, None] * candidates.closing, -candidates.closing)[0]
+        second = self._first(deeper - half[:, None] * candidates.closing, candidates.closing)[0]
+        slack = self.settings.slack
+        return np.asarray((first < 2.0 * slack) & (second < 2.0 * slack))
+
+    def extent(self, candidates: Candidates) -> FloatArray:
+        """Length of what is held across approach and closing direction [m], inf where it goes on, shape (n,)."""
+        side, half = candidates.side, self.settings.knob
+        first = self._first(candidates.center + half * side, -side)[0]
+        second = self._first(candidates.center - half * side, side)[0]
+        alone = (first > 0.0) & (second > 0.0) & (first < half) & (second < half)
+        extent = 2.0 * half - first - second
+        return np.asarray(np.where(alone & (extent <= half), extent, np.inf))
+
+    def _seen(self, places: FloatArray, approach: FloatArray) -> FloatArray:
+        """First surface points on the way to places, where they belong to the body and the hand is above the floor."""
+        distance, mesh, _ = self._first(places - self._far * approach, np.broadcast_to(approach, places.shape))
+        near = (distance >= self._far - self.settings.hidden) & (distance <= self._far * (1.0 + 1e-5))
+        back = places - (self.settings.finger_length + self.settings.palm_length) * approach
+        above = back[:, 2] > self.rays.bounds[0, 2] + _FLOOR
+        kept = near & (mesh == self.body) & (above | (abs(approach[2]) < 0.1))
+        return np.asarray(places[kept] + (distance[kept] - self._far)[:, None] * approach)
+
+    def _held(
+        self, centers: FloatArray, approach: FloatArray, closing: FloatArray, opening: float
+    ) -> tuple[Candidates, Tally]:
+        settings = self.settings
+        reach = 0.5 * opening
+        along = np.broadcast_to(closing, centers.shape)
+        first, first_mesh, first_face = self._first(centers + reach * closing, -along)
+        second, second_mesh, second_face = self._first(centers - reach * closing, along)
+        first, second = np.minimum(first, opening), np.minimum(second, opening)
+        width = opening - first - second
+        between = (first_mesh == self.body) & (second_mesh == self.body) & (width > -1e-5)
+        facing = np.abs(self.rays.face_normals @ closing) >= np.cos(np.radians(settings.tilt_deg))
+        between &= facing[first_face] & facing[second_face]
+        rows = np.flatnonzero(between & (width <= opening - 2.0 * settings.slack))
+        middle = centers[rows] + 0.5 * (second - first)[rows, None] * closing
+        found = Candidates(
+            center=middle,
+            approach=np.broadcast_to(approach, middle.shape),
+            closing=along[rows],
+            width=np.maximum(width[rows], 0.0),
+            clearance=np.zeros(len(rows)),
+        )
+        free = found[self._lanes_free(found)]
+        free = Candidates(**{**vars(free), "clearance": self._clearance(free)})
+        tally = Tally(seen=len(centers), held=len(found), free=len(free))
+        return free, tally
+
+    def _lanes_free(self, found: Candidates) -> BoolArray:
+        """Whether rays along both edges of both fingers come in as far as the tips, shape (n,)."""
+        settings = self.settings
+        outward = 0.5 * found.width + settings.slack + 0.5 * settings.finger_thickness
+        free = np.ones(len(found), dtype=bool)
+        for sign in (-1.0, 1.0):
+            for edge in (-0.5, 0.5):
+                beside = sign * outward[:, None] * found.closing + edge * settings.finger_width * found.side
+                distance, _, _ = self._first(found.center + beside - self._far * found.approach, found.approach)
+                free &= distance >= self._far + settings.tip
+        return free
+
+    def _clearance(self, found: Candidates) -> FloatArray:
+        settings = self.settings
+        outward = 0.5 * found.width + settings.slack
+        room = np.full(len(found), settings.plenty)
+        for sign in (-1.0, 1.0):
+            start = found.center + sign * outward[:, None] * found.closing
+            distance, _, _ = self._first(start, sign * found.closing)
+            room = np.minimum(room, distance - settings.finger_thickness)
+        return np.asarray(np.maximum(room, 0.0))
+
+    def _first(self, origins: FloatArray, directions: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
+        hits = self.rays.first_hits(np.ascontiguousarray(origins), np.ascontiguousarray(directions))
+        return hits.distance, hits.mesh, hits.face
+
+
+def main_directions(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Three perpendicular unit directions that most of the surface of a body faces, rows, shape (3, 3)."""
+    corners = vertices[faces]
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(cross, axis=1)
+    normals = cross[areas > 0.0] / areas[areas > 0.0, None]
+    areas = areas[areas > 0.0]
+    first = _commonest(normals, areas)
+    flat = normals - np.outer(normals @ first, first)
+    length = np.linalg.norm(flat, axis=1)
+    across = length > np.cos(np.radians(30.0))
+    if across.any():
+        second = _commonest(flat[across] / length[across, None], areas[across])
+    else:
+        second = np.eye(3)[int(np.argmin(np.abs(first)))]
+    second = second - (second @ first) * first
+    second /= np.linalg.norm(second)
+    return np.stack([first, second, np.cross(first, second)])
+
+
+def _commonest(normals: FloatArray, areas: FloatArray) -> FloatArray:
+    """Mean of the directions, up to sign, around the one with most area in its neighbourhood, shape (3,)."""
+    largest = np.argsort(-areas, kind="stable")[:64]
+    cosine = np.abs(normals[largest] @ normals.T)
+    near = cosine > np.cos(np.radians(10.0))
+    best = int(np.argmax(near @ areas))
+    signs = np.sign(normals @ normals[largest[best]])
+    mean = np.einsum("n,nd->d", areas * near[best] * signs, normals)
+    return np.asarray(mean / np.linalg.norm(mean))
+
+
+def _sides(faces: IntArray, cross: FloatArray, points: int) -> IntArray:
+    """Number of the side of each face: connected faces that look roughly the same way, shape (F,)."""
+    links = coo_array(
+        (np.ones(2 * len(faces), dtype=np.int8), (np.r_[faces[:, 0], faces[:, 0]], np.r_[faces[:, 1], faces[:, 2]])),
+        shape=(points, points),
+    )
+    _, piece = connected_components(links, directed=False)
+    cells = np.round(cross / np.linalg.norm(cross, axis=1)[:, None] * _COARSE_NORMAL / 2.0).astype(np.int64)
+    _, side = np.unique(np.c_[piece[faces[:, 0]], cells], axis=0, return_inverse=True)
+    return np.asarray(side.reshape(-1))
+
+
+def _across(approach: FloatArray, steps: int) -> FloatArray:
+    """Closing directions at equal steps over half a turn, the first as level as can be, shape (steps, 3)."""
+    up = np.array([0.0, 0.0, 1.0])
+    level = np.cross(up, approach)
+    if float(np.linalg.norm(level)) < 0.1:
+        level = np.cross(np.array([1.0, 0.0, 0.0]), approach)
+    level /= np.linalg.norm(level)
+    return np.stack([rotation_about(approach, np.pi * k / steps) @ level for k in range(steps)])
+
+
+def _joined(parts: Sequence[Candidates]) -> Candidates:
+    names = ("center", "approach", "closing", "width", "clearance")
+    return Candidates(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})

@@ -1,0 +1,68 @@
+"""Thresholds of the tasks (KV7xx); values with their reasons in `configs/validation.yaml`, section `task`."""
+
+from __future__ import annotations
+
+from kinematify.config import StageConfig
+
+
+class GraspSettings(StageConfig):
+    """Where a parallel gripper can hold a part; sizes are those of the fingers and of the palm."""
+
+    points: int
+    """Places on the moving part that are looked at."""
+    tip: float
+    """Fingers reach so far beyond the grasp point [m]."""
+    finger_length: float
+    """From the tip back to the palm [m]."""
+    finger_width: float
+    """Across approach and closing direction [m]."""
+    finger_thickness: float
+    """Along the closing direction [m]."""
+    palm_width: float
+    """Along the closing direction [m]."""
+    palm_thickness: float
+    """Across approach and closing direction [m]."""
+    palm_length: float
+    """Of what stands behind the fingers, wrist included, along the approach direction [m]."""
+    approach: float
+    """The hand comes in along a straight line from so far off [m]."""
+    hidden: float
+    """Places that lie at most so far behind the surface that is met first still count as seen [m]."""
+    depths: list[float]
+    """Grasp points lie so far behind the surface that the approach meets first [m]."""
+    closing_steps: int
+    """Closing directions per approach direction, over half a turn."""
+    slack: float
+    """Room between pad and surface on either side before the fingers close [m]."""
+    tilt_deg: float
+    """Angle between closing direction and surface normal at either pad at most [deg]."""
+    plenty: float
+    """More room than this beside the fingers is no better [m]."""
+    lever_weight: float
+    """Share of the lever arm in the rank."""
+    clearance_weight: float
+    """Share of the room beside the fingers."""
+    pull_weight: float
+    """Share of how the motion pulls: along the fingers or onto a pad, better than sideways out of them."""
+    handle_weight: float
+    """Share of what is made to be held: handles and knobs, not rims."""
+    knob: float
+    """What is held is a knob up to this width along both directions across the approach [m]."""
+    plate: float
+    """What goes on behind the grasp point for this length is the rim of a plate, else a handle [m]."""
+    same_place: float
+    """Grasps closer than this with nearly the same directions are one [m]."""
+    same_deg: float
+    """The same for their directions [deg]."""
+    tries: int
+    """Candidates whose room is checked exactly, the best first."""
+    most: int
+    """Grasps that are returned at most."""
+    near_point: float
+    """Grasps belong to a point that the user gave up to this distance [m]."""
+
+
+class TaskSettings(StageConfig):
+    """KV7xx: tasks of a robot."""
+
+    grasp: GraspSettings
