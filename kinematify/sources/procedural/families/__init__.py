@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.families import (
     box,
+    button_panel,
     cabinet,
+    desk_lamp,
     dishwasher,
     door,
     fridge,
@@ -21,6 +23,7 @@ from kinematify.sources.procedural.families import (
     scara,
     serial_arm,
     snake,
+    switch_panel,
     table,
     washing_machine,
     window,
@@ -51,6 +54,9 @@ FAMILIES: dict[str, Family] = {
         box,
         window,
         door,
+        switch_panel,
+        button_panel,
+        desk_lamp,
     )
 }
 """Keyed by name."""

@@ -40,6 +40,7 @@ _PLACES = {
 }
 _OPENABLE = ("door", "lid", "drawer", "flap", "cover", "leaf", "window")
 _JOINING = ("x", "by")
+_NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of them counts something else
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +107,7 @@ def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
     reading = _Reading(tokens=tokens, family=family, used=set(where))
     reading.understood.append(family.title)
     _counted_name(reading, where)
-    for step in (_sizes, _products, _counts, _choices, _openness, _looks):
+    for step in (_sizes, _products, _counts, _choices, _parts_it_has, _openness, _looks):
         step(reading)
     _arrangement(reading)
     return Understanding(
@@ -260,7 +261,8 @@ def _counts(reading: _Reading) -> None:
             words = tuple(noun.split())
             for k in range(len(reading.tokens) - len(words) + 1):
                 where = range(k, k + len(words))
-                if tuple(reading.text(i) for i in where) == words and not reading.used & set(where):
+                read = tuple(singular(reading.text(i), frozenset(words)) for i in where)
+                if read == words and not reading.used & set(where):
                     _count(reading, parameter, where)
 
 
@@ -305,7 +307,7 @@ def _number_before(reading: _Reading, k: int) -> tuple[int | None, int]:
             if reading.text(at - 1) in ARTICLES:
                 first = at - 1
             return number, first
-        if token.is_sign or at in reading.used or token.text in ("and", "with"):
+        if token.is_sign or at in reading.used or token.text in _NUMBER_ENDS:
             return None, k
         at -= 1
     return None, k
@@ -337,6 +339,12 @@ def _choices(reading: _Reading) -> None:
                         reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *where)
 
 
+def _parts_it_has(reading: _Reading) -> None:
+    """`with a lid`: what every object of the family has, and only its kind could be chosen."""
+    names = {p.name for p in reading.family.parameters if p.choices}
+    reading.used.update(k for k, token in enumerate(reading.tokens) if token.text in names)
+
+
 def _openness(reading: _Reading) -> None:
     """`half open`, `closed`, `ajar`; an open shelf is not meant."""
     if reading.parameter("open") is None:
@@ -345,6 +353,8 @@ def _openness(reading: _Reading) -> None:
         if token.text not in OPENNESS or k in reading.used or reading.text(k + 1) in ("shelf", "compartment", "front"):
             continue
         share, first = OPENNESS[token.text], k
+        if reading.text(k - 1) == "fully":
+            first = k - 1
         if share == 1.0:
             for before in (k - 1, k - 2):
                 if reading.text(before) in _FRACTIONS:

@@ -65,6 +65,23 @@ def fork(width: float, radius: float, clearance: float, reach: float) -> tuple[M
     return forked, tongue + cylinder(0.5 * radius, (-outer, 0, 0), (outer, 0, 0))
 
 
+def bent_fork(
+    pivot: Point, leans: tuple[float, float], width: float, radius: float, clearance: float
+) -> tuple[Manifold, Manifold]:
+    """Return a fork and a tongue as `fork` does, about the x axis through `pivot`, where the links meet at an angle.
+
+    Args:
+        pivot: Where the pin is [m].
+        leans: Of the link with the fork and of the one with the tongue: from the upright towards -y [rad].
+        width: Along the pin [m].
+        radius: Of the knuckles [m].
+        clearance: Between both [m]; cut where it is large beside the radius.
+    """
+    halves = fork(width, radius, min(clearance, 0.15 * radius), 2.2 * radius)
+    forked, tongue = (half.rotate((np.degrees(lean), 0, 0)) for half, lean in zip(halves, leans, strict=True))
+    return forked.translate(pivot), tongue.translate(pivot)
+
+
 def room(radius: float, clearance: float) -> float:
     """Return the distance from the axis of a fork at which bodies may begin [m]."""
     return 1.05 * radius + clearance

@@ -104,13 +104,25 @@ def add_lever(
 
 
 def add_button(
-    workshop: Workshop, name: str, mount: Mount, size: tuple[float, float], *, travel: float, rest: float = 0.0
+    workshop: Workshop,
+    name: str,
+    mount: Mount,
+    size: tuple[float, float],
+    *,
+    travel: float,
+    rest: float = 0.0,
+    is_round: bool = False,
 ) -> None:
-    """Add a rectangular button that is pressed into its pocket; `size` is across and up [m]."""
+    """Add a button that is pressed into its pocket; `size` is across and up [m], of a round one the diameter."""
     clearance = mount.clearance
+    bottom, top = -mount.depth + travel + clearance, 1.5 * travel
     x, y = 0.5 * size[0], 0.5 * size[1]
-    pocket = box((-x - clearance, -y - clearance, -mount.depth), (x + clearance, y + clearance, mount.depth))
-    cap = box((-x, -y, -mount.depth + travel + clearance), (x, y, 1.5 * travel))
+    if is_round:
+        pocket = bore(x, clearance, (0, 0, -mount.depth), (0, 0, mount.depth))
+        cap = cylinder(x, (0, 0, bottom), (0, 0, top))
+    else:
+        pocket = box((-x - clearance, -y - clearance, -mount.depth), (x + clearance, y + clearance, mount.depth))
+        cap = box((-x, -y, bottom), (x, y, top))
     workshop.cut(mount.parent, mount.placed(pocket))
     workshop.body(name, mount.placed(cap))
     workshop.slides(name, mount.parent, -mount.outward, mount.place, (0.0, travel), rest=rest)
