@@ -25,7 +25,7 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Box:
-    """A box of a link, both visual and collision geometry."""
+    """A box of a link."""
 
     size: Vector
     at: Vector = (0.0, 0.0, 0.0)
@@ -37,6 +37,8 @@ class Part:
 
     name: str
     boxes: tuple[Box, ...]
+    collision: tuple[Box, ...] | None = None
+    """Collision geometry where it is not that of `boxes`."""
     parent: str | None = None
     kind: str = "fixed"
     at: Vector = (0.0, 0.0, 0.0)
@@ -70,11 +72,12 @@ class Model:
 
 
 def _link(part: Part) -> str:
+    collision = part.boxes if part.collision is None else part.collision
     shapes = "".join(
         f'  <{tag}>\n    <origin xyz="{_text(box.at)}"/>\n    <geometry>\n      <box size="{_text(box.size)}"/>\n'
         f"    </geometry>\n  </{tag}>\n"
-        for box in part.boxes
-        for tag in ("visual", "collision")
+        for tag, boxes in (("visual", part.boxes), ("collision", collision))
+        for box in boxes
     )
     ixx, iyy, izz = part.inertia
     inertial = (

@@ -1,0 +1,208 @@
+"""Collision by exact geometry: each check tells the fault that it is for, with where, how deep and whom to blame."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.catalogue.geometry import CHECKS
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.geometry.stage import run
+from kinematify.validation.report import JointSummary
+from kinematify.validation.settings import load_settings
+from kinematify.validation.stage import Recorder, StageRequest
+from tests.validation.engine_models import Box, Model, Part, cabinet, tell
+
+SELECTED = frozenset(CATALOGUE)
+
+
+def request_for(model: Model, folder: Path, *, seconds: float = 100.0) -> StageRequest:
+    return StageRequest(
+        urdf=model.write(folder),
+        package_dirs=(),
+        work=folder,
+        settings=load_settings(),
+        selected=SELECTED,
+        deadline=time.time() + seconds,
+    )
+
+
+def found(model: Model, folder: Path) -> dict[str, list[Finding]]:
+    """Warnings and errors by check."""
+    results = tell(run, request_for(model, folder)).results
+    assert set(results) == {check.id for check in CHECKS}
+    serious = {
+        check: [finding for finding in result.findings if finding.severity is not Severity.NOTE]
+        for check, result in results.items()
+    }
+    return {check: findings for check, findings in serious.items() if findings}
+
+
+def notes(model: Model, folder: Path, check: str) -> list[Finding]:
+    return list(tell(run, request_for(model, folder)).results[check].findings)
+
+
+def only(findings: dict[str, list[Finding]], check: str) -> Finding:
+    assert set(findings) == {check}
+    (finding,) = findings[check]
+    return finding
+
+
+def test_a_good_cabinet_has_no_warning(tmp_path: Path) -> None:
+    assert found(cabinet(), tmp_path) == {}
+
+
+def test_free_travel_is_measured_beyond_the_declared_range(tmp_path: Path) -> None:
+    told: list[CheckResult | JointSummary] = []
+    run(request_for(cabinet().with_part("drawer", limits=(0.0, 0.1)), tmp_path), Recorder(told.append, SELECTED))
+    drawer = next(item for item in told if isinstance(item, JointSummary) and item.joint == "drawer_joint")
+    assert drawer.declared_limits == (0.0, 0.1)
+    low, high = drawer.free_travel or (0.0, 0.0)
+    assert low == pytest.approx(-0.005, abs=1e-3)  # the back of the drawer has 5 mm to the back of the cabinet
+    assert high == pytest.approx(0.2)  # one more range, and nothing was in the way
+
+
+def beam(*parts: Part) -> Model:
+    """A beam of 1 m along x with what hangs on it."""
+    return Model(parts=(Part(name="beam", boxes=(Box(size=(1.0, 0.1, 0.1)),)), *parts))
+
+
+def block(name: str, x: float, *, size: float = 0.1, z: float = 0.1, **changes: object) -> Part:
+    """A block that slides along y on top of the beam."""
+    values = {"parent": "beam", "kind": "prismatic", "axis": (0.0, 1.0, 0.0), "limits": (0.0, 0.04)} | changes
+    return Part(name=name, boxes=(Box(size=(size, size, size)),), at=(x, 0.0, z), **values)  # type: ignore[arg-type]
+
+
+def test_bodies_in_one_another_at_rest_are_an_error(tmp_path: Path) -> None:
+    finding = only(found(beam(block("left", 0.0), block("right", 0.05)), tmp_path), "KV301")
+    assert (finding.pair, finding.severity, finding.blame) == (("left", "right"), Severity.ERROR, Blame.ASSET)
+    assert finding.value == pytest.approx(0.05, rel=0.1)
+
+
+def test_a_body_inside_another_one_counts_as_overlap(tmp_path: Path) -> None:
+    model = beam(block("shell", 0.0, size=0.3, z=0.2), block("core", 0.0, size=0.1, z=0.2))
+    finding = found(model, tmp_path)["KV301"][0]
+    assert finding.pair == ("shell", "core")
+    assert "is inside the other" in finding.message
+
+
+def test_overlap_of_the_collision_geometry_alone_is_blamed_on_it(tmp_path: Path) -> None:
+    fat = (Box(size=(0.25, 0.1, 0.1)),)
+    finding = only(found(beam(block("left", 0.0, collision=fat), block("right", 0.15)), tmp_path), "KV301")
+    assert (finding.severity, finding.blame) == (Severity.WARNING, Blame.PHYSICS)
+    assert "visible surfaces stay clear" in finding.message
+
+
+def test_a_part_buried_in_its_parent_is_told(tmp_path: Path) -> None:
+    finding = only(found(beam(block("block", 0.0, size=0.02, z=0.0, limits=(0.0, 0.02))), tmp_path), "KV302")
+    assert (finding.joint, finding.pair) == ("block_joint", ("beam", "block"))
+
+
+def test_a_part_in_the_air_is_told_with_its_gap(tmp_path: Path) -> None:
+    finding = only(found(beam(block("block", 0.0, z=0.2)), tmp_path), "KV303")
+    assert finding.joint == "block_joint"
+    assert finding.value == pytest.approx(0.1)
+
+
+def test_what_is_tolerated_is_listed_with_its_reason(tmp_path: Path) -> None:
+    model = beam(block("left", 0.0), block("right", 0.098))
+    text = " ".join(finding.message for finding in notes(model, tmp_path, "KV304"))
+    assert "in contact at rest without a joint between them (1)" in text
+    assert "left - right" in text
+    assert "joined and in contact at rest (2)" in text
+
+
+def test_a_drawer_turned_sideways_is_blocked_to_both_sides(tmp_path: Path) -> None:
+    model = cabinet().with_part("drawer", axis=(0.0, 1.0, 0.0), limits=(-0.3, 0.3))
+    findings = found(model, tmp_path)["KV310"]
+    assert [finding.joint for finding in findings] == ["drawer_joint"]
+    assert findings[0].severity is Severity.ERROR
+    assert findings[0].blame is Blame.KINEMATICS
+
+
+def test_a_drawer_that_opens_inwards_has_the_wrong_direction(tmp_path: Path) -> None:
+    (finding,) = found(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)["KV310"]
+    assert "the joint moves into its parent" in finding.message
+    assert "Reverse" in finding.remedy
+
+
+def test_a_part_driven_into_a_stranger_is_told(tmp_path: Path) -> None:
+    slider = block("slider", -0.3, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.3))
+    post = Part(name="post", boxes=(Box(size=(0.1, 0.1, 0.3)),), parent="beam", kind="revolute",
+                at=(0.0, 0.0, 0.2), axis=(0.0, 0.0, 1.0), limits=(-0.1, 0.1))  # fmt: skip
+    finding = only(found(beam(slider, post), tmp_path), "KV311")
+    assert (finding.joint, finding.pair) == ("slider_joint", ("slider", "post"))
+    assert "from 0.2 m on" in finding.message
+
+
+def test_what_another_joint_can_clear_is_a_note(tmp_path: Path) -> None:
+    slider = block("slider", -0.3, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.3))
+    gate = block("gate", 0.0, limits=(0.0, 0.2))
+    assert "KV311" not in found(beam(slider, gate), tmp_path)
+    (note,) = notes(beam(slider, gate), tmp_path, "KV311")
+    assert "unless another joint has moved out of the way" in note.message
+
+
+def test_a_range_beyond_the_free_travel_gets_the_measured_end(tmp_path: Path) -> None:
+    finding = only(found(cabinet().with_part("door", limits=(0.0, 5.2)), tmp_path), "KV312")
+    assert (finding.joint, finding.severity, finding.blame) == ("door_joint", Severity.ERROR, Blame.KINEMATICS)
+    measured = float(finding.remedy.split('upper="')[1].split('"')[0])
+    assert measured == pytest.approx(np.pi, abs=0.06)  # its thickness turns into the wall
+
+
+def test_a_joint_that_only_fat_collision_geometry_blocks_is_not_blamed(tmp_path: Path) -> None:
+    fat = (Box(size=(0.15, 0.3, 0.4), at=(-0.05, -0.15, 0.0)),)
+    model = cabinet().with_part("door", limits=(0.0, 2.9), collision=fat)
+    findings = [finding for findings in found(model, tmp_path).values() for finding in findings]
+    blocked = [finding for finding in findings if finding.check in ("KV301", "KV302", "KV310", "KV312")]
+    assert blocked
+    assert {finding.blame for finding in blocked} == {Blame.PHYSICS}
+    assert all(finding.severity is Severity.WARNING for finding in findings)
+
+
+def test_a_door_about_a_far_line_leaves_its_frame(tmp_path: Path) -> None:
+    model = cabinet().with_part(
+        "door", at=(0.205, 1.0, 0.0), boxes=(Box(size=(0.02, 0.3, 0.4), at=(0.01, -0.83, 0.0)),), axis=(0.0, 0.0, 1.0)
+    )
+    (finding,) = found(model, tmp_path)["KV320"]
+    assert (finding.joint, finding.severity) == ("door_joint", Severity.ERROR)
+    assert "turns away from its hinge" in finding.message
+
+
+def test_a_drawer_longer_out_than_it_is_long_has_left_its_guide(tmp_path: Path) -> None:
+    (finding,) = found(cabinet().with_part("drawer", limits=(0.0, 0.45)), tmp_path)["KV321"]
+    assert finding.joint == "drawer_joint"
+    assert finding.value == pytest.approx(0.45)
+
+
+def test_two_joints_that_meet_only_together_are_noted(tmp_path: Path) -> None:
+    left = block("left", -0.2, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.09))
+    right = block("right", 0.0, axis=(-1.0, 0.0, 0.0), limits=(0.0, 0.09))
+    assert found(beam(left, right), tmp_path) == {}
+    (note,) = notes(beam(left, right), tmp_path, "KV330")
+    assert note.pair == ("left", "right")
+    assert "neither of them alone" in note.message
+
+
+def test_a_model_that_is_never_free_is_a_warning(tmp_path: Path) -> None:
+    wall = Box(size=(0.03, 0.3, 0.03), at=(0.0, 0.18, 0.0))
+    sliders = [block(f"slider{x}", x, size=0.03, z=0.065, limits=(0.0, 0.3)) for x in (-0.4, -0.2, 0.0, 0.2)]
+    posts = [replace(block(f"post{x}", x, z=0.065, limits=(0.0, 0.01)), boxes=(wall,)) for x in (-0.4, -0.2, 0.0, 0.2)]
+    (finding,) = found(beam(*sliders, *posts), tmp_path)["KV331"]
+    assert finding.message.startswith("0 of 128")
+
+
+def test_time_that_ran_out_is_said(tmp_path: Path) -> None:
+    results = tell(run, request_for(cabinet(), tmp_path, seconds=-1.0)).results
+    assert results["KV310"].status is Status.SKIPPED
+    assert "time ran out before 2 joints: drawer_joint, door_joint" in (results["KV310"].reason or "")
+
+
+def test_one_body_has_nothing_to_meet(tmp_path: Path) -> None:
+    results = tell(run, request_for(beam(), tmp_path)).results
+    assert {result.status for result in results.values()} == {Status.SKIPPED}
