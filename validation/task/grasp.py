@@ -109,7 +109,7 @@ def search_grasps(
             raise InputError(
                 f"The grasp point {point.tolist()} is {nearest:.3f} m from what {joint} moves "
                 f"({', '.join(scene.bodies[body].name for body in moved) or 'nothing with geometry'}); a point on it "
-                f"is at most {settings.near_point} m off. Give it in metres in the frame of the root link, after scaling."
+                f"is at most {settings.near_point} m off. Give it in metres in the frame of the root link."
             )
     last = GraspReport(grasps=(), tally=_no_tally(), reason=f"Nothing that {joint} moves has geometry.")
     for body in [*bodies, *carried]:

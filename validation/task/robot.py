@@ -20,6 +20,7 @@ from kinematify.errors import InputError
 from kinematify.validation.prepare.document import numbers, roll_pitch_yaw
 from kinematify.validation.read import read_parsed
 from kinematify.validation.task import arm
+from kinematify.validation.task.copies import with_absolute_meshes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -323,11 +324,7 @@ class _Hand:
 
 def _write_copy(document: etree._Element, model: DeclaredModel, path: Path, tool: str, frame: FloatArray) -> None:
     """Write the robot with absolute mesh paths and the grasp frame as a link of its own."""
-    for element, link in zip(document.findall("link"), model.links, strict=True):
-        for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
-            for block, shape in zip(element.findall(tag), shapes, strict=True):
-                if shape.file is not None:
-                    block.find("geometry/mesh").set("filename", str(shape.file))  # type: ignore[union-attr]  # as read
+    with_absolute_meshes(document, model)
     etree.SubElement(document, "link", name=GRASP_LINK)
     joint = etree.SubElement(document, "joint", name=f"{GRASP_LINK}_joint", type="fixed")
     etree.SubElement(joint, "parent", link=tool)

@@ -1,0 +1,136 @@
+"""How large an object really is: shapes of common collections are brought to unit size, and an arm is not.
+
+A model whose size is plausible for what it is called stays as it is. One that is called nothing known stays as it is
+if a robot could use a thing of that size.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(frozen=True, kw_only=True)
+class RealSize:
+    """Largest extent of things of one category [m]."""
+
+    least: float
+    common: float
+    most: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sizing:
+    """By how much an object is scaled before a robot meets it, and why."""
+
+    factor: float
+    category: str | None
+    reason: str
+
+
+def _size(least: float, common: float, most: float) -> RealSize:
+    return RealSize(least=least, common=common, most=most)
+
+
+SIZES = {
+    "bag": _size(0.25, 0.45, 0.8),
+    "bottle": _size(0.1, 0.25, 0.4),
+    "bowl": _size(0.1, 0.2, 0.4),
+    "box": _size(0.1, 0.4, 0.9),
+    "bucket": _size(0.2, 0.3, 0.5),
+    "button panel": _size(0.08, 0.2, 0.6),
+    "cabinet": _size(0.4, 0.9, 2.4),
+    "chest": _size(0.3, 0.8, 1.5),
+    "coffee machine": _size(0.2, 0.4, 0.6),
+    "cup": _size(0.05, 0.1, 0.2),
+    "cupboard": _size(0.4, 0.9, 2.4),
+    "desk": _size(0.7, 1.3, 2.2),
+    "desk lamp": _size(0.2, 0.45, 0.9),
+    "dishwasher": _size(0.4, 0.85, 0.95),
+    "dispenser": _size(0.1, 0.2, 0.5),
+    "door": _size(1.6, 2.05, 2.6),
+    "drawer": _size(0.25, 0.6, 1.2),
+    "drawer cabinet": _size(0.35, 0.8, 2.0),
+    "faucet": _size(0.12, 0.3, 0.5),
+    "fridge": _size(0.5, 1.6, 2.1),
+    "kettle": _size(0.15, 0.27, 0.4),
+    "kitchen pot": _size(0.12, 0.3, 0.55),
+    "lamp": _size(0.2, 0.45, 1.8),
+    "laptop": _size(0.25, 0.36, 0.5),
+    "microwave": _size(0.35, 0.52, 0.7),
+    "mug": _size(0.06, 0.12, 0.2),
+    "nightstand": _size(0.35, 0.55, 0.8),
+    "oven": _size(0.45, 0.8, 1.1),
+    "pot": _size(0.12, 0.3, 0.55),
+    "printer": _size(0.25, 0.45, 0.8),
+    "refrigerator": _size(0.5, 1.6, 2.1),
+    "safe": _size(0.2, 0.45, 1.0),
+    "scissors": _size(0.1, 0.18, 0.3),
+    "sink": _size(0.3, 0.6, 1.2),
+    "stapler": _size(0.08, 0.16, 0.35),
+    "storage furniture": _size(0.4, 0.9, 2.4),
+    "suitcase": _size(0.35, 0.65, 0.9),
+    "switch": _size(0.05, 0.12, 0.3),
+    "switch panel": _size(0.05, 0.15, 0.4),
+    "table": _size(0.4, 1.2, 2.4),
+    "toaster": _size(0.2, 0.32, 0.5),
+    "toilet": _size(0.5, 0.75, 1.0),
+    "trash can": _size(0.2, 0.6, 1.2),
+    "wardrobe": _size(1.0, 2.0, 2.6),
+    "washing machine": _size(0.5, 0.87, 1.1),
+    "window": _size(0.4, 1.2, 2.2),
+}
+"""Largest extent at rest of common things [m]: furniture and appliances as shops list them."""
+
+_UNKNOWN = RealSize(least=0.03, common=0.5, most=5.0)  # what is smaller or larger is no thing that an arm opens
+_FOLDERS = 2  # of the path that may say what the object is
+
+
+def sizing(urdf: Path, name: str, extent: float, *, scale: float | None = None) -> Sizing:
+    """Return by how much to scale an object.
+
+    Args:
+        urdf: Its file; the words of its name and of its folders are looked at.
+        name: Name of the robot element.
+        extent: Largest side of its box at rest, as declared [m].
+        scale: What the user wants; it wins.
+
+    Raises:
+        InputError: The scale is not above zero, or the size fits nothing that an arm could use.
+    """
+    if scale is not None:
+        if not 0.0 < scale < float("inf"):
+            raise InputError(f"--scale {scale} is no factor. Give metres per unit of the model, e.g. 0.001.")
+        return Sizing(factor=scale, category=None, reason="the scale that was given")
+    category = category_of(urdf, name)
+    size = SIZES[category] if category is not None else _UNKNOWN
+    if size.least <= extent <= size.most:
+        what = f"of a {category}" if category else "that an arm can use"
+        return Sizing(factor=1.0, category=category, reason=f"{extent:.3g} m is a size {what}")
+    if category is None:
+        raise InputError(
+            f"The object {urdf} is {extent:.4g} m large, and nothing in its name says what it is. Give --scale with "
+            "the metres per unit of the model, e.g. --scale 0.001 for millimetres."
+        )
+    factor = size.common / extent
+    return Sizing(
+        factor=factor,
+        category=category,
+        reason=f"a {category} is about {size.common:g} m large, not {extent:.3g} m; --scale 1 keeps the file's size",
+    )
+
+
+def category_of(urdf: Path, name: str) -> str | None:
+    """Find the category that the names of robot, file and folders say, the robot's first; the longest words win."""
+    for text in (name, urdf.stem, *(folder.name for folder in list(urdf.absolute().parents)[:_FOLDERS])):
+        words = " ".join(re.findall(r"[a-z]+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text).lower()))
+        found = [category for category in SIZES if re.search(rf"\b{category}(s|es)?\b", words)]
+        if found:
+            return max(found, key=lambda category: (len(category), category))
+    return None
