@@ -84,8 +84,9 @@ class Overlap:
         return np.maximum(_passed(first, second, T, hit, grace), _passed(second, first, inverse(T), hit, grace))
 
     def gap(self, pair: Pair, T: FloatArray) -> float:
-        """Distance of the triangles [m] in one pose (4, 4); 0 where they cross."""
-        if self.collide(pair, T[None])[0]:
+        """Distance of the two bodies [m] in one pose (4, 4); 0 where they cross or one is in the solid of the other."""
+        one = T[None]
+        if self.collide(pair, one)[0] or (self.may_contain(pair, one)[0] and self.depth(pair, one)[0] > 0.0):
             return 0.0
         first, second = self.solids(pair)
         fixed, moving = self._object(pair[0], 0), self._object(pair[1], 1)
