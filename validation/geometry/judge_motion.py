@@ -159,6 +159,8 @@ def beyond_free_travel(case: MotionCase) -> Iterator[Remark]:
             f'Write {end}="{meeting.first:.4g}"; if the part should go farther, its axis or its place is wrong.'
             if travel.limited
             else "Give the joint limits, or correct its axis.",
+            # A file that states no limits claims nothing about the ends.
+            severity=None if travel.limited else Severity.WARNING,
         )
     yield from _small_range(case)
 
