@@ -302,7 +302,7 @@ def _inverse(T: FloatArray) -> FloatArray:
 def _around(point: FloatArray, settings: GraspSettings, seed: int) -> FloatArray:
     """Places in the ball around a point, the point itself first, shape (n, 3)."""
     rng = np.random.default_rng(seed)
-    offsets = rng.normal(size=(settings.points // 8, 3))
+    offsets = rng.normal(size=(settings.points_seen, 3))
     offsets *= settings.near_point * rng.random((len(offsets), 1)) / np.linalg.norm(offsets, axis=1)[:, None]
     return np.concatenate([point[None], point + offsets])
 

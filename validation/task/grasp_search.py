@@ -129,6 +129,7 @@ class GraspSearch:
         found, tallies = [], []
         for approach in self.directions():
             seen = self._seen(places, approach)
+            seen = seen[:: max(1, -(-len(seen) // self.settings.points_seen))]
             for depth in self.settings.depths:
                 for closing in _across(approach, self.settings.closing_steps):
                     some, tally = self._held(seen + depth * approach, approach, closing, opening)
@@ -178,8 +179,8 @@ class GraspSearch:
         first, second = np.minimum(first, opening), np.minimum(second, opening)
         width = opening - first - second
         between = (first_mesh == self.body) & (second_mesh == self.body) & (width > -1e-5)
-        facing = np.abs(self.rays.face_normals @ closing) >= np.cos(np.radians(settings.tilt_deg))
-        between &= facing[first_face] & facing[second_face]
+        for face in (first_face, second_face):
+            between &= np.abs(self.rays.face_normals[face] @ closing) >= np.cos(np.radians(settings.tilt_deg))
         rows = np.flatnonzero(between & (width <= opening - 2.0 * settings.slack))
         middle = centers[rows] + 0.5 * (second - first)[rows, None] * closing
         found = Candidates(

@@ -10,6 +10,8 @@ class GraspSettings(StageConfig):
 
     points: int
     """Places on the moving part that are looked at."""
+    points_seen: int
+    """Of those that are seen along an approach direction, so many are measured."""
     tip: float
     """Fingers reach so far beyond the grasp point [m]."""
     finger_length: float
