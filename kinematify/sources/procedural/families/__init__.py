@@ -8,9 +8,11 @@ from kinematify.sources.procedural.families import (
     box,
     button_panel,
     cabinet,
+    coffee_machine,
     desk_lamp,
     dishwasher,
     door,
+    fan,
     fridge,
     gantry,
     gripper,
@@ -25,6 +27,7 @@ from kinematify.sources.procedural.families import (
     snake,
     switch_panel,
     table,
+    toaster,
     washing_machine,
     window,
 )
@@ -57,6 +60,9 @@ FAMILIES: dict[str, Family] = {
         switch_panel,
         button_panel,
         desk_lamp,
+        fan,
+        toaster,
+        coffee_machine,
     )
 }
 """Keyed by name."""
