@@ -13,6 +13,7 @@ from kinematify.sources.procedural.families import (
     dishwasher,
     door,
     fan,
+    faucet,
     fridge,
     gantry,
     gripper,
@@ -28,6 +29,8 @@ from kinematify.sources.procedural.families import (
     switch_panel,
     table,
     toaster,
+    toilet,
+    trash_can,
     washing_machine,
     window,
 )
@@ -63,6 +66,9 @@ FAMILIES: dict[str, Family] = {
         fan,
         toaster,
         coffee_machine,
+        trash_can,
+        toilet,
+        faucet,
     )
 }
 """Keyed by name."""

@@ -325,18 +325,17 @@ def _choices(reading: _Reading) -> None:
     """`with knobs`, `sliding`, `barrel hinges`."""
     known = frozenset(word for token in reading.tokens for word in [token.text])
     for parameter in reading.family.parameters:
-        for choice in parameter.choices:
-            for phrase in _choice_words(parameter, choice):
-                words = tuple(phrase.split())
-                for k in range(len(reading.tokens) - len(words) + 1):
-                    texts = tuple(reading.text(i) for i in range(k, k + len(words)))
-                    bare = tuple(singular(word, frozenset(words) | known) for word in texts)
-                    if words in (texts, bare) and not reading.used & set(range(k, k + len(words))):
-                        where = list(range(k, k + len(words)))
-                        if reading.text(where[-1] + 1) in (parameter.name, f"{parameter.name}s"):
-                            where.append(where[-1] + 1)
-                        where += [i for i in range(len(reading.tokens)) if reading.text(i) == parameter.name]
-                        reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *where)
+        phrases = [(tuple(words.split()), c) for c in parameter.choices for words in _choice_words(parameter, c)]
+        for words, choice in sorted(phrases, key=lambda item: -len(item[0])):  # `lifts off` before `lifts`
+            for k in range(len(reading.tokens) - len(words) + 1):
+                texts = tuple(reading.text(i) for i in range(k, k + len(words)))
+                bare = tuple(singular(word, frozenset(words) | known) for word in texts)
+                if words in (texts, bare) and not reading.used & set(range(k, k + len(words))):
+                    where = list(range(k, k + len(words)))
+                    if reading.text(where[-1] + 1) in (parameter.name, f"{parameter.name}s"):
+                        where.append(where[-1] + 1)
+                    where += [i for i in range(len(reading.tokens)) if reading.text(i) == parameter.name]
+                    reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *where)
 
 
 def _parts_it_has(reading: _Reading) -> None:
