@@ -46,6 +46,8 @@ class Candidates:
     """Unit, shape (n, 3)."""
     width: FloatArray
     """Of what is held [m], shape (n,)."""
+    between: FloatArray
+    """Middle of what the pads touch [m], shape (n, 3)."""
     clearance: FloatArray
     """Room beside the fingers, the smaller of both sides, at most `plenty` [m], shape (n,)."""
 
@@ -60,6 +62,7 @@ class Candidates:
             approach=self.approach[rows],
             closing=self.closing[rows],
             width=self.width[rows],
+            between=self.between[rows],
             clearance=self.clearance[rows],
         )
 
@@ -130,9 +133,9 @@ class GraspSearch:
         for approach in self.directions():
             seen = self._seen(places, approach)
             seen = seen[:: max(1, -(-len(seen) // self.settings.points_seen))]
-            for depth in self.settings.depths:
+            for hold in self.settings.holds:
                 for closing in _across(approach, self.settings.closing_steps):
-                    some, tally = self._held(seen + depth * approach, approach, closing, opening)
+                    some, tally = self._held(seen, approach, closing, opening=opening, hold=hold)
                     found.append(some)
                     tallies.append(tally)
         return _joined(found), Tally(
@@ -143,7 +146,7 @@ class GraspSearch:
 
     def is_plate(self, candidates: Candidates) -> BoolArray:
         """Whether what is held goes on with the same thickness deeper in, shape (n,)."""
-        deeper = candidates.center + self.settings.plate * candidates.approach
+        deeper = candidates.between + self.settings.plate * candidates.approach
         half = 0.5 * candidates.width + self.settings.slack
         first = self._first(deeper + half[:, None] * candidates.closing, -candidates.closing)[0]
         second = self._first(deeper - half[:, None] * candidates.closing, candidates.closing)[0]
@@ -153,8 +156,8 @@ class GraspSearch:
     def extent(self, candidates: Candidates) -> FloatArray:
         """Length of what is held across approach and closing direction [m], inf where it goes on, shape (n,)."""
         side, half = candidates.side, self.settings.knob
-        first = self._first(candidates.center + half * side, -side)[0]
-        second = self._first(candidates.center - half * side, side)[0]
+        first = self._first(candidates.between + half * side, -side)[0]
+        second = self._first(candidates.between - half * side, side)[0]
         alone = (first > 0.0) & (second > 0.0) & (first < half) & (second < half)
         extent = 2.0 * half - first - second
         return np.asarray(np.where(alone & (extent <= half), extent, np.inf))
@@ -169,10 +172,12 @@ class GraspSearch:
         return np.asarray(places[kept] + (distance[kept] - self._far)[:, None] * approach)
 
     def _held(
-        self, centers: FloatArray, approach: FloatArray, closing: FloatArray, opening: float
+        self, surface: FloatArray, approach: FloatArray, closing: FloatArray, *, opening: float, hold: float
     ) -> tuple[Candidates, Tally]:
+        """Measure halfway between the surface and the tips, which reach `hold` behind it."""
         settings = self.settings
         reach = 0.5 * opening
+        centers = surface + 0.5 * hold * approach
         along = np.broadcast_to(closing, centers.shape)
         first, first_mesh, first_face = self._first(centers + reach * closing, -along)
         second, second_mesh, second_face = self._first(centers - reach * closing, along)
@@ -184,10 +189,11 @@ class GraspSearch:
         rows = np.flatnonzero(between & (width <= opening - 2.0 * settings.slack))
         middle = centers[rows] + 0.5 * (second - first)[rows, None] * closing
         found = Candidates(
-            center=middle,
+            center=middle + (0.5 * hold - settings.tip) * approach,
             approach=np.broadcast_to(approach, middle.shape),
             closing=along[rows],
             width=np.maximum(width[rows], 0.0),
+            between=middle,
             clearance=np.zeros(len(rows)),
         )
         free = found[self._lanes_free(found)]
@@ -276,5 +282,5 @@ def _across(approach: FloatArray, steps: int) -> FloatArray:
 
 
 def _joined(parts: Sequence[Candidates]) -> Candidates:
-    names = ("center", "approach", "closing", "width", "clearance")
+    names = ("center", "approach", "closing", "width", "between", "clearance")
     return Candidates(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})

@@ -30,8 +30,8 @@ class GraspSettings(StageConfig):
     """The hand comes in along a straight line from so far off [m]."""
     hidden: float
     """Places that lie at most so far behind the surface that is met first still count as seen [m]."""
-    depths: list[float]
-    """Grasp points lie so far behind the surface that the approach meets first [m]."""
+    holds: list[float]
+    """Tips reach so far behind the surface that the approach meets first [m]."""
     closing_steps: int
     """Closing directions per approach direction, over half a turn."""
     slack: float
