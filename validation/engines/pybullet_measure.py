@@ -35,39 +35,40 @@ def measure(loaded: PybulletModel, values: FloatArray, *, dynamic: int, poses: b
         dynamic: Mass matrices are computed for the first so many rows.
         poses: False: they are left out, and so are the torques; identities and zeros stand for them.
     """
-    transforms = np.tile(np.eye(4), (len(values), len(loaded.link), 1, 1))
+    shape = len(values), len(loaded.link)
     gravity = np.zeros_like(values)
     matrices: list[FloatArray] = []
     found: list[tuple[int, int, int, float]] = []
+    states: list[list[tuple[tuple[float, ...], ...]]] = []
     for row, q in enumerate(values):
         loaded.place(q)
         found += loaded.contacts(row)
         if row < dynamic:
             matrices.append(loaded.mass_matrix(q) if len(q) else np.zeros((0, 0)))
         if poses:
-            transforms[row] = link_transforms(loaded)
+            states.append(loaded.link_states())
             gravity[row] = loaded.gravity(q) if len(q) else 0.0
     return Measured(
-        T_world_link=transforms,
+        T_world_link=_link_transforms(loaded, states) if poses else np.tile(np.eye(4), (*shape, 1, 1)),
         contacts=loaded.corrected(found),
         gravity=gravity,
         inertia=np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1]),
     )
 
 
-def link_transforms(loaded: PybulletModel) -> FloatArray:
-    """Return the pose of every link's frame as it stands, the fixed root at the origin, shape (L, 4, 4)."""
-    transforms = np.tile(np.eye(4), (len(loaded.link), 1, 1))
-    states = loaded.link_states()
+def _link_transforms(loaded: PybulletModel, states: list[list[tuple[tuple[float, ...], ...]]]) -> FloatArray:
+    """Return the pose of every link's frame in every row, the fixed root at the origin, shape (n, L, 4, 4)."""
+    transforms = np.tile(np.eye(4), (len(states), len(loaded.link), 1, 1))
     moving = np.flatnonzero(loaded.link >= 0)
-    if len(moving):
-        picked = [states[index] for index in loaded.link[moving].tolist()]
-        transforms[moving, :3, 3] = [state[4] for state in picked]
-        transforms[moving, :3, :3] = rotations(np.array([state[5] for state in picked]))
+    picked = loaded.link[moving].tolist()
+    if picked and states:
+        transforms[:, moving, :3, 3] = [[row[index][4] for index in picked] for row in states]
+        turned = np.array([row[index][5] for row in states for index in picked])
+        transforms[:, moving, :3, :3] = _rotations(turned).reshape(len(states), len(picked), 3, 3)
     return transforms
 
 
-def rotations(quaternions: FloatArray) -> FloatArray:
+def _rotations(quaternions: FloatArray) -> FloatArray:
     """Return rotation matrices, shape (n, 3, 3), of quaternions x, y, z, w, shape (n, 4)."""
     x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
     matrices: FloatArray = np.array(
