@@ -14,12 +14,14 @@ from kinematify.sources.procedural.families import (
     door,
     fan,
     faucet,
+    folding_chair,
     fridge,
     gantry,
     gripper,
     hand,
     laptop,
     microwave,
+    office_chair,
     oven,
     quadruped,
     safe,
@@ -69,6 +71,8 @@ FAMILIES: dict[str, Family] = {
         trash_can,
         toilet,
         faucet,
+        office_chair,
+        folding_chair,
     )
 }
 """Keyed by name."""
