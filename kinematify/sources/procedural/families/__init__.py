@@ -23,9 +23,11 @@ from kinematify.sources.procedural.families import (
     microwave,
     office_chair,
     oven,
+    pliers,
     quadruped,
     safe,
     scara,
+    scissors,
     serial_arm,
     snake,
     switch_panel,
@@ -73,6 +75,8 @@ FAMILIES: dict[str, Family] = {
         faucet,
         office_chair,
         folding_chair,
+        scissors,
+        pliers,
     )
 }
 """Keyed by name."""
