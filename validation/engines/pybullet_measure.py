@@ -62,9 +62,11 @@ def _link_transforms(loaded: PybulletModel, states: list[list[tuple[tuple[float,
     moving = np.flatnonzero(loaded.link >= 0)
     picked = loaded.link[moving].tolist()
     if picked and states:
-        transforms[:, moving, :3, 3] = [[row[index][4] for index in picked] for row in states]
+        placed = transforms[:, moving]
+        placed[..., :3, 3] = [[row[index][4] for index in picked] for row in states]
         turned = np.array([row[index][5] for row in states for index in picked])
-        transforms[:, moving, :3, :3] = _rotations(turned).reshape(len(states), len(picked), 3, 3)
+        placed[..., :3, :3] = _rotations(turned).reshape(len(states), len(picked), 3, 3)
+        transforms[:, moving] = placed
     return transforms
 
 
