@@ -64,7 +64,49 @@ class GraspSettings(StageConfig):
     """Grasps belong to a point that the user gave up to this distance [m]."""
 
 
+class ExecutionSettings(StageConfig):
+    """Tracking a planned motion in engines."""
+
+    time_step: float
+    """Of both engines [s]."""
+    speed_share: float
+    """Of the speed limit of each arm joint."""
+    pull_seconds: float
+    """A pull takes no less [s]."""
+    grip_seconds: float
+    """Time to close the fingers [s]."""
+    settle_seconds: float
+    """Holding at the end [s]."""
+    servo_frequency: float
+    """Of the arm's servos [Hz]; they are critically damped."""
+    armature: float
+    """Rotor inertia of every joint of the robot, fraction of the inertia that it moves."""
+    effort: float
+    """Of arm joints that state none [N m or N]."""
+    velocity: float
+    """Of arm joints that state none [rad/s or m/s]."""
+    finger_inertia: float
+    """Of each finger with its drive [kg or kg m^2]; light fingers sink into what they hold."""
+    grip_force: float
+    """Of each finger [N]."""
+    friction: float
+    """Of pads on the object."""
+    weld_force: float
+    """That a weld of PyBullet may exert [N]."""
+    joint_damping: float
+    """Of the object's joint if it states none, fraction of its inertia [1/s]."""
+    opened: float
+    """Share of the planned way at which a joint counts as opened."""
+    rest_speed: float
+    """Speed of the joint that counts as rest, fraction of the planned way [1/s]."""
+    depth: float
+    """Depth of the robot in the object that does not count [m]."""
+    frame_rate: float
+    """States that are kept for the film [Hz]."""
+
+
 class TaskSettings(StageConfig):
     """KV7xx: tasks of a robot."""
 
     grasp: GraspSettings
+    execution: ExecutionSettings
