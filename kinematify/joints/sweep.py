@@ -129,13 +129,27 @@ def _first_hits(
     cache: PartCache, path: FloatArray, grid: FloatArray, counted: FloatArray, obstacles: Sequence[int]
 ) -> FloatArray:
     """Motion at the first hit of each path (c, n, k + 1, 3) at motions `grid` (c, n, k + 1); inf if none, (c, n)."""
-    origins = path[:, :, :-1]
-    steps = np.diff(path, axis=2)
-    use = np.broadcast_to((counted > 0)[..., None], origins.shape[:3])
-    fraction = np.full(use.sum(), np.inf)
-    for part in obstacles:
-        fraction = np.minimum(fraction, cache.first_hits(part, origins[use], steps[use]))
-    pieces = np.full(use.shape, np.inf)
-    pieces[use] = fraction
+    use = counted > 0
+    used = path[use]
+    pieces = np.full((*grid.shape[:2], grid.shape[2] - 1), np.inf)
+    if len(used):
+        pieces[use] = _fractions(cache, used, obstacles)
     motions = grid[:, :, :-1] + pieces * np.diff(grid, axis=2)
     return np.asarray(motions.min(axis=2))
+
+
+def _fractions(cache: PartCache, paths: FloatArray, obstacles: Sequence[int]) -> FloatArray:
+    """Fraction of each piece of paths (m, k + 1, 3) up to its first hit; inf where it meets nothing, (m, k)."""
+    low, high = paths.min(axis=1), paths.max(axis=1)
+    lowest, highest = low.min(axis=0), high.max(axis=0)
+    steps = np.diff(paths, axis=1)
+    fraction = np.full(steps.shape[:2], np.inf)
+    for part in obstacles:
+        lower, upper = cache.assembly.parts[part].bounds
+        if (lower > highest).any() or (upper < lowest).any():
+            continue  # of many parts only a few are ever near
+        rows = np.flatnonzero(((low <= upper) & (high >= lower)).all(axis=1))
+        if len(rows):
+            found = cache.first_hits(part, paths[rows, :-1].reshape(-1, 3), steps[rows].reshape(-1, 3))
+            fraction[rows] = np.minimum(fraction[rows], found.reshape(len(rows), -1))
+    return fraction
