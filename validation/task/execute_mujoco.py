@@ -19,6 +19,9 @@ from kinematify.validation.task.motion import timed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.validation.declared import DeclaredModel
     from kinematify.validation.prepare.prepared import Prepared
