@@ -13,6 +13,11 @@ from kinematify.assembly.description import read_description
 from kinematify.assembly.truth import GroundTruth
 from kinematify.benchmark.datasets import find_objects
 from kinematify.cli.app import run
+from kinematify.cli.generation import Generation
+from kinematify.cli.verdict import describe_briefly
+from kinematify.sources.procedural.request import from_text
+from kinematify.validation.finding import Severity
+from tests.reports import add_checks, finding, report, result
 
 SENTENCE = "a cabinet with one door above two drawers, 60 cm wide"
 
@@ -29,10 +34,40 @@ def test_a_sentence_becomes_parts_a_model_and_the_truth(generated):
     out, answer = generated
     assert sorted(path.stem for path in (out / "parts").iterdir()) == ["body", "door_1", "drawer_1", "drawer_2"]
     assert {path.name for path in out.iterdir()} >= {"model.urdf", "inference.json", "preview.png", "meshes", "truth"}
+    assert {path.name for path in out.iterdir()} >= {"validation.json", "validation.html"}
     assert answer["category"] == "cabinet"
     assert answer["ignored"] == []
     assert answer["accuracy"]["types_right"] == answer["accuracy"]["joints"] == 3
     assert answer["accuracy"]["largest_axis_angle_deg"] < 1.0
+
+
+def test_the_model_is_validated(generated):
+    out, answer = generated
+    assert answer["validation"]["verdict"] in {"pass", "warn"}
+    assert answer["validation"]["failed"] == []
+    report = json.loads((out / "validation.json").read_text())
+    assert report["verdict"] == answer["validation"]["verdict"]
+    assert sum(check["status"] == "pass" for check in report["checks"]) > 50
+    assert b"data:image/png" in (out / "validation.html").read_bytes()
+
+
+def test_the_status_follows_the_verdict(tmp_path):
+    run = Generation(from_text(SENTENCE), None, tmp_path, preview=False, validated=True)
+    assert run.exit_status == 0
+    run.report = report(result(finding()))
+    assert (run.report.verdict, run.exit_status) == ("fail", 1)
+    run.report = report(interrupted=True)
+    assert run.exit_status == 130
+
+
+def test_the_short_verdict_tells_errors_in_full_and_counts_warnings(monkeypatch):
+    add_checks(monkeypatch)
+    warning = finding(severity=Severity.WARNING, message="It is tight.")
+    said = describe_briefly(report(result(finding(), warning, warning)))
+    assert "FAIL" in said
+    assert "overlaps by 5" in said
+    assert "(2 times)" in said
+    assert "tight" not in said
 
 
 def test_the_truth_describes_the_same_object(generated):
@@ -60,8 +95,11 @@ def test_the_inference_gives_the_same_model_where_the_truth_is_deleted(generated
 
 def test_a_category_takes_settings_and_a_seed(tmp_path, capsys):
     command = ["generate", "--category", "gripper", "--set", "fingers=3", "--seed", "4", "-o", str(tmp_path / "one")]
-    assert run([*command, "--no-preview"]) == 0
-    assert "Against the known joints: 3 of 3 types right" in capsys.readouterr().out
+    assert run([*command, "--no-preview", "--no-validation"]) == 0
+    said = capsys.readouterr().out
+    assert "Not validated" in said
+    assert said.splitlines()[-1].startswith("Against the known joints: 3 of 3 types right")
+    assert not list((tmp_path / "one").glob("validation.*"))
 
 
 def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):

@@ -14,7 +14,7 @@ from kinematify.geometry.picture import BACKGROUND, PictureScene, PosedMesh, ren
 from kinematify.geometry.rays import RayScene
 from kinematify.joints.candidate import JointType
 from kinematify.model.palette import link_colors
-from kinematify.model.preview import render_preview, render_story
+from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -195,6 +195,16 @@ def test_preview_shows_every_part_at_rest_and_moved(tmp_path):
             continue
         for panel in (left, right):
             assert (hue_distance(panel, color) < 0.12).sum() > 20, name
+
+
+def test_a_pair_is_the_preview_without_words(tmp_path):
+    model = door().model()
+    render_preview(model, tmp_path / "preview.png", CONFIG)
+    preview = np.asarray(Image.open(tmp_path / "preview.png").convert("RGB"))
+    pair = np.asarray(draw_pair(model, CONFIG))
+    assert pair.shape[0] < preview.shape[0]
+    top = next(k for k in range(preview.shape[0]) if (preview[k : k + pair.shape[0]] == pair).all())
+    assert top > 0
 
 
 def test_story_has_three_panels_and_the_first_is_grey(tmp_path):

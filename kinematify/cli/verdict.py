@@ -71,6 +71,18 @@ def describe_all(outcomes: Sequence[Outcome]) -> str:
     return "\n\n".join([*blocks, format_table(headings, rows)])
 
 
+def describe_briefly(report: ValidationReport) -> str:
+    """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
+    errors = _groups([item for item in report.counted if item.severity is Severity.ERROR])
+    warnings: dict[tuple[str, str | None], list[Finding]] = {}
+    for item in report.counted:
+        if item.severity is Severity.WARNING:
+            warnings.setdefault((item.check, item.engine), []).append(item)
+    lines = [_verdict_line(report), *map(_group_line, errors)]
+    lines += [f"  {_heading(group[0])}{_times(len(group))}" for group in warnings.values()]
+    return "\n".join(lines)
+
+
 def describe_unused(rules: Iterable[Suppression]) -> str:
     """Name the suppressions that covered nothing; empty if there are none."""
     names = [f"{rule.check} at {rule.where}" for rule in rules]
@@ -198,11 +210,18 @@ def _brief(outcome: Outcome) -> str:
         return describe(outcome)
     lines = [_verdict_line(outcome)]
     for group in _groups([finding for finding in outcome.counted if finding.severity is not Severity.NOTE]):
-        times = f" ({len(group)} times)" if len(group) > 1 else ""
-        about = where(group[0])
-        message = f"{about}: {group[0].message}" if about else group[0].message
-        lines.append(_wrapped(f"{_heading(group[0])}{times}: {printable(message)}", 2, 4))
+        lines.append(_group_line(group))
     return "\n".join(lines)
+
+
+def _group_line(group: Sequence[Finding]) -> str:
+    about = where(group[0])
+    message = f"{about}: {group[0].message}" if about else group[0].message
+    return _wrapped(f"{_heading(group[0])}{_times(len(group))}: {printable(message)}", 2, 4)
+
+
+def _times(count: int) -> str:
+    return f" ({count} times)" if count > 1 else ""
 
 
 def _summary_row(outcome: Outcome) -> tuple[str, ...]:

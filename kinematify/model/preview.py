@@ -71,6 +71,21 @@ def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> 
     _draw(model, _rest_and_moved(model, config, ("at rest", "every joint moved")), config).save(path)
 
 
+def draw_pair(model: KinematicModel, config: PreviewConfig) -> Image.Image:
+    """Return the two panels of a preview without captions and legend, for pages that say in words what is seen.
+
+    Args:
+        model: What to show.
+        config: Size and quality.
+    """
+    panels = _rest_and_moved(model, config, ("", ""))
+    size, images = _draw_panels(model, panels, config)
+    sheet = Image.new("RGB", (size[0] * len(images), size[1]), _bytes(BACKGROUND))
+    for index, image in enumerate(images):
+        sheet.paste(image, (index * size[0], 0))
+    return sheet
+
+
 def render_story(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
     """Write a PNG with three panels: the anonymous parts taken apart, the joints found, the mechanism moved.
 
@@ -118,21 +133,32 @@ def _exploded(scene: PictureScene, config: PreviewConfig) -> PictureScene:
 
 
 def _draw(model: KinematicModel, panels: Sequence[_Panel], config: PreviewConfig) -> Image.Image:
-    """Panels in a row under their captions, the legend below; the last two are seen by the same camera."""
-    shared = [panel.scene for panel in panels[-2:]]
-    azimuth = best_azimuth(model, shared, config)
-    groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
-    size = _panel_size(groups, azimuth, config)
+    """Panels in a row under their captions, the legend below."""
+    size, images = _draw_panels(model, panels, config)
     legend = _legend(model, config, size[0] * len(panels))
     sheet = Image.new("RGB", (legend.width, _CAPTION + size[1] + legend.height), _bytes(BACKGROUND))
-    for index, (panel, group) in enumerate(zip(panels, groups, strict=True)):
+    for index, (panel, image) in enumerate(zip(panels, images, strict=True)):
         left = index * size[0]
-        camera = camera_for(group, azimuth, config, size=size, margin=_MARGIN)
-        sheet.paste(render_scene(panel.scene, camera, config), (left, _CAPTION))
+        sheet.paste(image, (left, _CAPTION))
         center = (left + size[0] // 2, _CAPTION // 2 + 6)
         ImageDraw.Draw(sheet).text(center, panel.caption, fill=_INK, font=ImageFont.load_default(24), anchor="mm")
     sheet.paste(legend, (0, _CAPTION + size[1]))
     return sheet
+
+
+def _draw_panels(
+    model: KinematicModel, panels: Sequence[_Panel], config: PreviewConfig
+) -> tuple[tuple[int, int], list[Image.Image]]:
+    """Width and height of all panels, and what each shows; the last two are seen by the same camera."""
+    shared = [panel.scene for panel in panels[-2:]]
+    azimuth = best_azimuth(model, shared, config)
+    groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
+    size = _panel_size(groups, azimuth, config)
+    images = [
+        render_scene(panel.scene, camera_for(group, azimuth, config, size=size, margin=_MARGIN), config)
+        for panel, group in zip(panels, groups, strict=True)
+    ]
+    return size, images
 
 
 def _panel_size(groups: Sequence[Sequence[PictureScene]], azimuth: float, config: PreviewConfig) -> tuple[int, int]:

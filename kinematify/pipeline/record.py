@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kinematify.topology.tree import KinematicTree
 
 SCHEMA = 1
+PREVIEW_FILE = "preview.png"
 _PACKAGES = ("numpy", "scipy", "torch", "trimesh", "libigl", "python-fcl", "embreex")
 
 
@@ -54,7 +55,7 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
     text = json.dumps(inference_record(inference), indent=1, allow_nan=False)
     (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
     if preview:
-        render_preview(inference.model, folder / "preview.png", inference.config.preview)
+        render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
 
 
 def inference_record(inference: Inference) -> dict[str, Any]:

@@ -1,0 +1,178 @@
+"""One call of `kinematify generate`: from a request to a model folder with its verdict, and what is said about it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kinematify.benchmark.metrics import score_object
+from kinematify.benchmark.prediction import prediction_of
+from kinematify.cli.infer import describe
+from kinematify.cli.report_files import ReportFiles
+from kinematify.cli.verdict import describe_briefly, say
+from kinematify.config import load_config
+from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
+from kinematify.pipeline import infer
+from kinematify.pipeline.generate import PARTS_FOLDER, TRUTH_FOLDER, write_parts, write_truth
+from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
+from kinematify.sources.procedural.truth import ground_truth
+from kinematify.validation.finding import Severity
+from kinematify.validation.isolation import start_server
+from kinematify.validation.outcome import severity_counts
+from kinematify.validation.run import validate
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.benchmark.metrics import ObjectScore
+    from kinematify.cli.progress import Reporter
+    from kinematify.pipeline import Inference
+    from kinematify.sources.procedural.blueprint import Blueprint
+    from kinematify.sources.procedural.request import Request
+    from kinematify.validation.report import ValidationReport
+
+_INTERRUPTED = 130
+_INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints
+
+
+@dataclass
+class Generation:
+    """What was asked for, and what has come of it so far."""
+
+    request: Request
+    seed: int | None
+    out: Path
+    preview: bool
+    validated: bool
+    blueprint: Blueprint = field(init=False)
+    inference: Inference = field(init=False)
+    report: ValidationReport | None = None
+
+    def all(self, progress: Reporter, *, overwrite: bool) -> None:
+        """Build the object, infer its joints from its parts, write the folder and validate the model in it.
+
+        Raises:
+            InputError: A parameter is out of its bounds.
+            OutputError: The folder exists and must not be replaced, or cannot be written.
+        """
+        check_output(self.out, overwrite=overwrite)
+        self.blueprint = self.request.build(seed=self.seed)
+        if self.validated:
+            start_server()  # its imports take seconds, on another core than the inference
+        config = load_config()
+        self.inference = infer(
+            self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
+        )
+        progress("writing the model and its picture" if self.preview else "writing the model", _INFERRED)
+
+        def write(folder: Path) -> None:
+            write_inference_files(self.inference, folder, preview=self.preview)
+            write_parts(self.blueprint, folder / PARTS_FOLDER)
+            write_truth(self.blueprint, folder / TRUTH_FOLDER, config)
+
+        write_model_folder(self.out, write, overwrite=overwrite)
+        if self.validated:
+            self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
+
+    def _validate(self, progress: Reporter) -> None:
+        self.report = validate(self.out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
+        picture = self.out / PREVIEW_FILE
+        pictures = {self.report.model: picture.read_bytes()} if self.preview else {}
+        files = ReportFiles(
+            json=str(self.out / "validation.json"), junit=None, sarif=None, html=self.out / "validation.html"
+        )
+        files.write([self.report], pictures)
+
+    @property
+    def exit_status(self) -> int:
+        """1 if the model has an error, 130 if the validation was interrupted, else 0."""
+        if self.report is None:
+            return 0
+        return _INTERRUPTED if self.report.environment.get("interrupted") else self.report.exit_status
+
+    @property
+    def answer(self) -> dict[str, Any]:
+        """Everything as JSON values."""
+        return {
+            "schema": 1,
+            "out": str(self.out),
+            "category": self.request.family,
+            "parameters": dict(self.blueprint.parameters),
+            "understood": list(self.request.understood),
+            "ignored": list(self.request.ignored),
+            "validation": _validation(self.report) if self.report is not None else None,
+            "accuracy": _accuracy(self._score()),
+        }
+
+    def say(self, *, quiet: bool) -> None:
+        """Tell the user, the accuracy last; nothing if a machine reads stdout."""
+        if quiet:
+            return
+        blocks = [
+            _understood(self.request),
+            describe(self.inference, self.out),
+            self._verdict(),
+            _describe_score(self._score()),
+        ]
+        say("\n\n".join(block for block in blocks if block))
+        if self.exit_status == _INTERRUPTED:
+            click.echo("Interrupted. The model is complete, its validation is not.", err=True)
+
+    def _verdict(self) -> str:
+        if self.report is None:
+            return f"Not validated; kinematify validate {self.out / MODEL_FILE} does that."
+        return f"{describe_briefly(self.report)}\n{self.out / 'validation.html'}: every check, with remedies"
+
+    def _score(self) -> ObjectScore:
+        """Compare with the joints that the object was built with."""
+        truth = ground_truth(self.blueprint)
+        index = {name: k for k, name in enumerate(truth.part_names)}
+        found = self.inference
+        return score_object(
+            truth,
+            prediction_of(found.trees[0], found.joints, found.assembly.names, index),
+            centroids=[part.centroid for part in self.blueprint.parts],
+            diagonal=self.blueprint.assembly.diagonal,
+        )
+
+
+def _understood(request: Request) -> str:
+    lines = [f"Understood: {', '.join(request.understood)}."] if request.understood else []
+    if request.ignored:
+        lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")
+    return "\n".join(lines)
+
+
+def _validation(report: ValidationReport) -> dict[str, Any]:
+    counts = severity_counts(report)
+    return {
+        "verdict": report.verdict,
+        **{f"{severity.value}s": counts.get(severity, 0) for severity in Severity},
+        "failed": sorted({item.check for item in report.counted if item.severity is Severity.ERROR}),
+        "seconds": report.environment.get("seconds"),
+    }
+
+
+def _accuracy(score: ObjectScore) -> dict[str, Any]:
+    angles = [joint.angle_deg for joint in score.joints]
+    return {
+        "joints": len(angles),
+        "types_right": sum(joint.type_right for joint in score.joints),
+        "tree_edit_distance": score.ted.value,
+        "mean_axis_angle_deg": sum(angles) / len(angles) if angles else None,
+        "largest_axis_angle_deg": max(angles, default=None),
+    }
+
+
+def _describe_score(score: ObjectScore) -> str:
+    facts = _accuracy(score)
+    if not facts["joints"]:
+        return "Against the known joints: there are none."
+    return (
+        f"Against the known joints: {facts['types_right']} of {facts['joints']} types right, axes off by "
+        f"{facts['mean_axis_angle_deg']:.2f} deg on average and {facts['largest_axis_angle_deg']:.2f} deg at most, "
+        f"tree {'exact' if facts['tree_edit_distance'] == 0 else 'off by ' + format(facts['tree_edit_distance'], 'g')}."
+    )

@@ -1,0 +1,111 @@
+"""A page with every family of the generator: one picture, at rest and moved, and what can be asked for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from kinematify.config import load_config
+from kinematify.errors import OutputError
+from kinematify.model.preview import draw_pair
+from kinematify.pipeline.generate import true_model
+from kinematify.sources.procedural.family import COMMON, build
+from kinematify.sources.procedural.listing import PARAMETER_HEADINGS, parameter_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from kinematify.sources.procedural.blueprint import Blueprint
+    from kinematify.sources.procedural.family import Family, Parameter
+
+PAGE = "gallery.md"
+PICTURES = "gallery"
+_PANEL = {"panel_width": 420, "panel_height": 360, "openness_rays": 6}  # two fill a page, in seconds
+_QUALITY = 82  # of WebP: 5 to 30 kB each, and no blocks beside thin arrows
+_SEEDS = range(8)  # enough to meet the usual numbers of joints
+_BAR = r"\|"  # in a cell of a Markdown table
+
+
+def write_gallery(
+    folder: Path, families: Mapping[str, Family], *, command: str, progress: Callable[[str, float], None]
+) -> Path:
+    """Write the page and its pictures; what an earlier call wrote is replaced.
+
+    Args:
+        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per family.
+        families: What to show, in this order.
+        command: What the reader types to make the page again.
+        progress: Told the family and the share done.
+
+    Returns:
+        The page.
+
+    Raises:
+        OutputError: The folder cannot be written.
+    """
+    config = load_config()
+    config = config.model_copy(update={"preview": config.preview.model_copy(update=_PANEL)})
+    sections = []
+    try:
+        (folder / PICTURES).mkdir(parents=True, exist_ok=True)
+        for number, (name, family) in enumerate(families.items()):
+            progress(name, number / len(families))
+            blueprint = build(family, {})
+            picture = draw_pair(true_model(blueprint, config), config.preview)
+            picture.save(folder / PICTURES / f"{name}.webp", quality=_QUALITY, method=6)
+            sections.append(_section(family, blueprint))
+        page = folder / PAGE
+        page.write_text("\n".join([_head(families, command), *sections]), encoding="utf-8")
+    except OSError as error:
+        raise OutputError(
+            f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a folder that you may write "
+            "to, on a disk with space."
+        ) from error
+    return page
+
+
+def _head(families: Mapping[str, Family], command: str) -> str:
+    return f"""# Gallery
+
+The {len(families)} families of `kinematify generate`, each with its defaults, at rest and with every joint moved. Red
+arrows turn, blue ones slide. A sentence (`--text`) may use any of the words and say any of the parameters;
+`--category NAME --set KEY=VALUE` takes them as they stand here, and `--seed N` draws those that are not given. The
+joints are those of the object shown; in brackets stands how many {len(_SEEDS)} seeds gave.
+
+Made by `{command}`.
+
+{", ".join(f"[{name}](#{name})" for name in families)}
+
+Every family has these parameters:
+
+{_table(COMMON)}
+"""
+
+
+def _section(family: Family, blueprint: Blueprint) -> str:
+    return f"""## {family.name}
+
+![{family.title}, at rest and with every joint moved]({PICTURES}/{family.name}.webp)
+
+{_sentence(family.title)}. Words: {", ".join(family.words)}. {_joints(family, blueprint)}
+
+{_table(family.parameters)}
+"""
+
+
+def _sentence(words: str) -> str:
+    return words[:1].upper() + words[1:]
+
+
+def _joints(family: Family, blueprint: Blueprint) -> str:
+    kinds = Counter(joint.kind for joint in blueprint.joints)
+    shown = ", ".join(f"{number} {kind.value}" for kind, number in kinds.items())
+    counts = [len(build(family, {}, seed=seed).joints) for seed in _SEEDS]
+    few, many = min(counts), max(counts)
+    return f"Joints: {shown} ({few if few == many else f'{few} to {many}'})."
+
+
+def _table(parameters: Sequence[Parameter]) -> str:
+    rows = [PARAMETER_HEADINGS, ("---",) * len(PARAMETER_HEADINGS), *parameter_rows(parameters)]
+    return "\n".join(f"| {' | '.join(cell.replace('|', _BAR) for cell in row)} |" for row in rows)
