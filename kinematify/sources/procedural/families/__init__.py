@@ -30,6 +30,7 @@ from kinematify.sources.procedural.families import (
     scissors,
     serial_arm,
     snake,
+    stapler,
     switch_panel,
     table,
     toaster,
@@ -77,6 +78,7 @@ FAMILIES: dict[str, Family] = {
         folding_chair,
         scissors,
         pliers,
+        stapler,
     )
 }
 """Keyed by name."""
