@@ -71,6 +71,8 @@ class Execution:
     """What kept it from success."""
     simulated: float
     """[s]."""
+    grasped: float
+    """Time at which the fingers have closed and the pull begins [s]."""
     frames: tuple[Frame, ...]
 
 
@@ -194,6 +196,7 @@ def judged(
         success=reason is None,
         reason=reason,
         simulated=reference.steps * settings.time_step,
+        grasped=reference.pulls * settings.time_step,
         frames=tuple(log.frames),
     )
 

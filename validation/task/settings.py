@@ -105,8 +105,34 @@ class ExecutionSettings(StageConfig):
     """States that are kept for the film [Hz]."""
 
 
+class FilmSettings(StageConfig):
+    """The film of a run and its still."""
+
+    frames: int
+    """Pictures of the film at most."""
+    width: int
+    """Of the film [pixels]."""
+    height: int
+    """Of the film [pixels]."""
+    still_width: int
+    """Of each of the three panels of the still [pixels]."""
+    still_height: int
+    """The same for their height [pixels]."""
+    colors: int
+    """Of the film's palette."""
+    last_seconds: float
+    """The last picture is shown so long [s]."""
+    azimuths: int
+    """Sides from which the view is tried."""
+    subsamples: int
+    """Rays per pixel side where edges are smoothed."""
+    rays: int
+    """Rays per pixel for how much of the sky a point sees."""
+
+
 class TaskSettings(StageConfig):
     """KV7xx: tasks of a robot."""
 
     grasp: GraspSettings
     execution: ExecutionSettings
+    film: FilmSettings
