@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
-from manifold3d import Manifold, OpType
+from manifold3d import CrossSection, Manifold, OpType
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,9 +49,15 @@ def bore(radius: float, clearance: float, start: Point, end: Point, *, segments:
     return cylinder((radius + clearance) / np.cos(np.pi / segments), start, end, segments=segments)
 
 
-def rod(radius: float, start: Point, end: Point) -> Manifold:
+def turned(outline: Sequence[tuple[float, float]], *, segments: int = SEGMENTS) -> Manifold:
+    """Return what a closed outline of radius and height, anticlockwise, sweeps about the z axis."""
+    return Manifold.revolve(CrossSection([np.array(outline)]), segments)
+
+
+def rod(radius: float, start: Point, end: Point, *, segments: int = 32) -> Manifold:
     """Return a cylinder with round ends."""
-    return cylinder(radius, start, end, segments=32) + ball(radius, start) + ball(radius, end)
+    ends = ball(radius, start, segments=segments) + ball(radius, end, segments=segments)
+    return cylinder(radius, start, end, segments=segments) + ends
 
 
 def ball(radius: float, centre: Point, *, segments: int = 32) -> Manifold:

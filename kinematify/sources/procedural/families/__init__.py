@@ -19,6 +19,8 @@ from kinematify.sources.procedural.families import (
     gantry,
     gripper,
     hand,
+    hexapod,
+    humanoid,
     laptop,
     microwave,
     office_chair,
@@ -78,6 +80,8 @@ FAMILIES: dict[str, Family] = {
         folding_chair,
         scissors,
         pliers,
+        hexapod,
+        humanoid,
         stapler,
     )
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
     from kinematify.sources.procedural.solids import Point
+
+_SIDES = 20  # of rods; a robot has many
 
 
 def leg_solids(
@@ -35,20 +38,47 @@ def leg_solids(
     boss, hole, rotor = stub(hip, (sx, 0, 0), radius, clearance)
     flange, end = sx * (radius + clearance), sx * (2 * radius + clearance)
     pitch_at = off(hip, end, sy * 2.2 * radius, 0)
-    pitch_boss, pitch_hole, pitch_rotor = stub(pitch_at, (0, sy, 0), radius, clearance, length=2 * radius)
-    bridge = pitch_boss + rod(0.8 * radius, off(hip, flange, 0, 0), off(hip, end, 0, 0))
-    links = {"hip": union(rotor, beyond(bridge, off(hip, sx * clearance, 0, 0), (sx, 0, 0))) - pitch_hole}
+    limb = limb_solids(pitch_at, sy, radius, lengths, clearance)
+    bridge = limb.boss + rod(0.8 * radius, off(hip, flange, 0, 0), off(hip, end, 0, 0), segments=_SIDES)
+    upper = union(rotor, beyond(bridge, off(hip, sx * clearance, 0, 0), (sx, 0, 0))) - limb.hole
+    links = {"hip": upper, "thigh": limb.upper, "shank": limb.lower}
+    return boss, hole, links, (hip, pitch_at, limb.knee)
 
-    top = off(pitch_at, 0, sy * (radius + clearance), 0)
-    knee_at = off(top, 0, -sy * radius, -lengths[0])
-    knee_boss, knee_hole, knee_rotor = stub(knee_at, (0, -sy, 0), 0.8 * radius, clearance, length=1.6 * radius)
-    upper = knee_boss + rod(0.7 * radius, top, off(top, 0, 0, -lengths[0]))
-    links["thigh"] = union(pitch_rotor, beyond(upper, knee_at, (0, sy, 0))) - knee_hole
 
-    ankle = off(knee_at, 0, -sy * (0.8 * radius + clearance), 0)
-    lower = rod(0.5 * radius, ankle, off(ankle, 0, 0, -lengths[1]))
-    links["shank"] = union(knee_rotor, beyond(lower, off(knee_at, 0, -sy * clearance, 0), (0, -sy, 0)))
-    return boss, hole, links, (hip, pitch_at, knee_at)
+@dataclass(frozen=True, kw_only=True)
+class Limb:
+    """A straight limb of two links that hangs down and turns about y."""
+
+    boss: Manifold
+    """What carries it, at the upper pivot."""
+    hole: Manifold
+    """To be taken away when the boss has become one with its body."""
+    upper: Manifold
+    lower: Manifold
+    knee: FloatArray
+    """Pivot between both links [m], shape (3,)."""
+    end: FloatArray
+    """Middle of the lower link's round end [m], shape (3,)."""
+
+
+def limb_solids(pivot: FloatArray, sy: int, radius: float, lengths: tuple[float, float], clearance: float) -> Limb:
+    """Build a limb on the side `sy` of y of its boss; arguments as for `leg_solids`."""
+    boss, hole, rotor = stub(pivot, (0, sy, 0), radius, clearance, length=2 * radius)
+    top = off(pivot, 0, sy * (radius + clearance), 0)
+    knee = off(top, 0, -sy * radius, -lengths[0])
+    knee_boss, knee_hole, knee_rotor = stub(knee, (0, -sy, 0), 0.8 * radius, clearance, length=1.6 * radius)
+    upper = knee_boss + rod(0.7 * radius, top, off(top, 0, 0, -lengths[0]), segments=_SIDES)
+    ankle = off(knee, 0, -sy * (0.8 * radius + clearance), 0)
+    end = off(ankle, 0, 0, -lengths[1])
+    lower = rod(0.5 * radius, ankle, end, segments=_SIDES)
+    return Limb(
+        boss=boss,
+        hole=hole,
+        upper=union(rotor, beyond(upper, knee, (0, sy, 0))) - knee_hole,
+        lower=union(knee_rotor, beyond(lower, off(knee, 0, -sy * clearance, 0), (0, -sy, 0))),
+        knee=knee,
+        end=end,
+    )
 
 
 def beyond(solid: Manifold, point: Point, direction: tuple[int, int, int]) -> Manifold:
