@@ -290,6 +290,10 @@ class EvidenceSettings(StageConfig):
     """Opening beyond which that of an upright panel is unusual [deg]."""
     widest_lid: float
     """The same for a level panel [deg]."""
+    whole_turn: float
+    """A range from here on, mostly to one side, needs no limits [deg]."""
+    lopsided: float
+    """A range is mostly to one side if the sum of its ends is above this share of its width."""
     button_travel: float
     """Travel of a button over its own length beyond which it is unusual."""
     button_outward: float

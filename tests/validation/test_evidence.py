@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kinematify.assembly.joint_type import JointType
 from kinematify.sources.procedural.solids import box, union
 from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Severity, Status
@@ -172,6 +173,12 @@ def test_a_drawer_that_leaves_its_carcass_is_told(tmp_path: Path) -> None:
 def test_a_range_that_is_unusual_for_the_part_is_told(build: Build, child: str, tmp_path: Path) -> None:
     good = build()
     assert found(with_joint(good, child, upper=2.0 * joint_of(good, child).upper), tmp_path) == {"KV348"}
+
+
+@pytest.mark.parametrize(("limits", "told_of"), [((0.0, 6.28), True), ((-6.28, 6.28), False), ((0.0, 6.0), False)])
+def test_a_limited_whole_turn_to_one_side_is_told(limits: tuple[float, float], told_of: bool, tmp_path: Path) -> None:
+    wide = with_joint(knob(), "knob", kind=JointType.REVOLUTE, lower=limits[0], upper=limits[1])
+    assert (found(wide, tmp_path) == {"KV348"}) is told_of
 
 
 def test_a_closed_door_that_turns_into_an_open_body_is_told(tmp_path: Path) -> None:

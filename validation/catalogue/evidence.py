@@ -93,9 +93,10 @@ CHECKS: tuple[Check, ...] = (
         title="range is usual for such a part",
         severity=Severity.WARNING,
         blame=Blame.KINEMATICS,
-        verifies="An upright panel opens by no more than evidence.widest_door, a level one by no more than "
-        "evidence.widest_lid, and a button travels by no more than evidence.button_travel of its own length. Meshes do "
-        "not hold designed stops, so this is experience, and only outside linkages.",
+        verifies="No limited range is a whole turn, mostly to one side (evidence.whole_turn). Outside linkages, an "
+        "upright panel opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid, "
+        "and a button travels by no more than evidence.button_travel of its own length. Meshes do not hold designed "
+        "stops, so this is experience.",
         matters="A robot that learns to open a door to twice its angle fails on the real one.",
         remedy="Correct the limit, or accept the finding with a reason.",
     ),

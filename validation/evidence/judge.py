@@ -351,7 +351,11 @@ def _range(case: _Case) -> Doubt | None:
     """What is wide for such a part although nothing stops it."""
     joint, room, scene, settings = case.measures.joint, case.measures.room, case.measures.weighed.scene, case.settings
     span = max(abs(joint.lower), abs(joint.upper))
-    if case.linkage or not np.isfinite(span):
+    if not np.isfinite(span):
+        return None
+    if not case.measures.slides and _turns_round(joint.lower, joint.upper, settings):
+        return _round(case, float(np.degrees(joint.upper - joint.lower)))
+    if case.linkage:
         return None
     if case.measures.slides:
         pressed = case.small and abs(room.outward) > settings.button_outward
@@ -360,6 +364,26 @@ def _range(case: _Case) -> Doubt | None:
         return None
     name, limit = ("door", settings.widest_door) if scene.upright else ("lid", settings.widest_lid)
     return _wide(case, name, float(np.degrees(span)), limit, "deg")
+
+
+def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool:
+    """Whether a range is a whole turn or more, mostly to one side; wrists go as far to both."""
+    span = upper - lower
+    return bool(np.degrees(span) >= settings.whole_turn and abs(lower + upper) > settings.lopsided * span)
+
+
+def _round(case: _Case, span: float) -> Doubt:
+    return Doubt(
+        check=RANGE,
+        severity=Severity.WARNING,
+        message=f"{case.child} turns by {span:.3g} deg, mostly to one side: that is more than a whole turn, so no stop "
+        "can be there.",
+        remedy='Write type="continuous" if it turns without end; otherwise check the limits, and halve them if the '
+        "range was doubled.",
+        value=span,
+        limit=case.settings.whole_turn,
+        unit="deg",
+    )
 
 
 def _wide(case: _Case, name: str, span: float, limit: float, unit: str) -> Doubt | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.geometry.scene import box_corners, relative, transformed
+from kinematify.validation.geometry.scene import box_corners, relative
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -145,14 +145,13 @@ class Sweeper:
         """Samples so that no corner moves by more than a step from one to the next."""
         settings, scene = self._scene.settings, self._scene
         poses = scene.poses(self.rows(leader, np.linspace(start, end, _COARSE)))
-        moved = {body for pair in scene.affected[leader] for body in pair}
-        ways = [
-            np.linalg.norm(
-                np.diff([transformed(box_corners(scene.bodies[body].solid), T) for T in poses[:, body]], axis=0), axis=2
-            )
-            for body in moved
-        ]
-        longest = max((float(way.sum(axis=0).max()) for way in ways), default=0.0)
+        moved = sorted({body for pair in scene.affected[leader] for body in pair})
+        if not moved:
+            return settings.samples_least
+        corners = np.stack([box_corners(scene.bodies[body].solid) for body in moved])
+        T = poses[:, moved]
+        posed = np.einsum("nbij,bkj->nbki", T[..., :3, :3], corners) + T[..., None, :3, 3]
+        longest = float(np.linalg.norm(np.diff(posed, axis=0), axis=3).sum(axis=0).max())
         wanted = int(np.ceil(longest / (settings.step * scene.size)))
         return min(max(wanted, settings.samples_least), settings.samples_most)
 
