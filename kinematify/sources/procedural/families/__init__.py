@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.families import (
+    bottle,
     box,
     button_panel,
     cabinet,
@@ -83,6 +84,7 @@ FAMILIES: dict[str, Family] = {
         hexapod,
         humanoid,
         stapler,
+        bottle,
     )
 }
 """Keyed by name."""
