@@ -79,8 +79,8 @@ def _markdown(found: list[Verdict]) -> str:
     parts = [
         "# What `kinematify validate` says of published models",
         "",
-        "Written by `python benchmarks/published.py`: all checks, models as they are (most of the benchmark's have "
-        "neither mass nor collision geometry, which KV201 and KV240 warn of).",
+        "Written by `python benchmarks/published.py`: all checks, models as they are. Most of the benchmark's have "
+        + "neither mass nor collision geometry, which KV201 and KV240 warn of.",
     ]
     for source in dict.fromkeys(item.source for item in found):
         mine = [item for item in found if item.source == source]
