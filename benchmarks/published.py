@@ -76,12 +76,11 @@ def _verdict(source: str, name: str, urdf: Path) -> Verdict:
 
 
 def _markdown(found: list[Verdict]) -> str:
-    parts = [
-        "# What `kinematify validate` says of published models",
-        "",
+    about = (
         "Written by `python benchmarks/published.py`: all checks, models as they are. Most of the benchmark's have "
-        + "neither mass nor collision geometry, which KV201 and KV240 warn of.",
-    ]
+        "neither mass nor collision geometry, which KV201 and KV240 warn of."
+    )
+    parts = ["# What `kinematify validate` says of published models", "", about]
     for source in dict.fromkeys(item.source for item in found):
         mine = [item for item in found if item.source == source]
         wrong = sum(bool(item.errors) for item in mine)
