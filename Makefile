@@ -8,6 +8,8 @@ IN_VENV := $(VENV)/bin/python -m
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN)
 # Test files or options for pytest, e.g. `make test ARGS="tests/test_cli.py -k infer"`.
 ARGS ?=
+# What `make demo` builds.
+export SENTENCE := a kitchen cabinet with two doors above three drawers, 80 cm wide
 # Folder of URDFs to measure, or `pip` for the robots of a package; see `kinematify bench --help`.
 DATA ?= pip
 
@@ -16,16 +18,17 @@ TORCH := $(shell sed -n 's/.*"\(torch==[0-9.]*\)".*/\1/p' pyproject.toml)
 # Named after the content of pyproject.toml: while that does not change there is nothing to do.
 STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
 
-.PHONY: help setup demo test lint format types bench clean
+.PHONY: help setup demo test lint format types bench pictures clean
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo     infer the joints of a bundled cabinet; writes out/cabinet/ with a URDF and a picture"
+	@echo "make demo     one sentence -> parts -> joints -> URDF -> verdict -> picture, in out/cabinet/"
 	@echo "make test     run the tests (ARGS=... for pytest)"
 	@echo "make lint     ruff: rules and format"
 	@echo "make format   let ruff mend what it can"
 	@echo "make types    mypy --strict"
 	@echo "make bench    accuracy table beside the paper's (DATA=FOLDER or pip)"
+	@echo "make pictures redraw docs/demo.png and docs/gallery.md with its pictures; takes minutes"
 	@echo "make setup    create $(VENV) with everything; quick when nothing changed"
 	@echo "make clean    remove what was built, but not $(VENV)"
 
@@ -44,12 +47,21 @@ $(STAMP):
 	@rm -f $(VENV)/.setup-* && touch $@
 
 demo: setup
-	@$(IN_VENV) kinematify infer examples/cabinet -o out/cabinet --force
+	@echo "A sentence: $$SENTENCE"
+	@$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --force
 	@echo
-	@echo "Look at  out/cabinet/preview.png       the cabinet as it was given, and with every joint moved"
+	@echo "Look at  out/cabinet/preview.png       the cabinet at rest, and with every joint moved"
+	@echo "    and  out/cabinet/validation.html   what was checked, in three engines, and what to do about each finding"
 	@echo "    and  out/cabinet/model.urdf        what a simulator loads"
-	@echo "Now try  $(VENV)/bin/kinematify infer YOUR_FOLDER_OF_PARTS -o out/yours"
-	@echo "    and  $(VENV)/bin/kinematify --help"
+	@echo "Now try  $(VENV)/bin/kinematify generate --text \"a quadruped with 3 joints per leg\" --seed 7 -o out/dog"
+	@echo "    and  $(VENV)/bin/kinematify generate --list"
+	@echo "    and  $(VENV)/bin/kinematify infer YOUR_FOLDER_OF_PARTS -o out/yours"
+	@echo "    and  $(VENV)/bin/kinematify validate YOUR_ROBOT.urdf"
+
+pictures: setup
+	$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --force --no-validation
+	cp out/cabinet/preview.png docs/demo.png
+	$(IN_VENV) kinematify generate --gallery docs
 
 test: setup
 	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)

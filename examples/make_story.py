@@ -1,4 +1,4 @@
-"""Write the picture on the first screen of the README: the bundled cabinet, inferred.
+"""Write the second picture of the README: the bundled cabinet, inferred.
 
 .venv/bin/python examples/make_story.py [FILE]
 """

@@ -15,7 +15,7 @@ from kinematify.cli.app import COMMANDS, cli
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = ("README.md", "CONTRIBUTING.md")
-MADE_BY_COMMANDS = ("out/", "meshes/")
+MADE_BY_COMMANDS = ("out/", "meshes/", "parts/", "truth/")
 
 
 def blocks(text: str, language: str) -> str:
@@ -96,9 +96,12 @@ def test_python_example_uses_public_names() -> None:
     assert used <= set(kinematify.__all__)
 
 
-def test_the_first_screen_has_the_picture_and_the_two_commands() -> None:
-    first = "\n".join((ROOT / "README.md").read_text("utf-8").splitlines()[:14])
-    assert "](docs/story.png)" in first
+def test_the_first_screen_has_the_sentence_of_the_demo_and_its_picture() -> None:
+    first = "\n".join((ROOT / "README.md").read_text("utf-8").splitlines()[:18])
+    sentence = re.search(r"^export SENTENCE := (.+)$", (ROOT / "Makefile").read_text("utf-8"), flags=re.MULTILINE)
+    assert sentence
+    assert f'"{sentence[1]}"' in first
+    assert "](docs/demo.png)" in first
     assert "make demo" in first
     assert "make test" in first
 

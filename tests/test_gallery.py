@@ -1,0 +1,66 @@
+"""The gallery shows every family: pictures that can be opened and are small, and a page whose links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kinematify.errors import OutputError
+from kinematify.pipeline.gallery import write_gallery
+from kinematify.sources.procedural.families import FAMILIES
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+LARGEST, LARGEST_IN_ALL = 60_000, 2_500_000  # bytes
+
+
+def pictures_of(page: str) -> dict[str, str]:
+    """Picture of each section of a page, by its heading."""
+    return dict(re.findall(r"^## (\w+)\n\n!\[[^\]]+\]\(([^)]+)\)$", page, flags=re.MULTILINE))
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("gallery")
+    shown = {name: FAMILIES[name] for name in ("gripper", "laptop")}
+    return write_gallery(folder, shown, command="make it", progress=lambda name, done: None)
+
+
+def test_each_family_has_a_section_with_its_words_and_parameters(made):
+    page = made.read_text("utf-8")
+    assert list(pictures_of(page)) == ["gripper", "laptop"]
+    assert "Made by `make it`." in page
+    assert ", ".join(FAMILIES["laptop"].words) in page
+    for family in (FAMILIES["gripper"], FAMILIES["laptop"]):
+        for parameter in family.all_parameters:
+            assert f"| {parameter.name} | " in page
+    assert re.search(r"Joints: 1 revolute \(1\)\.", page)
+
+
+def test_pictures_are_small_and_show_two_states(made):
+    for link in pictures_of(made.read_text("utf-8")).values():
+        picture = made.parent / link
+        assert picture.stat().st_size <= LARGEST
+        image = np.asarray(Image.open(picture).convert("RGB")).astype(float)
+        half = image.shape[1] // 2
+        assert image.std() > 5.0
+        assert np.abs(image[:, :half] - image[:, half : 2 * half]).max(axis=2).mean() > 2.0
+
+
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be written"):
+        write_gallery(tmp_path / "file", {}, command="", progress=lambda name, done: None)
+
+
+def test_the_committed_page_shows_every_family():
+    page = (DOCS / "gallery.md").read_text("utf-8")
+    pictures = pictures_of(page)
+    assert list(pictures) == list(FAMILIES), "run: kinematify generate --gallery docs"
+    sizes = {name: (DOCS / link).stat().st_size for name, link in pictures.items()}
+    assert max(sizes.values()) <= LARGEST
+    assert sum(sizes.values()) <= LARGEST_IN_ALL
+    assert {path.stem for path in (DOCS / "gallery").iterdir()} == set(FAMILIES)
