@@ -54,6 +54,11 @@ def turned(outline: Sequence[tuple[float, float]], *, segments: int = SEGMENTS) 
     return Manifold.revolve(CrossSection([np.array(outline)]), segments)
 
 
+def ring(radius: float, thick: float, degrees: float = 360.0, *, sides: int = 16) -> Manifold:
+    """Return a wire of radius `thick` bent to an arc about the z axis, from the x axis on anticlockwise."""
+    return Manifold.revolve(CrossSection.circle(thick, sides).translate((radius, 0)), SEGMENTS, degrees)
+
+
 def rod(radius: float, start: Point, end: Point, *, segments: int = 32) -> Manifold:
     """Return a cylinder with round ends."""
     ends = ball(radius, start, segments=segments) + ball(radius, end, segments=segments)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.sources.procedural.families import (
     bottle,
     box,
+    bucket,
     button_panel,
     cabinet,
     coffee_machine,
@@ -85,6 +86,7 @@ FAMILIES: dict[str, Family] = {
         humanoid,
         stapler,
         bottle,
+        bucket,
     )
 }
 """Keyed by name."""
