@@ -15,6 +15,7 @@ from kinematify.benchmark.datasets import find_objects
 from kinematify.cli.app import run
 from kinematify.cli.generation import Generation
 from kinematify.cli.verdict import describe_briefly
+from kinematify.pipeline.corpus import write_corpus
 from kinematify.sources.procedural.request import from_text
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result
@@ -114,6 +115,17 @@ def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):
     assert {item.kind for item in find_objects(out)} == {"procedural"}
     assert run(["generate", "--corpus", "3", "--seed", "2", "-o", str(out)]) == 2
     assert "seed 1, not 2" in capsys.readouterr().err
+
+
+def test_several_processes_write_the_same_corpus_as_one(tmp_path):
+    for name, workers in (("one", 1), ("two", 2)):
+        write_corpus(tmp_path / name, 9, seed=2, progress=lambda name, done: None, workers=workers)
+    one, two = (
+        {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+        for folder in (tmp_path / "one", tmp_path / "two")
+    )
+    assert one == two
+    assert len(list((tmp_path / "two").iterdir())) == 10
 
 
 def test_the_categories_and_their_parameters_are_listed(capsys):

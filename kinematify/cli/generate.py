@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -136,7 +137,7 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None) -> None:
     if only is not None:
         raise click.UsageError("--corpus takes all categories; leave out --text and --category.")
     with progress_reporter() as progress:
-        manifest = write_corpus(out, count, seed=seed, progress=progress)
+        manifest = write_corpus(out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1)
     click.echo(f"{count} objects: {manifest}\nNext: kinematify bench {out} -o results --name corpus")
 
 

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import shutil
+import signal
+import zlib
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,15 +21,14 @@ from kinematify.sources.procedural.families import FAMILIES
 from kinematify.sources.procedural.family import build
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from kinematify.config import Config
-
 MANIFEST = "manifest.json"
+_FEW = 8  # so many are written while other processes are still starting
 
 
-def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, float], None]) -> Path:
+def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, float], None], workers: int = 1) -> Path:
     """Write `count` objects below a folder, one folder each with a URDF, and a manifest.
 
     Families take turns, so that their numbers differ by one at most. Objects that are there already stay: the same
@@ -34,8 +37,9 @@ def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, f
     Args:
         out: The folder.
         count: How many objects.
-        seed: Draws the parameters; object k has the same ones in a corpus of any size.
+        seed: Draws the parameters; an object of a name has the same ones in a corpus of any size.
         progress: Told the object and the share done.
+        workers: Processes at a time.
 
     Returns:
         The path of the manifest.
@@ -45,15 +49,14 @@ def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, f
     """
     manifest = out / MANIFEST
     _check_seed(manifest, seed)
-    config = load_config()
     entries = [_entry(k, seed) for k in range(count)]
     try:
         out.mkdir(parents=True, exist_ok=True)
         facts = {"schema": 1, "kinematify": __version__, "seed": seed, "objects": entries}
         manifest.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
-        for k, entry in enumerate(entries):
-            progress(str(entry["name"]), k / count)
-            _write_object(out, entry, config)
+        missing = [entry for entry in entries if not (out / entry["name"]).exists()]
+        for done, name in enumerate(_write_objects(out, missing, workers), start=count - len(missing) + 1):
+            progress(name, done / count)
     except OSError as error:
         raise OutputError(
             f"The corpus {out} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
@@ -63,23 +66,41 @@ def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, f
 
 
 def _entry(k: int, seed: int) -> dict[str, Any]:
-    """Object k of a corpus, the same in a corpus of any size."""
+    """Object k of a corpus; what it is like hangs on its name alone, so that new families change no other."""
     names = sorted(FAMILIES)
-    family = names[k % len(names)]
-    drawn = int(np.random.default_rng([seed, k]).integers(2**31))
-    return {"name": f"{family}_{k // len(names):03d}", "category": family, "seed": drawn}
+    family, number = names[k % len(names)], k // len(names)
+    drawn = int(np.random.default_rng([seed, zlib.crc32(family.encode()), number]).integers(2**31))
+    return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn}
 
 
-def _write_object(out: Path, entry: dict[str, Any], config: Config) -> None:
-    """Write one object, unless it is there; it appears whole or not at all."""
-    folder = out / entry["name"]
-    if folder.exists():
+def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -> Iterator[str]:
+    """Write the objects and yield the name of each that is finished; few are written in this process."""
+    if workers == 1 or len(entries) < _FEW:
+        for entry in entries:
+            yield _write_object(out, entry)
         return
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_leave_interrupts_to_the_parent)
+    try:
+        for future in as_completed([pool.submit(_write_object, out, entry) for entry in entries]):
+            yield future.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _write_object(out: Path, entry: dict[str, Any]) -> str:
+    """Write one object; it appears whole or not at all."""
+    folder = out / entry["name"]
     aside = out / f".{folder.name}.{os.getpid()}"
     shutil.rmtree(aside, ignore_errors=True)
     blueprint = build(FAMILIES[entry["category"]], {}, seed=entry["seed"], name=entry["name"])
-    write_truth(blueprint, aside, config)
+    write_truth(blueprint, aside, load_config())
     aside.rename(folder)
+    return folder.name
 
 
 def _check_seed(manifest: Path, seed: int) -> None:
