@@ -11,6 +11,8 @@ import pytest
 
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.catalogue.geometry import CHECKS
+from kinematify.validation.engine_results import EXACT
+from kinematify.validation.engines.configurations import read_poses
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.geometry.stage import run
 from kinematify.validation.report import JointSummary
@@ -206,3 +208,18 @@ def test_time_that_ran_out_is_said(tmp_path: Path) -> None:
 def test_one_body_has_nothing_to_meet(tmp_path: Path) -> None:
     results = tell(run, request_for(beam(), tmp_path)).results
     assert {result.status for result in results.values()} == {Status.SKIPPED}
+
+
+def test_contacts_are_left_for_the_comparison_with_engines(tmp_path: Path) -> None:
+    model = cabinet().with_part("drawer", limits=(-0.05, 0.3))
+    request = request_for(model, tmp_path)
+    tell(run, request)
+    left = read_poses(request.work, EXACT)
+    assert left is not None
+    assert left.contacts is not None
+    assert left.contact_depth is not None
+    names = [{left.links[first], left.links[second]} for _, first, second in left.contacts.tolist()]
+    assert names == [{"body", "drawer"}] * len(names)
+    values = left.q[left.contacts[:, 0], left.joints.index("drawer_joint")]
+    assert values.max() < -0.004  # 5 mm are free behind the drawer
+    assert left.contact_depth.max() > 0.015

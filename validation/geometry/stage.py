@@ -13,7 +13,10 @@ import numpy as np
 
 from kinematify.assembly.joint_type import JointType
 from kinematify.validation.catalogue.geometry import CHECKS
+from kinematify.validation.engine_results import EXACT
+from kinematify.validation.engines.configurations import write_poses
 from kinematify.validation.geometry import judge_motion
+from kinematify.validation.geometry.exact_contacts import exact_contacts
 from kinematify.validation.geometry.hulls import HullView, seen_by_engines
 from kinematify.validation.geometry.judge_motion import MotionCase
 from kinematify.validation.geometry.judge_rest import allowed_pairs, allowed_table, hovering, neighbours, strangers
@@ -55,6 +58,8 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     _tell_motion(recorder, looks)
     _tell_together(recorder, looks)
     _tell_hulls(recorder, looks)
+    if recorder.wants("KV604") and looks.in_time:
+        write_poses(request.work, EXACT, exact_contacts(scene, looks.overlap, request.settings))
 
 
 _IN_MOTION = ("KV310", "KV311", "KV312", "KV320", "KV321", "KV330", "KV331", "KV332")
