@@ -12,6 +12,7 @@ from kinematify.benchmark.job import JobResult
 from kinematify.benchmark.metrics import JointScore, ObjectScore
 from kinematify.benchmark.regression import find_regressions
 from kinematify.benchmark.run import BenchmarkReport, BenchmarkRequest
+from kinematify.benchmark.tables import markdown
 from kinematify.benchmark.tree_metrics import TreeDistance
 from kinematify.cli.app import run
 
@@ -101,6 +102,22 @@ def test_report_is_written_and_summed_up(
     assert "everyday" in text
     assert str(tmp_path / "out" / "doors.md") in text
     assert json.loads((tmp_path / "out" / "doors.json").read_text())["results"][0]["object"] == "door"
+
+
+def test_generated_objects_are_summed_up_by_family_worst_first():
+    runs = [
+        replace(RESULT, object="box_000", kind="procedural", category="box"),
+        replace(with_joint(angle_deg=9.0), object="toaster_000", kind="procedural", category="toaster"),
+        replace(with_joint(predicted_kind="prismatic"), object="bottle_000", kind="procedural", category="bottle"),
+    ]
+    text = markdown(report(*runs), "corpus")
+    table = text[text.index("by family, worst first") :].split("\n\n")[1]
+    assert [row.split(" | ")[0].strip("| *") for row in table.splitlines()[2:]] == [
+        "bottle",
+        "toaster",
+        "box",
+        "mean over objects",
+    ]
 
 
 def test_json_stands_alone_on_stdout(

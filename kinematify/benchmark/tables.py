@@ -106,7 +106,8 @@ def _header_lines(report: BenchmarkReport) -> list[str]:
 def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
     robots = [result for result in results if result.kind == "robot"]
     everyday = [result for result in results if result.kind == "everyday"]
-    other = [result for result in results if result.kind not in ("robot", "everyday")]
+    generated = [result for result in results if result.kind == "procedural"]
+    other = [result for result in results if result.kind not in ("robot", "everyday", "procedural")]
     sections = []
     if robots:
         sections += [_robot_table(robots), _without_gripper(robots)]
@@ -116,6 +117,8 @@ def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
             _category_table(everyday),
             _object_table("Everyday objects, each", everyday),
         ]
+    if generated:
+        sections.append(_family_table(generated))
     if other:
         sections.append(_object_table("Other objects, each", other))
     return [*sections, _condition_table(results), _type_table(results), _stage_table(results), _joint_errors(results)]
@@ -170,6 +173,22 @@ def _category_table(results: Sequence[JobResult]) -> list[str]:
     return ["### Everyday objects by category", "", *_table(["category", "joints", *_plain_titles()], rows)]
 
 
+def _family_table(results: Sequence[JobResult]) -> list[str]:
+    """Generated objects by family: first those with the most wrong types, among them the largest axis angles."""
+    groups: dict[str, list[JobResult]] = defaultdict(list)
+    for result in results:
+        groups[result.category].append(result)
+
+    def goodness(family: str) -> tuple[float, float, str]:
+        values = summarise(groups[family]).values
+        return values.get("types") or 0.0, -(values.get("angle_deg") or 0.0), family
+
+    worst_first = sorted(groups, key=goodness)
+    rows = [_row(family, groups[family]) for family in worst_first]
+    rows.append(_row("**mean over objects**", results))
+    return ["### Generated objects by family, worst first", "", *_table(["family", "joints", *_plain_titles()], rows)]
+
+
 def _object_table(title: str, results: Sequence[JobResult]) -> list[str]:
     rows = [_row(name, group) for name, group in _by_object(results).items()]
     rows.append(_row("**mean**", results))
@@ -185,7 +204,8 @@ def _condition_table(results: Sequence[JobResult]) -> list[str]:
     conditions = list(dict.fromkeys(condition_group(result.condition) for result in results))
     metrics = (("angle [deg]", "angle_deg", 2, 1.0), ("line [mm]", "line_m", 2, 1000.0), ("TED", "ted", 2, 1.0))
     titles = ["object", *(f"{title} {condition}" for title, *_ in metrics for condition in conditions)]
-    groups = {**_by_object(results), **_means_by_kind(results)}
+    singly = [result for result in results if result.kind != "procedural"]  # of those there are hundreds
+    groups = {**_by_object(singly), **_means_by_kind(results)}
     rows = []
     for name, group in groups.items():
         cells = {
