@@ -10,6 +10,7 @@ from kinematify.sources.procedural.families import (
     bucket,
     button_panel,
     cabinet,
+    clock,
     coffee_machine,
     desk_lamp,
     dishwasher,
@@ -27,6 +28,7 @@ from kinematify.sources.procedural.families import (
     microwave,
     office_chair,
     oven,
+    pen,
     pliers,
     quadruped,
     safe,
@@ -87,6 +89,8 @@ FAMILIES: dict[str, Family] = {
         stapler,
         bottle,
         bucket,
+        pen,
+        clock,
     )
 }
 """Keyed by name."""
