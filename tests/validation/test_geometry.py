@@ -210,6 +210,20 @@ def test_one_body_has_nothing_to_meet(tmp_path: Path) -> None:
     assert {result.status for result in results.values()} == {Status.SKIPPED}
 
 
+def test_a_rail_may_go_through_a_solid_carriage(tmp_path: Path) -> None:
+    rail = Part(name="rail", boxes=(Box(size=(4.0, 0.05, 0.05)),))
+    cart = Part(name="cart", boxes=(Box(size=(0.5, 0.4, 0.2)),), parent="rail", kind="prismatic", limits=(-1.7, 1.7))
+    assert found(Model(parts=(rail, cart)), tmp_path) == {}
+    stop = replace(rail, boxes=(*rail.boxes, Box(size=(0.1, 0.4, 0.2), at=(1.0, 0.0, 0.0))))
+    assert only(found(Model(parts=(stop, cart)), tmp_path), "KV312").joint == "cart_joint"
+
+
+def test_a_joint_without_limits_is_warned_of_where_it_meets_its_parent(tmp_path: Path) -> None:
+    model = cabinet().with_part("door", kind="continuous")
+    severities = {finding.severity for findings in found(model, tmp_path).values() for finding in findings}
+    assert severities == {Severity.WARNING}
+
+
 def test_contacts_are_left_for_the_comparison_with_engines(tmp_path: Path) -> None:
     model = cabinet().with_part("drawer", limits=(-0.05, 0.3))
     request = request_for(model, tmp_path)

@@ -110,6 +110,7 @@ class MotionCase:
 
 def through_parent(case: MotionCase) -> Iterator[Remark]:
     """KV310: blocked at once, to both sides or to the only one that is permitted."""
+    limited = case.sweep.travel.limited  # a file that states no limits claims nothing about how far the joint goes
     for sign, meeting in case.blocked.items():
         side, other = case.side(sign), case.side(-sign)
         if not case.early(side):
@@ -124,7 +125,10 @@ def through_parent(case: MotionCase) -> Iterator[Remark]:
                 f"{where} The other way it meets it at {case.value(case.own_first(other).first)}: blocked to both "  # type: ignore[union-attr]
                 "sides at once, the axis or its place is wrong, or the type.",
                 "Move the joint's <origin> onto the hinge or guide and align <axis> with it; if the part slides, or "
-                "turns, write that type.",
+                "turns, write that type."
+                if limited
+                else "Give the joint the limits that the contacts show; or correct its axis, place or type.",
+                severity=None if limited else Severity.WARNING,
             )
             return
         if _one_sided(case, sign):
@@ -159,7 +163,6 @@ def beyond_free_travel(case: MotionCase) -> Iterator[Remark]:
             f'Write {end}="{meeting.first:.4g}"; if the part should go farther, its axis or its place is wrong.'
             if travel.limited
             else "Give the joint limits, or correct its axis.",
-            # A file that states no limits claims nothing about the ends.
             severity=None if travel.limited else Severity.WARNING,
         )
     yield from _small_range(case)

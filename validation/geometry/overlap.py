@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
-from kinematify.validation.geometry.scene import inverse
+from kinematify.validation.geometry.scene import inverse, transformed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.validation.geometry.scene import Pair, Scene
     from kinematify.validation.geometry.solid import Solid
 
@@ -141,6 +141,7 @@ def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: flo
     for sheets in (True, False):
         met = body.meets(path[:-1].reshape(-1, 3), steps.reshape(-1, 3), sheets=sheets).reshape(steps.shape[:2])
         met &= way > grace
+        met[_pierced_at_rest(other, path, met, T[0])] = False
         if not met.any():
             continue
         crossings = np.concatenate([np.zeros((1, path.shape[1]), dtype=np.int64), np.cumsum(met, axis=0)])
@@ -154,6 +155,16 @@ def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: flo
             beyond[through] = np.maximum(beyond[through], body.beside_closed(path[through]))
     few = max(1, int(_FEW * path.shape[1]))
     return np.asarray(np.partition(beyond, -few, axis=1)[:, -few])
+
+
+def _pierced_at_rest(other: Solid, path: FloatArray, met: BoolArray, T: FloatArray) -> tuple[IntArray, IntArray]:
+    """Crossings of a wall (row, point) where the solid of `other` already goes through it at rest, as a rail does."""
+    rows, points = np.nonzero(met)
+    if not len(rows) or not len(other.shells.closed):
+        return rows[:0], points[:0]
+    at_rest = transformed(path[rows + 1, points], inverse(T[None])[0])
+    pierced = other.inside(at_rest) > 0.0
+    return rows[pierced], points[pierced]
 
 
 def _posed(points: FloatArray, T: FloatArray) -> FloatArray:
