@@ -13,8 +13,8 @@ CHECKS: tuple[Check, ...] = (
         blame=Blame.ASSET,
         verifies="Of every pair of bodies that no joint joins (links held together by fixed joints are one body), the "
         "deepest point of one in the other is measured in the exact meshes: above geometry.rest_overlap of the model's "
-        "size it is a warning, above geometry.wrong an error if the visible meshes overlap as much. A body inside another "
-        "one counts as overlap.",
+        "size it is a warning, above geometry.wrong an error if the visible meshes overlap as much. A body inside "
+        "another one counts as overlap.",
         matters="Engines push overlapping bodies apart in the first step, with whatever force it takes.",
         remedy="Correct the mesh or its origin; check that both parts hang on the right parent.",
     ),
@@ -79,9 +79,9 @@ CHECKS: tuple[Check, ...] = (
         severity=Severity.ERROR,
         blame=Blame.KINEMATICS,
         verifies="The range does not end beyond the place where the child meets its parent (by more than "
-        "geometry.late of the range): a warning, above geometry.wrong of depth an error, unless the joint has no limits, "
-        "or only the collision geometry meets. A rail may go through a solid carriage as it does at rest. A range below "
-        "geometry.small_range of the free travel is a note.",
+        "geometry.late of the range): a warning, above geometry.wrong of depth an error, unless the joint has no "
+        "limits, or only the collision geometry meets. A rail may go through a solid carriage as it does at rest. A "
+        "range below geometry.small_range of the free travel is a note.",
         matters="Controllers drive to the declared end; what they meet before it bends, breaks or explodes.",
         remedy="Write the measured end as the limit.",
     ),
