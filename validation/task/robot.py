@@ -111,8 +111,13 @@ def user_robot(
             f"The robot {urdf} has no link {tool!r}, which --tool names. Its links are "
             f"{', '.join(robot.link_by_name)}. Name the link that carries the fingers."
         )
-    fingers = _named_fingers(robot, urdf, gripper) if gripper else _found_fingers(robot, urdf, tool)
-    chain = _arm_joints(robot, tool)
+    fingers = named_fingers(robot, urdf, gripper) if gripper else found_fingers(robot, tool)
+    if not fingers:
+        raise InputError(
+            f"Nothing moves on the link {tool!r} of {urdf}, so there are no fingers that could hold a handle. Name the "
+            "link that carries the fingers with --tool, or their joints with --gripper."
+        )
+    chain = arm_chain(robot, tool)
     if not chain:
         raise InputError(
             f"No movable joint leads from the root of {urdf} to the link {tool!r}: there is no arm. Name the link at "
@@ -135,7 +140,8 @@ def user_robot(
     )
 
 
-def _arm_joints(robot: RobotDescription, tool: str) -> tuple[str, ...]:
+def arm_chain(robot: RobotDescription, tool: str) -> tuple[str, ...]:
+    """Joints that lead (no followers) between the root and a link, from the root on."""
     above, link, found = robot.joint_above, tool, []
     while link in above:
         joint = above[link]
@@ -145,7 +151,12 @@ def _arm_joints(robot: RobotDescription, tool: str) -> tuple[str, ...]:
     return tuple(reversed(found))
 
 
-def _named_fingers(robot: RobotDescription, urdf: Path, names: Sequence[str]) -> tuple[DescribedJoint, ...]:
+def named_fingers(robot: RobotDescription, urdf: Path, names: Sequence[str]) -> tuple[DescribedJoint, ...]:
+    """Return the finger joints that a user named, and their followers.
+
+    Raises:
+        InputError: The robot has no such movable joint.
+    """
     movable = {joint.name: joint for joint in robot.joints if joint.kind is not JointType.FIXED}
     for name in names:
         if name not in movable:
@@ -157,8 +168,8 @@ def _named_fingers(robot: RobotDescription, urdf: Path, names: Sequence[str]) ->
     return tuple(dict.fromkeys([*(movable[name] for name in names), *followers]))
 
 
-def _found_fingers(robot: RobotDescription, urdf: Path, tool: str) -> tuple[DescribedJoint, ...]:
-    """First movable joints below the tool link, or below the body that it is fixed to."""
+def found_fingers(robot: RobotDescription, tool: str) -> tuple[DescribedJoint, ...]:
+    """Return the first movable joints below a link, or below the body that it is fixed to."""
     top = tool
     while top in robot.joint_above and robot.joint_above[top].kind is JointType.FIXED:
         top = robot.joint_above[top].parent
@@ -170,11 +181,6 @@ def _found_fingers(robot: RobotDescription, urdf: Path, tool: str) -> tuple[Desc
                 frontier.append(joint.child)
             else:
                 found.append(joint)
-    if not found or len(frontier) > len(robot.links):
-        raise InputError(
-            f"Nothing moves on the link {tool!r} of {urdf}, so there are no fingers that could hold a handle. Name the "
-            "link that carries the fingers with --tool, or their joints with --gripper."
-        )
     return tuple(found)
 
 
@@ -214,8 +220,7 @@ class _Hand:
         approach = self._approach(np.concatenate([first, second]), closing)
         frame = np.eye(4)
         frame[:3, :3] = np.column_stack([np.cross(closing, approach), closing, approach])
-        ends = [part[part @ approach > np.quantile(part @ approach, 1.0 - _TIP_SHARE)] for part in (first, second)]
-        ends = [end if len(end) else part for end, part in zip(ends, (first, second), strict=True)]
+        ends = [_end(part, part @ approach) for part in (first, second)]
         low, high = sorted(((float((e @ closing).min()), float((e @ closing).max())) for e in ends), key=sum)
         gap = high[0] - low[1]
         if gap < _NARROW:
@@ -320,6 +325,11 @@ class _Hand:
         shapes = declared.collisions or declared.visuals
         parts = [shape.mesh.vertices @ T[:3, :3].T + T[:3, 3] for shape in shapes]
         return np.concatenate([np.empty((0, 3)), *parts])
+
+
+def _end(points: FloatArray, along: FloatArray) -> FloatArray:
+    """Return those of the points (n, 3) that are farthest along a direction."""
+    return np.asarray(points[along >= along.max() - _TIP_SHARE * np.ptp(along)])
 
 
 def _write_copy(document: etree._Element, model: DeclaredModel, path: Path, tool: str, frame: FloatArray) -> None:

@@ -136,3 +136,5 @@ class TaskSettings(StageConfig):
     grasp: GraspSettings
     execution: ExecutionSettings
     film: FilmSettings
+    srdf_rows: int
+    """Configurations in which pairs of links are looked at for an SRDF."""

@@ -1,0 +1,149 @@
+"""Planned motions in MuJoCo and PyBullet: what can be done is done, and what cannot is noticed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from kinematify.validation.task import execute_mujoco, execute_pybullet
+from kinematify.validation.task.execute import Execution, Hold, Loaded, load
+from kinematify.validation.task.film import write_film
+from kinematify.validation.task.motion import Motion, timed
+from tests.validation.task import furniture
+
+SETTINGS = furniture.SETTINGS
+EXECUTION = SETTINGS.task.execution
+
+
+@pytest.fixture(scope="module")
+def drawer(tmp_path_factory: pytest.TempPathFactory) -> tuple[Loaded, Path]:
+    folder = tmp_path_factory.mktemp("drawer")
+    urdf = furniture.write_drawer_cabinet(folder / "c.urdf")
+    return load(furniture.planned(folder, urdf, "slide", 0.25, (-0.75, -0.1, 0.0)), folder, SETTINGS.prepare), folder
+
+
+@pytest.fixture(scope="module")
+def door(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
+    folder = tmp_path_factory.mktemp("door")
+    urdf = furniture.write_door_cabinet(folder / "c.urdf")
+    return load(furniture.planned(folder, urdf, "hinge", -1.3, (-0.85, -0.1, 0.0)), folder, SETTINGS.prepare)
+
+
+@pytest.fixture(scope="module")
+def pulled(drawer: tuple[Loaded, Path]) -> Execution:
+    return execute_mujoco.execute(drawer[0], EXECUTION, hold=Hold.CONTACT)
+
+
+def changed(loaded: Loaded, **changes: object) -> Loaded:
+    """The same models with another motion."""
+    return replace(loaded, motion=replace(loaded.motion, **changes))
+
+
+def elsewhere(motion: Motion, T: np.ndarray) -> dict[str, np.ndarray]:
+    """Both models moved together."""
+    return {"T_world_base": T @ motion.T_world_base, "T_world_object": T @ motion.T_world_object}
+
+
+def test_timing_keeps_the_speed_limits_and_ends_at_rest(drawer: tuple[Loaded, Path]) -> None:
+    loaded = drawer[0]
+    fastest = loaded.fastest(EXECUTION)
+    reference = timed(loaded.motion, fastest, EXECUTION, 0.002)
+    assert (np.abs(reference.speed).max(axis=0) <= EXECUTION.speed_share * fastest * 1.05).all()
+    assert reference.arm[0] == pytest.approx(loaded.motion.reach[0])
+    assert reference.arm[-1] == pytest.approx(loaded.motion.pull[-1])
+    assert reference.arm[reference.grasped] == pytest.approx(loaded.motion.pull[0])
+    assert np.abs(reference.speed[-1]).max() == pytest.approx(0.0, abs=1e-9)
+    assert 0 < reference.grasped < reference.pulls < reference.arrives < reference.steps
+
+
+def test_a_reach_that_is_already_there_takes_no_time(drawer: tuple[Loaded, Path]) -> None:
+    motion = drawer[0].motion
+    reference = timed(replace(motion, reach=motion.reach[-1:]), np.ones(7), EXECUTION, 0.002)
+    assert reference.grasped == 1
+
+
+@pytest.mark.parametrize("hold", list(Hold))
+def test_mujoco_opens_the_drawer(drawer: tuple[Loaded, Path], hold: Hold) -> None:
+    result = execute_mujoco.execute(drawer[0], EXECUTION, hold=hold)
+    assert result.success, result.reason
+    assert result.share == pytest.approx(1.0, abs=0.03)
+    assert result.depth < EXECUTION.depth
+
+
+@pytest.mark.parametrize("hold", list(Hold))
+def test_mujoco_opens_the_door(door: Loaded, hold: Hold) -> None:
+    result = execute_mujoco.execute(door, EXECUTION, hold=hold)
+    assert result.success, result.reason
+    assert result.share == pytest.approx(1.0, abs=0.03)
+
+
+def test_pybullet_agrees(drawer: tuple[Loaded, Path], door: Loaded) -> None:
+    for loaded in (drawer[0], door):
+        result = execute_pybullet.execute(loaded, EXECUTION)
+        assert result.success, result.reason
+        assert result.share == pytest.approx(1.0, abs=0.03)
+
+
+def test_where_the_world_has_its_origin_plays_no_part(door: Loaded) -> None:
+    T = np.eye(4)
+    T[:2, :2], T[:2, 3] = [[0.0, -1.0], [1.0, 0.0]], [3.0, -2.0]
+    result = execute_mujoco.execute(changed(door, **elsewhere(door.motion, T)), EXECUTION, hold=Hold.WELD)
+    assert result.success, result.reason
+
+
+def test_a_joint_that_is_locked_does_not_open(drawer: tuple[Loaded, Path]) -> None:
+    """The engines are given the object, not the plan: a pull across the rail must fail in both."""
+    loaded, folder = drawer
+    work = folder / "wrong"
+    work.mkdir(exist_ok=True)
+    urdf = furniture.write_drawer_cabinet(work / "c.urdf", axis="0 1 0")
+    wrong = load(replace(loaded.motion, object_urdf=urdf), work, SETTINGS.prepare)
+    for result in (
+        execute_mujoco.execute(wrong, EXECUTION, hold=Hold.WELD),
+        execute_pybullet.execute(wrong, EXECUTION),
+    ):
+        assert not result.success
+        assert "stops" in (result.reason or "")
+
+
+def test_a_weak_grip_slips(drawer: tuple[Loaded, Path]) -> None:
+    loaded, folder = drawer
+    heavy = folder / "heavy"
+    heavy.mkdir(exist_ok=True)
+    text = loaded.motion.object_urdf.read_text().replace("<limit", '<dynamics damping="0" friction="400"/><limit')
+    (heavy / "c.urdf").write_text(text)
+    stuck = load(replace(loaded.motion, object_urdf=heavy / "c.urdf"), heavy, SETTINGS.prepare)
+    assert not execute_mujoco.execute(stuck, EXECUTION, hold=Hold.CONTACT).success
+
+
+def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Path]) -> None:
+    """The object stands 6 cm farther in front than it was planned: fingers and palm run into the front."""
+    loaded = drawer[0]
+    T = loaded.motion.T_world_object.copy()
+    T[:3, 3] += [-0.06, 0.0, 0.0]
+    result = execute_mujoco.execute(changed(loaded, T_world_object=T), EXECUTION, hold=Hold.CONTACT)
+    assert not result.success or result.share < 0.9 or result.depth > 0.0 or result.tracking > 0.02
+
+
+def test_runs_repeat(drawer: tuple[Loaded, Path], pulled: Execution) -> None:
+    again = execute_mujoco.execute(drawer[0], EXECUTION, hold=Hold.CONTACT)
+    assert again.share == pulled.share
+    assert again.frames[-1].robot == pulled.frames[-1].robot
+
+
+def test_the_film_moves_and_the_still_has_three_panels(drawer: tuple[Loaded, Path], pulled: Execution) -> None:
+    loaded, folder = drawer
+    quick = SETTINGS.task.film.model_copy(update={"frames": 4, "width": 120, "height": 100, "still_width": 100})
+    write_film(loaded, pulled, folder / "film.gif", folder / "still.png", quick)
+    with Image.open(folder / "film.gif") as film:
+        assert film.n_frames == 4
+        assert film.size == (120, 100)
+        first = np.asarray(film.convert("RGB"))
+        film.seek(3)
+        assert (first != np.asarray(film.convert("RGB"))).mean() > 0.01
+    with Image.open(folder / "still.png") as still:
+        assert still.width == 300

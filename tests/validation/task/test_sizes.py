@@ -1,0 +1,124 @@
+"""Real sizes by category, and copies of objects at another size."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.errors import InputError
+from kinematify.validation.read import read_model
+from kinematify.validation.task.copies import write_scaled
+from kinematify.validation.task.sizes import SIZES, category_of, is_normalised, sizing
+from tests.validation.task import furniture
+
+BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[4] / "shared" / "bench"))
+
+
+def box_of(extent: float, *, stands: bool = True) -> np.ndarray:
+    """Box of a cube that stands on the floor or is centred at the origin."""
+    low = -0.5 * extent
+    return np.array([[low, low, 0.0 if stands else low], [-low, -low, extent if stands else -low]])
+
+
+@pytest.mark.parametrize(
+    ("path", "name", "category"),
+    [
+        ("out/model.urdf", "drawer_cabinet_17", "drawer cabinet"),
+        ("everyday/washing_machine_103480/model.urdf", "partnet", "washing machine"),
+        ("cabinets/model.urdf", "robot", "cabinet"),
+        ("x/MicroWave.urdf", "robot", None),
+        ("x/microwaves.urdf", "robot", "microwave"),
+        ("x/KitchenPot.urdf", "robot", "kitchen pot"),
+        ("x/model.urdf", "safety", None),
+        ("x/model.urdf", "", None),
+    ],
+)
+def test_categories_are_whole_words(path: str, name: str, category: str | None) -> None:
+    assert category_of(Path("/nowhere/at/all") / path, name) == category
+
+
+def test_sizes_are_ordered() -> None:
+    assert all(0.0 < size.least < size.common < size.most for size in SIZES.values())
+
+
+def test_a_plausible_size_stays() -> None:
+    assert sizing(Path("/a/b/c.urdf"), "oven", box_of(0.6)).factor == 1.0
+    assert sizing(Path("/a/b/c.urdf"), "thing", box_of(0.6)).factor == 1.0
+
+
+def test_millimetres_are_noticed() -> None:
+    assert 400.0 * sizing(Path("/a/b/c.urdf"), "microwave", box_of(400.0)).factor == pytest.approx(0.52)
+    with pytest.raises(InputError, match=r"--scale 0\.001"):
+        sizing(Path("/a/b/c.urdf"), "thing", box_of(400.0))
+
+
+def test_unit_shapes_are_brought_to_their_real_size() -> None:
+    box = box_of(1.2, stands=False)
+    assert is_normalised(box)
+    assert not is_normalised(box_of(1.2))
+    assert 1.2 * sizing(Path("/a/b/c.urdf"), "stapler", box).factor == pytest.approx(0.16)
+    assert "normalised" in sizing(Path("/a/b/c.urdf"), "cabinet", box).reason
+
+
+@pytest.mark.parametrize("scale", [0.0, -1.0, float("inf"), float("nan")])
+def test_a_scale_must_be_a_factor(scale: float) -> None:
+    with pytest.raises(InputError, match="--scale"):
+        sizing(Path("/a/b/c.urdf"), "cabinet", box_of(1.0), scale=scale)
+
+
+def test_the_scale_of_the_user_wins() -> None:
+    assert sizing(Path("/a/b/c.urdf"), "cabinet", box_of(1.2, stands=False), scale=0.5).factor == 0.5
+
+
+LINKAGE = """<robot name="r">
+<link name="a"><inertial><origin xyz="0.1 0 0"/><mass value="2"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><origin xyz="0 0.2 0"/><geometry><cylinder radius="0.1" length="0.4"/></geometry></visual></link>
+<link name="b"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
+<link name="c"><visual><geometry><box size="0.1 0.2 0.3"/></geometry></visual></link>
+<joint name="turn" type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0" rpy="0 0 1"/>
+<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="slide" type="prismatic"><parent link="b"/><child link="c"/><origin xyz="0 0 0.5"/>
+<axis xyz="1 0 0"/><limit lower="0" upper="0.4" effort="1" velocity="1"/>
+<mimic joint="turn" multiplier="0.3" offset="0.1"/>
+</joint></robot>"""
+
+
+def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(LINKAGE)
+    write_scaled(tmp_path / "r.urdf", 0.25, tmp_path / "s.urdf")
+    first, second = (read_model(tmp_path / f"{name}.urdf") for name in ("r", "s"))
+    for angle in (-0.7, 0.0, 0.9):
+        here, there = (forward_kinematics(model.kinematics, {"turn": angle}) for model in (first, second))
+        for link in here:
+            assert there[link][:3, 3] == pytest.approx(0.25 * here[link][:3, 3])
+            assert there[link][:3, :3] == pytest.approx(here[link][:3, :3])
+    assert second.joint_by_name["slide"].joint.upper == pytest.approx(0.1)
+    assert second.joint_by_name["turn"].joint.upper == pytest.approx(1.0)
+    inertial = second.link_by_name["a"].inertial
+    assert inertial is not None
+    assert inertial.mass == pytest.approx(2.0 / 64.0)
+    assert inertial.tensor[0, 0] == pytest.approx(0.1 / 1024.0)
+    for link in ("a", "b", "c"):
+        one, other = (model.link_by_name[link].visuals[0].mesh.vertices for model in (first, second))
+        assert other == pytest.approx(0.25 * one, abs=1e-12)
+
+
+def test_factor_one_changes_no_number(tmp_path: Path) -> None:
+    urdf = furniture.write_door_cabinet(tmp_path / "c.urdf")
+    write_scaled(urdf, 1.0, tmp_path / "s.urdf")
+    assert read_model(tmp_path / "s.urdf").joint_by_name["hinge"].joint.lower == -1.4
+
+
+@pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")
+def test_meshes_of_a_scaled_copy_are_found_and_scaled(tmp_path: Path) -> None:
+    urdf = BENCH / "everyday" / "oven_7138" / "model.urdf"
+    write_scaled(urdf, 0.5, tmp_path / "s.urdf")
+    first, second = read_model(urdf), read_model(tmp_path / "s.urdf")
+    for one, other in zip(first.links, second.links, strict=True):
+        for a, b in zip(one.visuals, other.visuals, strict=True):
+            assert b.mesh.vertices == pytest.approx(0.5 * a.mesh.vertices, abs=1e-9)
