@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kinematify.config import StageConfig
+from kinematify.validation.task.plan_settings import PlanSettings
 
 
 class GraspSettings(StageConfig):
@@ -134,6 +135,7 @@ class TaskSettings(StageConfig):
     """KV7xx: tasks of a robot."""
 
     grasp: GraspSettings
+    plan: PlanSettings
     execution: ExecutionSettings
     film: FilmSettings
     srdf_rows: int

@@ -1,0 +1,135 @@
+"""Planning on the constraint manifold of arm and object (OMPL): the hand holds the part all the way.
+
+States are the arm's joints and the share of the object's joint that is open; the constraint says that the tool is where
+the joint has taken the grasp. Of OMPL's spaces the atlas is used: the projected one takes thousands of times longer,
+and the tangent bundle leaves the manifold.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from ompl import base as ob
+from ompl import geometric as og
+from ompl import util as ou
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.validation.task.place import Place
+    from kinematify.validation.task.pull import Puller
+
+_HALF_METRES = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+_DELTA = 1e-4  # of the share, for its derivative
+_SEEDED: list[int] = []
+
+
+def quiet_and_seeded(seed: int) -> None:
+    """Silence OMPL and seed it, once in a process: it refuses a second seed."""
+    if not _SEEDED:
+        ou.setLogLevel(ou.LogLevel.LOG_NONE)
+        ou.RNG.setSeed(seed + 1)
+        _SEEDED.append(seed)
+
+
+class Counter:
+    """Ends a search after so many steps of work: unlike a clock, it ends at the same place on any machine."""
+
+    def __init__(self, most: int) -> None:
+        """Begin at none."""
+        self.count, self._most = 0, most
+
+    def condition(self) -> ob.PlannerTerminationCondition:
+        """What OMPL asks whether to go on."""
+        return ob.PlannerTerminationCondition(lambda: bool(self.count > self._most))
+
+
+class _HoldsOn(ob.Constraint):  # type: ignore[misc]
+    """The tool is where the joint has taken the grasp: 6 equations in the arm's joints and the open share."""
+
+    def __init__(self, puller: Puller, targets: FloatArray) -> None:
+        super().__init__(puller.arm.dof + 1, 6)
+        self._puller, self._targets = puller, targets
+        self.counter = Counter(puller.settings.manifold_checks)
+
+    def function(self, x: FloatArray, out: FloatArray) -> None:
+        self.counter.count += 1
+        out[:] = self.residual(np.asarray(x))
+
+    def jacobian(self, x: FloatArray, out: FloatArray) -> None:
+        x = np.asarray(x)
+        out[:, :-1] = -_HALF_METRES[:, None] * self._puller.arm.jacobian(x[:-1])
+        ahead, behind = (x + step * np.eye(len(x))[-1] for step in (_DELTA, -_DELTA))
+        out[:, -1] = (self.residual(ahead) - self.residual(behind)) / (2.0 * _DELTA)
+
+    def residual(self, x: FloatArray) -> FloatArray:
+        target = self._puller.target_at(self._targets, float(x[-1]))
+        return np.asarray(_HALF_METRES * self._puller.arm.error(x[:-1], target))
+
+
+def search_manifold(
+    puller: Puller, place: Place, start: FloatArray, goals: Sequence[FloatArray], *, seed: int
+) -> FloatArray | None:
+    """Search a way from a state to one of several others.
+
+    Args:
+        puller: Arm, collision world and thresholds.
+        place: Place and grasp; the world is posed for it.
+        start: Arm joints and open share, on the manifold, shape (dof + 1,).
+        goals: The same at the end, the first that is reached counts.
+        seed: Of OMPL.
+
+    Returns:
+        States from start to goal that keep the constraint, in small steps, shape (n, dof + 1); None if none was found.
+    """
+    quiet_and_seeded(seed)
+    constraint = _HoldsOn(puller, puller.targets(place))
+    for goal in goals[:1]:
+        states = _solved(puller, place, constraint, start, goal)
+        if states is not None and _keeps(constraint, states, puller.settings.residual):
+            return states
+    return None
+
+
+def _solved(
+    puller: Puller, place: Place, constraint: _HoldsOn, start: FloatArray, goal: FloatArray
+) -> FloatArray | None:
+    arm = puller.arm
+    ambient = ob.RealVectorStateSpace(arm.dof + 1)
+    bounds = ob.RealVectorBounds(arm.dof + 1)
+    for k, (low, high) in enumerate(zip([*arm.lower, -0.01], [*arm.upper, 1.01], strict=True)):
+        bounds.setLow(k, float(low))
+        bounds.setHigh(k, float(high))
+    ambient.setBounds(bounds)
+    space = ob.AtlasStateSpace(ambient, constraint)
+    setup = og.SimpleSetup(ob.ConstrainedSpaceInformation(space))
+
+    def valid(state: ob.State) -> bool:
+        constraint.counter.count += 1
+        x = np.array([state[k] for k in range(arm.dof + 1)])
+        return bool(puller.free_at(x[:-1], float(x[-1]), place))
+
+    setup.setStateValidityChecker(valid)
+    ends = []
+    for values in (start, goal):
+        state = space.allocState()
+        state.copy(values)
+        space.anchorChart(state)
+        ends.append(state)
+    setup.setStartAndGoalStates(*ends)
+    setup.setPlanner(og.RRTConnect(setup.getSpaceInformation()))
+    setup.solve(constraint.counter.condition())
+    if not setup.haveExactSolutionPath():
+        return None
+    path = setup.getSolutionPath()
+    path.interpolate()
+    rows = [[state[k] for k in range(arm.dof + 1)] for state in path.getStates()]
+    return np.array(rows)
+
+
+def _keeps(constraint: _HoldsOn, states: FloatArray, residual: float) -> bool:
+    """Whether the states and the middles between them keep the constraint."""
+    middles = 0.5 * (states[1:] + states[:-1])
+    return all(float(np.linalg.norm(constraint.residual(x))) <= residual for x in (*states, *middles))

@@ -1,0 +1,309 @@
+"""One joint of an object opened by a robot, as a plan: grasp, place, way to the grasp, pull, and what stops it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.validation.geometry.overlap import Overlap
+from kinematify.validation.geometry.rest import Allowance
+from kinematify.validation.geometry.sweep import Sweeper
+from kinematify.validation.task.collision import CollisionWorld
+from kinematify.validation.task.grasp import moved_bodies, opening_sign, search_grasps
+from kinematify.validation.task.place import Places, object_box, object_motion
+from kinematify.validation.task.pull import ITSELF, Pull, Puller, Stop
+from kinematify.validation.task.reach import plan_reach
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.validation.engines.mechanism import Travel
+    from kinematify.validation.geometry.scene import Scene
+    from kinematify.validation.task.grasp import GraspReport
+    from kinematify.validation.task.kinematics import Arm
+    from kinematify.validation.task.place import Place
+    from kinematify.validation.task.settings import TaskSettings
+
+
+class Failure(StrEnum):
+    """At which step a plan ended; nothing failed where it is None."""
+
+    NO_WAY = "no way"
+    """The joint moves nothing, or hardly at all."""
+    NO_GRASP = "no grasp"
+    NO_REACH = "no reach"
+    """No place from which the arm's kinematics reach the grasp."""
+    NO_PATH = "no path"
+    """The grasp is reached, but no way free of collisions leads there."""
+    STOPS = "stops"
+    """The arm does not get far enough."""
+    JAMS = "jams"
+    """The object itself blocks the joint."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PullPlan:
+    """What became of the plan for one joint."""
+
+    joint: str
+    turns: bool
+    grasps: GraspReport | None
+    place: Place | None
+    T_world_object: FloatArray
+    reach: FloatArray | None
+    """Arm joints from home to the grasp [rad or m], shape (n, dof)."""
+    pull: FloatArray | None
+    """Arm joints from the grasp on [rad or m], shape (m, dof)."""
+    opened: FloatArray | None
+    """Value of the object's joint in each row of `pull` [rad or m], shape (m,)."""
+    fraction: float
+    """How much of the declared range opens, in [0, 1]."""
+    free: float
+    """How much of the declared range the object itself leaves free, in [0, 1]."""
+    failure: Failure | None
+    stop: Stop | None
+    """What ends the pull; None if it is complete."""
+    words: str
+    """Why it failed, a clause; empty if it did not."""
+    tried: int
+    """Pairs of place and grasp that were looked at closely."""
+    searched: bool
+    """The pull comes from the search on the constraint manifold."""
+    manipulability: float
+    """Smallest along the pull; 0 without one."""
+    on_column: bool
+    """The robot stands on a column of the height of its root link."""
+    seconds: float
+
+
+@dataclass(kw_only=True)
+class _Tried:
+    """What the search remembers."""
+
+    pulls: list[Pull] = field(default_factory=list)
+    stops: dict[str, int] = field(default_factory=dict)
+    words: dict[str, Stop] = field(default_factory=dict)
+    ways: dict[str, int] = field(default_factory=dict)
+    count: int = 0
+
+    def note(self, stop: Stop) -> None:
+        self.stops[stop.kind] = self.stops.get(stop.kind, 0) + 1
+        self.words.setdefault(stop.kind, stop)
+
+    @property
+    def usual(self) -> Stop | None:
+        """What stopped it most often."""
+        return self.words[max(self.stops, key=lambda kind: self.stops[kind])] if self.stops else None
+
+
+def plan_pull(
+    arm: Arm,
+    scene: Scene,
+    joint: str,
+    settings: TaskSettings,
+    *,
+    point: FloatArray | None = None,
+    base: FloatArray | None = None,
+    seed: int = 0,
+) -> PullPlan:
+    """Plan how a robot opens one joint of an object that stands on the floor.
+
+    Args:
+        arm: The robot.
+        scene: The object at its real size, in metres.
+        joint: Joint that leads.
+        settings: Thresholds of grasps and plans.
+        point: Hold the part there, frame of the object's root link [m], shape (3,); anywhere if None.
+        base: Pose of the robot's root link in the world, shape (4, 4); searched if None.
+        seed: Of all that is random.
+
+    Raises:
+        InputError: The object has no such joint, or `point` is not on what it moves.
+    """
+    return _Planning(arm, scene, joint, settings, point=point, base=base, seed=seed).run()
+
+
+def pull_end(travel: Travel, settings: TaskSettings) -> float:
+    """Value at which a joint counts as open: the farther end of its range from rest [rad or m]."""
+    if not travel.limited:
+        return travel.rest + settings.plan.range_turn
+    return travel.upper if opening_sign(travel) > 0.0 else travel.lower
+
+
+class _Planning:
+    """One joint."""
+
+    def __init__(
+        self, arm: Arm, scene: Scene, joint: str, settings: TaskSettings, *, point: FloatArray | None,
+        base: FloatArray | None, seed: int,
+    ) -> None:  # fmt: skip
+        self._arm, self._scene, self._joint = arm, scene, joint
+        self._settings, self._plan, self._seed = settings, settings.plan, seed
+        self._point, self._base = point, base
+        self._started = time.process_time()
+        moved_bodies(scene, joint)
+        self._leader = [travel.joint for travel in scene.travels].index(joint)
+        self._travel = scene.travels[self._leader]
+        self._motion = object_motion(scene, joint, pull_end(self._travel, settings), self._plan.steps)
+        self._places = Places(arm, self._motion, object_box(scene), self._plan)
+        self._grasps: GraspReport | None = None
+        self._tried = _Tried()
+        self._free, self._own_stop = 1.0, ""
+
+    def run(self) -> PullPlan:
+        """Look at the object first, then at grasps, then at places."""
+        own, carried = moved_bodies(self._scene, self._joint)
+        if self._way([*own, *carried]) < self._plan.least_way:
+            words = f"it moves what it carries by less than {self._plan.least_way * 1e3:.0f} mm"
+            return self._ended(Failure.NO_WAY, words)
+        self._free, self._own_stop = self._own_freedom()
+        self._grasps = search_grasps(
+            self._scene, self._joint, self._arm.robot.opening, settings=self._settings.grasp, point=self._point,
+            seed=self._seed,
+        )  # fmt: skip
+        if not self._grasps.grasps:
+            return self._ended(Failure.NO_GRASP, self._grasps.reason or "")
+        world = CollisionWorld(self._arm, self._scene, self._joint, self._plan)
+        puller = Puller(self._arm, world, self._motion, self._plan)
+        return self._search(world, puller)
+
+    def _way(self, bodies: list[int]) -> float:
+        """Longest way of the middle of a moved part's corners [m]."""
+        ways = [0.0]
+        for body in bodies:
+            corners = np.concatenate(self._scene.bodies[body].shapes)
+            ends = [T[:3, :3] @ corners.T + T[:3, 3:] for T in self._motion.body_poses[[0, -1], body]]
+            ways.append(float(np.linalg.norm(ends[1] - ends[0], axis=0).max()))
+        return max(ways)
+
+    def _own_freedom(self) -> tuple[float, str]:
+        """Share of the range that the object itself leaves free, and who blocks the rest."""
+        overlap = Overlap(self._scene)
+        sweep = Sweeper(self._scene, overlap, Allowance(self._scene, overlap)).sweep(self._leader)
+        values = self._motion.values
+        side = sweep.sides[0 if values[-1] < values[0] else 1]
+        meeting = next((m for m in side.meetings if m.inside), None)
+        if meeting is None:
+            return 1.0, ""
+        first, second = self._scene.name(meeting.pair)
+        share = (meeting.first - values[0]) / (values[-1] - values[0])
+        return float(np.clip(share, 0.0, 1.0)), f"{first} meets {second}"
+
+    def _search(self, world: CollisionWorld, puller: Puller) -> PullPlan:
+        """Try the most promising places until one lets the arm open the joint."""
+        assert self._grasps is not None
+        places = self._places.ranked(self._grasps.grasps, self._base)
+        column = self._places.on_column
+        best: tuple[Pull, FloatArray] | None = None
+        for pull in self._pulls(puller, places, column=column):
+            if best is not None and pull.fraction <= best[0].fraction:
+                continue
+            way = self._way_to(world, pull, column=column)
+            if way is None:
+                continue
+            best = (pull, way)
+            if pull.fraction >= self._plan.opened:
+                break
+        if best is None:
+            return self._nothing()
+        return self._told(*best)
+
+    def _pulls(self, puller: Puller, places: list[Place], *, column: bool) -> Iterator[Pull]:
+        """Pulls as they are found: followed from the middle, then searched for, then followed as far as it goes."""
+        partial: list[Pull] = []
+        for from_start, share in ((False, 0.6), (True, 1.0)):
+            chosen = places if not from_start else places[: max(8, len(places) // 4)]
+            for place in chosen:
+                if self._spent > share * self._plan.seconds:
+                    break
+                self._tried.count += 1
+                found = puller.follow(place, column=column, from_start=from_start)
+                if isinstance(found, Stop):
+                    self._tried.note(found)
+                    continue
+                if found.stop is None or found.fraction >= self._plan.opened:
+                    yield found
+                else:
+                    self._tried.note(found.stop)
+                    partial.append(found)
+            if not from_start:
+                yield from self._searched(puller, partial, column=column)
+        yield from sorted(partial, key=lambda pull: -pull.fraction)[:4]
+
+    def _searched(self, puller: Puller, partial: list[Pull], *, column: bool) -> Iterator[Pull]:
+        for pull in sorted(partial, key=lambda pull: -pull.fraction)[:2]:
+            if self._spent > 0.8 * self._plan.seconds:
+                return
+            found = puller.search(pull, column=column, seed=self._seed)
+            if found.searched:
+                yield found
+
+    def _way_to(self, world: CollisionWorld, pull: Pull, *, column: bool) -> FloatArray | None:
+        if self._spent > self._plan.seconds:
+            return None
+        world.place(pull.place.T_world_base, self._motion.T_world_object, column=column)
+        world.pose_object(self._motion.body_poses[0], pull.place.grasp.spread)
+        reach = plan_reach(self._arm, world, pull.path[0], self._plan, seed=self._seed)
+        if reach.reason is not None:
+            self._tried.pulls.append(pull)
+            self._tried.ways[reach.reason] = self._tried.ways.get(reach.reason, 0) + 1
+        return reach.path
+
+    def _nothing(self) -> PullPlan:
+        """No way to any grasp."""
+        if self._free < self._plan.opened and self._tried.usual is None:
+            return self._ended(Failure.JAMS, self._own_stop)
+        if self._tried.ways:
+            return self._ended(Failure.NO_PATH, max(self._tried.ways, key=lambda why: self._tried.ways[why]))
+        usual = self._tried.usual
+        late = " before time ran out" if self._spent > self._plan.seconds else ""
+        words = f"none of {self._tried.count} places and grasps{late}" + (f"; mostly {usual.words}" if usual else "")
+        return self._ended(Failure.NO_REACH, words, stop=usual)
+
+    def _told(self, pull: Pull, way: FloatArray) -> PullPlan:
+        fraction = min(pull.fraction, self._free)
+        failure, words, stop = None, "", pull.stop
+        if self._free < self._plan.opened:
+            failure, words = Failure.JAMS, self._own_stop
+            stop = Stop(kind=ITSELF, words=self._own_stop)
+        elif pull.fraction < self._plan.opened:
+            failure, words = Failure.STOPS, pull.stop.words if pull.stop else ""
+        whole = self._motion.values[-1] - self._motion.values[0]
+        keep = (pull.values - self._motion.values[0]) / whole <= max(fraction, 1e-9) + 1e-9
+        keep[:2] = True
+        return self._ended(failure, words, stop=stop, pull=pull, way=way, keep=keep, fraction=fraction)
+
+    def _ended(
+        self, failure: Failure | None, words: str, *, stop: Stop | None = None, pull: Pull | None = None,
+        way: FloatArray | None = None, keep: FloatArray | None = None, fraction: float = 0.0,
+    ) -> PullPlan:  # fmt: skip
+        path = None if pull is None else pull.path[keep]
+        return PullPlan(
+            joint=self._joint,
+            turns=self._travel.turns,
+            grasps=self._grasps,
+            place=None if pull is None else pull.place,
+            T_world_object=self._motion.T_world_object,
+            reach=way,
+            pull=path,
+            opened=None if pull is None else pull.values[keep],
+            fraction=fraction,
+            free=self._free,
+            failure=failure,
+            stop=stop,
+            words=words,
+            tried=self._tried.count,
+            searched=pull is not None and pull.searched,
+            manipulability=min((self._arm.manipulability(q) for q in path), default=0.0) if path is not None else 0.0,
+            on_column=self._places.on_column,
+            seconds=self._spent,
+        )
+
+    @property
+    def _spent(self) -> float:
+        return time.process_time() - self._started

@@ -1,0 +1,188 @@
+"""The pull: hand and part are one body, and the object's own joint says where the hand must be at every moment.
+
+A pull is followed by inverse kinematics from pose to pose, out of the middle of the range to both ends: what freedom
+the arm has left keeps it away from its limits. Where that runs into something, OMPL searches the constraint manifold
+of arm and joint (`manifold`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pinocchio as pin
+
+from kinematify.validation.task.manifold import search_manifold
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.validation.task.collision import CollisionWorld, Hit
+    from kinematify.validation.task.kinematics import Arm
+    from kinematify.validation.task.place import ObjectMotion, Place
+    from kinematify.validation.task.plan_settings import PlanSettings
+
+LIMIT, SINGULAR, JUMP, SELF, OBJECT, FLOOR, UNREACHED, ITSELF = (
+    "arm limit", "singularity", "jump", "self-collision", "arm against object", "arm against floor", "out of reach",
+    "object against itself",
+)  # fmt: skip
+_KINDS = {"self": SELF, "object": OBJECT, "floor": FLOOR}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop:
+    """What ends a pull."""
+
+    kind: str
+    """One of the names of this module."""
+    words: str
+    """The same as words that follow "because"."""
+    pair: tuple[str, str] | None = None
+    """Who collides, the robot's link first."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pull:
+    """How far the arm can take the part from one place."""
+
+    place: Place
+    path: FloatArray
+    """Arm joints [rad or m], shape (m, dof)."""
+    values: FloatArray
+    """Of the object's joint, from rest on [rad or m], shape (m,)."""
+    fraction: float
+    """Share of the range."""
+    stop: Stop | None
+    """What ends it; None if it is complete."""
+    searched: bool = False
+    """It comes from the search on the manifold."""
+
+
+class Puller:
+    """Follows one joint of the object with one arm."""
+
+    def __init__(self, arm: Arm, world: CollisionWorld, motion: ObjectMotion, settings: PlanSettings) -> None:
+        """Keep what is given."""
+        self._arm, self._world, self._motion, self._settings = arm, world, motion, settings
+
+    def targets(self, place: Place) -> FloatArray:
+        """Poses of the tool in the frame of the robot's root, shape (k, 4, 4)."""
+        return np.asarray(np.linalg.inv(place.T_world_base) @ self._motion.link_poses @ place.T_link_tool)
+
+    def follow(self, place: Place, *, column: bool, from_start: bool = False) -> Pull | Stop:
+        """Follow the joint as far as the arm can from a place.
+
+        Args:
+            place: Place and grasp.
+            column: The robot stands on a column.
+            from_start: Begin at rest instead of in the middle: goes farther where not all can be reached.
+
+        Returns:
+            The pull that goes farthest, or what keeps it from beginning.
+        """
+        self._world.place(place.T_world_base, self._motion.T_world_object, column=column)
+        targets = self.targets(place)
+        anchor = 0 if from_start else len(targets) // 2
+        best: Pull | None = None
+        stop: Stop | None = None
+        for q in self._arm.solve_anew(targets[anchor], self._settings.restarts):
+            stop = self._blocked(q, anchor, place)
+            if stop is not None:
+                continue
+            back, stop = self._continued(q, targets, range(anchor - 1, -1, -1), place)
+            if stop is not None:
+                continue
+            on, stop = self._continued(q, targets, range(anchor + 1, len(targets)), place)
+            pull = self._pull(place, np.array([*reversed(back), q, *on]), stop)
+            if best is None or pull.fraction > best.fraction:
+                best = pull
+            if pull.stop is None:
+                break
+        return best or stop or Stop(kind=UNREACHED, words="its inverse kinematics finds no posture at the grasp")
+
+    def search(self, pull: Pull, *, column: bool, seed: int) -> Pull:
+        """Look for another way to the end of the joint on the constraint manifold, where following fell short."""
+        place = pull.place
+        self._world.place(place.T_world_base, self._motion.T_world_object, column=column)
+        targets = self.targets(place)
+        last = len(targets) - 1
+        ends = [q for q in self._arm.solve_anew(targets[-1], self._settings.restarts) if not self._hit(q, last, place)]
+        if not ends:
+            return pull
+        start = np.append(pull.path[0], 0.0)
+        goals = [np.append(q, 1.0) for q in ends]
+        found = search_manifold(self, place, start, goals, seed=seed)
+        if found is None:
+            return pull
+        values = np.interp(found[:, -1], np.linspace(0.0, 1.0, len(targets)), self._motion.values)
+        return replace(pull, path=found[:, :-1], values=values, fraction=1.0, stop=None, searched=True)
+
+    @property
+    def arm(self) -> Arm:
+        """The robot."""
+        return self._arm
+
+    @property
+    def settings(self) -> PlanSettings:
+        """Thresholds."""
+        return self._settings
+
+    def target_at(self, targets: FloatArray, share: float) -> FloatArray:
+        """Pose of the tool where a share of the range is open, between two of the targets (k, 4, 4), shape (4, 4)."""
+        position = min(max(share, 0.0), 1.0) * (len(targets) - 1)
+        row = min(int(position), len(targets) - 2)
+        first, second = pin.SE3(targets[row]), pin.SE3(targets[row + 1])
+        return np.asarray(pin.SE3.Interpolate(first, second, position - row).homogeneous)
+
+    def free_at(self, q: FloatArray, share: float, place: Place) -> bool:
+        """True if nothing collides where a share of the range is open."""
+        row = round(min(max(share, 0.0), 1.0) * (len(self._motion.values) - 1))
+        return self._hit(q, row, place) is None
+
+    def _continued(
+        self, q: FloatArray, targets: FloatArray, rows: range, place: Place
+    ) -> tuple[list[FloatArray], Stop | None]:
+        """Go on from a posture to further poses until something stops it."""
+        found: list[FloatArray] = []
+        before = q
+        for row in rows:
+            now = self._arm.solve(targets[row], q + (q - before) if found else q)
+            if now is None:
+                return found, self._why_not(q, targets[row])
+            if float(np.abs(now - q).max()) > self._settings.jump:
+                return found, Stop(kind=JUMP, words="its posture would have to change all at once")
+            stop = self._blocked(now, row, place)
+            if stop is not None:
+                return found, stop
+            found.append(now)
+            before, q = q, now
+        return found, None
+
+    def _blocked(self, q: FloatArray, row: int, place: Place) -> Stop | None:
+        hit = self._hit(q, row, place)
+        if hit is None:
+            return None
+        words = f"its {hit.first} meets {hit.second}" + (" of the object" if hit.kind == "object" else "")
+        return Stop(kind=_KINDS[hit.kind], words=words, pair=(hit.first, hit.second))
+
+    def _hit(self, q: FloatArray, row: int, place: Place) -> Hit | None:
+        self._world.pose_object(self._motion.body_poses[row], place.grasp.spread)
+        return self._world.hit(q, holding=True)
+
+    def _why_not(self, q: FloatArray, target: FloatArray) -> Stop:
+        """Why inverse kinematics gets no farther than a posture."""
+        arm, near = self._arm, self._settings.near_limit * (self._arm.upper - self._arm.lower)
+        jacobian = arm.jacobian(q)
+        step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-4 * np.eye(6), arm.error(q, target))
+        held = ((q < arm.lower + near) & (step < 0.0)) | ((q > arm.upper - near) & (step > 0.0))
+        if held.any():
+            name = arm.robot.arm_joints[int(np.argmax(held * np.abs(step)))]
+            return Stop(kind=LIMIT, words=f"its {name} is at the end of its range")
+        if arm.manipulability(q) < self._settings.singular:
+            return Stop(kind=SINGULAR, words="it is stretched out or its wrist is aligned (singular)")
+        return Stop(kind=UNREACHED, words="the next pose is out of its reach")
+
+    def _pull(self, place: Place, path: FloatArray, stop: Stop | None) -> Pull:
+        values = self._motion.values[: len(path)]
+        whole = float(self._motion.values[-1] - self._motion.values[0])
+        return Pull(place=place, path=path, values=values, fraction=float(values[-1] - values[0]) / whole, stop=stop)
