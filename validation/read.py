@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.robot import DescribedJoint
     from kinematify.assembly.urdf_geometry import GeometrySource
+    from kinematify.validation.stage import StageRequest
+
+_LEFT = "model.pickle"
+"""In the folder of the run, which nobody else writes to."""
 
 
 def read_model(path: Path, *, package_dirs: Sequence[Path] = ()) -> DeclaredModel:
@@ -39,6 +44,28 @@ def read_model(path: Path, *, package_dirs: Sequence[Path] = ()) -> DeclaredMode
         DescriptionError: It cannot be read or is no tree of single-axis joints; the message says where and what to do.
     """
     return read_parsed(parse_description(path), path, geometry_source(path, package_dirs))
+
+
+def leave_model(model: DeclaredModel, work: Path) -> None:
+    """Leave a model for the later stages of a run, so that they need not parse its meshes again."""
+    partly = work / f"{_LEFT}.partly"
+    with partly.open("wb") as file:
+        pickle.dump(model, file, protocol=pickle.HIGHEST_PROTOCOL)
+    partly.replace(work / _LEFT)  # a stage that is stopped leaves no half of it
+
+
+def model_of(request: StageRequest) -> DeclaredModel:
+    """Read the model of a run: what an earlier stage left, or else the files.
+
+    Raises:
+        DescriptionError: As for `read_model`.
+    """
+    left = request.work / _LEFT
+    if not left.is_file():
+        return read_model(request.urdf, package_dirs=request.package_dirs)
+    with left.open("rb") as file:
+        model: DeclaredModel = pickle.load(file)
+    return model
 
 
 def read_without_geometry(path: Path) -> DeclaredModel:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.validation.asset import collision, drives, inertias, limits, masses
 from kinematify.validation.asset.bodies import measure
 from kinematify.validation.asset.meshes import check_mesh_files
+from kinematify.validation.read import leave_model
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -23,6 +24,8 @@ PROBES: dict[str, Probe] = {**masses.PROBES, **inertias.PROBES, **limits.PROBES,
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Tell KV150 to KV159, and KV201 to KV243 where the meshes can be read."""
     model = check_mesh_files(request, recorder)
+    if model is not None:
+        leave_model(model, request.work)
     if model is None or not recorder.wants(*PROBES):
         return
     physics = measure(model, request.settings.physics)

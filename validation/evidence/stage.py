@@ -13,7 +13,7 @@ from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.evidence.bodies import read_bodies
 from kinematify.validation.evidence.judge import better_joint, doubts_about
 from kinematify.validation.evidence.measure import measure_joints
-from kinematify.validation.read import read_model
+from kinematify.validation.read import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Judge every joint between two bodies with geometry; see `kinematify.validation.stage`."""
     if not recorder.wants(*(check.id for check in CHECKS)):
         return
-    description = read_model(request.urdf, package_dirs=request.package_dirs).kinematics
+    description = model_of(request).kinematics
     seed = request.settings.seed
     bodies = read_bodies(description, load_config(CONFIG), seed=seed)
     if bodies is None or not bodies.truth.joints:

@@ -26,7 +26,7 @@ from kinematify.validation.geometry.rest import Allowance
 from kinematify.validation.geometry.scene import read_scene, simplified, visible_shapes
 from kinematify.validation.geometry.sweep import Sweeper
 from kinematify.validation.geometry.together import joint_pairs, looked_at, random_rows
-from kinematify.validation.read import read_model
+from kinematify.validation.read import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
     if not recorder.wants(*(check.id for check in CHECKS)):
         return
-    model = read_model(request.urdf, package_dirs=request.package_dirs)
+    model = model_of(request)
     scene = read_scene(model, request.settings.geometry)
     if len(scene.bodies) < 2:
         _skip(recorder, tuple(check.id for check in CHECKS), "fewer than two bodies have geometry")

@@ -11,7 +11,7 @@ from kinematify.validation.prepare import document
 from kinematify.validation.prepare.decompose import Pieces, decomposed
 from kinematify.validation.prepare.masses import prepared_inertials
 from kinematify.validation.prepare.prepared import URDF_FILE, Prepared, PreparedLink, write_record
-from kinematify.validation.read import read_model
+from kinematify.validation.read import model_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,7 +27,7 @@ _MESH_FOLDER = "prepared_meshes"
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Write `prepared.urdf` and `prepared.json` (`kinematify.validation.prepare.prepared`)."""
     del recorder  # what was changed is told by the checks that look at it
-    model = read_model(request.urdf, package_dirs=request.package_dirs)
+    model = model_of(request)
     prepare(model, request.work, request.settings.prepare)
 
 
