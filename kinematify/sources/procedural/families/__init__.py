@@ -12,9 +12,11 @@ from kinematify.sources.procedural.families import (
     cabinet,
     clock,
     coffee_machine,
+    crane,
     desk_lamp,
     dishwasher,
     door,
+    excavator,
     fan,
     faucet,
     folding_chair,
@@ -41,6 +43,7 @@ from kinematify.sources.procedural.families import (
     table,
     toaster,
     toilet,
+    tracked_tree,
     trash_can,
     washing_machine,
     window,
@@ -91,6 +94,9 @@ FAMILIES: dict[str, Family] = {
         bucket,
         pen,
         clock,
+        excavator,
+        crane,
+        tracked_tree,
     )
 }
 """Keyed by name."""

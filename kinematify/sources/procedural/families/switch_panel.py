@@ -88,7 +88,7 @@ FAMILY = Family(
             default=1,
             bounds=(1, 6),
             usual=(1, 4),
-            words=("rocker", "switch", "toggle", "gang", "rocker switch"),
+            words=("rocker", "switch", "gang", "rocker switch"),
             help="Switches side by side.",
         ),
         Parameter(name="dimmers", default=0, bounds=(0, 2), usual=(0, 1), words=("knob", "dial"), help="At the right."),

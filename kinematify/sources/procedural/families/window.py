@@ -155,7 +155,7 @@ FAMILY = Family(
                 "pivot": ("pivoting", "pivoted"),
             },
         ),
-        Parameter(name="sashes", default=1, bounds=(1, 3), usual=(1, 3), words=("sash",), help="That move."),
+        Parameter(name="sashes", default=1, bounds=(1, 3), usual=(1, 3), words=("sash", "window"), help="That move."),
         Parameter(name="rows", default=1, bounds=(1, 4), usual=(1, 2), help="Of panes in a sash."),
         Parameter(name="columns", default=1, bounds=(1, 3), usual=(1, 2), help="Of panes in a sash."),
         Parameter(name="hinge", default="barrel", choices=("barrel", "edge"), help="Visible hinges, or hidden ones."),

@@ -40,6 +40,7 @@ _PLACES = {
 }
 _OPENABLE = ("door", "lid", "drawer", "flap", "cover", "leaf", "window")
 _JOINING = ("x", "by")
+_NOT = ("no", "without")
 _NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of them counts something else
 
 
@@ -65,6 +66,8 @@ class _Reading:
     values: dict[str, Value] = field(default_factory=dict)
     understood: list[str] = field(default_factory=list)
     used: set[int] = field(default_factory=set)
+    named: frozenset[int] = frozenset()
+    """Where the family is named; a choice may be part of its name."""
     mentions: list[Mention] = field(default_factory=list)
 
     def text(self, k: int) -> str:
@@ -104,7 +107,7 @@ def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
     tokens = tokens_of(sentence, vocabulary)
     names = [(_bare(word, vocabulary), family) for family in families.values() for word in family.words]
     family, where = _family(sentence, tokens, names)
-    reading = _Reading(tokens=tokens, family=family, used=set(where))
+    reading = _Reading(tokens=tokens, family=family, used=set(where), named=frozenset(where))
     reading.understood.append(family.title)
     _counted_name(reading, where)
     for step in (_sizes, _products, _counts, _choices, _parts_it_has, _openness, _looks):
@@ -284,7 +287,8 @@ def _counted_name(reading: _Reading, where: range) -> None:
     number, first = _number_before(reading, where.start)
     parameter = next((p for p in reading.family.parameters if isinstance(p.default, int) and name in _nouns(p)), None)
     if parameter is not None and number is not None and number > 1:
-        reading.take(parameter.name, number, f"{number} {parameter.name}", *range(first, where.start))
+        counting = [k for k in range(first, where.start) if reading.tokens[k].number is not None]
+        reading.take(parameter.name, number, f"{number} {parameter.name}", *counting)
 
 
 def _kind(parameter: Parameter) -> str:
@@ -330,18 +334,26 @@ def _choices(reading: _Reading) -> None:
             for k in range(len(reading.tokens) - len(words) + 1):
                 texts = tuple(reading.text(i) for i in range(k, k + len(words)))
                 bare = tuple(singular(word, frozenset(words) | known) for word in texts)
-                if words in (texts, bare) and not reading.used & set(range(k, k + len(words))):
+                if words in (texts, bare) and not (reading.used - reading.named) & set(range(k, k + len(words))):
                     where = list(range(k, k + len(words)))
                     if reading.text(where[-1] + 1) in (parameter.name, f"{parameter.name}s"):
                         where.append(where[-1] + 1)
                     where += [i for i in range(len(reading.tokens)) if reading.text(i) == parameter.name]
+                    if "none" in parameter.choices and reading.text(k - 1) in _NOT:
+                        reading.take(parameter.name, "none", f"no {parameter.name}", k - 1, *where)
+                        continue
                     reading.take(parameter.name, choice, f"{parameter.name}: {choice}", *where)
 
 
 def _parts_it_has(reading: _Reading) -> None:
-    """`with a lid`: what every object of the family has, and only its kind could be chosen."""
-    names = {p.name for p in reading.family.parameters if p.choices}
-    reading.used.update(k for k, token in enumerate(reading.tokens) if token.text in names)
+    """`with a lid`: what every object of the family has, and only its kind could be chosen; `no handle`."""
+    chosen = {p.name: p.choices for p in reading.family.parameters if p.choices}
+    for k, token in enumerate(reading.tokens):
+        choices = chosen.get(token.text)
+        if choices and "none" in choices and reading.text(k - 1) in _NOT:
+            reading.take(token.text, "none", f"no {token.text}", k - 1, k)
+        elif choices:
+            reading.used.add(k)
 
 
 def _openness(reading: _Reading) -> None:
