@@ -48,6 +48,8 @@ class Stage:
     """Every (id, engine) that it tells if nothing goes wrong."""
     after: tuple[str, ...] = ()
     """Names of the stages that must have ended without a crash before."""
+    seconds: float | None = None
+    """Wall time after which it hangs [s]; `budget.stage_seconds` if None."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,8 +147,7 @@ def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterat
     """Take in what the workers tell, and yield those that have ended, died or run out of time."""
     if not active:
         return
-    limit = request.settings.budget.stage_seconds
-    until = min(min(running.started for running in active.values()) + limit - time.monotonic(), _grace(request))
+    until = min(min(_end(running, request) for running in active.values()) - time.monotonic(), _grace(request))
     ready = connection.wait(list(active), max(0.0, until))
     for receiver, running in list(active.items()):
         failure: str | None = None
@@ -160,8 +161,8 @@ def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterat
                 if message is not None:
                     running.told.append(message)
                     continue
-        elif time.monotonic() >= running.started + limit:
-            failure = f"hung: it was stopped after {limit:.0f} s"
+        elif time.monotonic() >= _end(running, request):
+            failure = f"hung: it was stopped after {time.monotonic() - running.started:.0f} s"
         elif _grace(request) <= 0.0:
             failure = "was stopped at the end of the time budget"
         else:
@@ -170,6 +171,12 @@ def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterat
         _stop(receiver, running.process)
         seconds = time.monotonic() - running.started
         yield StageEnd(stage=running.stage, told=tuple(running.told), failure=failure, seconds=seconds)
+
+
+def _end(running: _Running, request: StageRequest) -> float:
+    """`time.monotonic()` at which a stage hangs."""
+    limit = running.stage.seconds
+    return running.started + (request.settings.budget.stage_seconds if limit is None else limit)
 
 
 def _grace(request: StageRequest) -> float:

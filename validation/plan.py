@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import agreement, engines, evidence, geometry, meshes, physics
+from kinematify.validation.catalogue import agreement, engines, evidence, geometry, meshes, physics, task
 from kinematify.validation.isolation import Stage
 
 if TYPE_CHECKING:
@@ -38,6 +38,13 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         function = f"kinematify.validation.engines.{engine}_stage:run"
         stages.append(Stage(name=engine, function=function, checks=checks, after=("prepare",)))
     return stages
+
+
+def task_stage(seconds: float) -> Stage:
+    """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
+    return Stage(
+        name="task", function="kinematify.validation.task.stage:run", checks=keys(task.CHECKS), seconds=seconds
+    )
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:

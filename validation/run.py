@@ -17,20 +17,23 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.isolation import run_stages, start_server
-from kinematify.validation.plan import ENGINES, asset_stage, keys, later_stages, needed
+from kinematify.validation.plan import ENGINES, asset_stage, keys, later_stages, needed, task_stage
 from kinematify.validation.precheck.document import precheck
 from kinematify.validation.report import JointSummary, ValidationReport
 from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.suppression import suppress
+from kinematify.validation.task.request import Suspicion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
 
+    from kinematify.validation.catalogue import Check
     from kinematify.validation.isolation import StageEnd
     from kinematify.validation.plan import CheckKey
     from kinematify.validation.settings import ValidationSettings
     from kinematify.validation.suppression import Suppression
+    from kinematify.validation.task.request import TaskRequest
 
     Progress = Callable[[str, float], None]
 
@@ -43,6 +46,7 @@ def validate(
     selected: Collection[str] | None = None,
     engines: Sequence[str] = ENGINES,
     suppressions: Sequence[Suppression] = (),
+    task: TaskRequest | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> ValidationReport:
@@ -55,6 +59,7 @@ def validate(
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
         engines: Of `ENGINES`; checks of the others are reported as skipped.
         suppressions: Findings that do not count.
+        task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
         progress: Told the stage that ended and the fraction done.
 
@@ -64,7 +69,8 @@ def validate(
     Raises:
         InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
     """
-    run = _Run(Path(path), frozenset(CATALOGUE) if selected is None else frozenset(selected), progress)
+    known = frozenset(_checks(task))
+    run = _Run(Path(path), known if selected is None else known & frozenset(selected), progress, task)
     settings = settings or load_settings()
     try:
         with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
@@ -75,6 +81,7 @@ def validate(
                 settings=settings,
                 selected=run.selected,
                 deadline=time.time() + settings.budget.seconds,
+                task=task,
             )
             run.all(request, engines, workers or os.cpu_count() or 1)
     except KeyboardInterrupt:
@@ -89,11 +96,30 @@ _LAST_GUARD = "KV152"
 """Told when every mesh file has been opened and read."""
 
 
+_DOUBTS = frozenset(check for check in CATALOGUE if check.startswith("KV3"))
+"""What the stage of a task wants to know of the joints."""
+_LEEWAY = 15.0
+"""Seconds after its deadline in which the stage of a task may still finish what it is at."""
+
+
+def _checks(task: TaskRequest | None) -> dict[str, Check]:
+    """Checks of the report."""
+    return {name: check for name, check in CATALOGUE.items() if task is not None or not name.startswith("KV7")}
+
+
+def _runs_in(name: str, engines: Sequence[str]) -> bool:
+    """Whether a check needs none but the chosen engines, or one of them."""
+    return not CATALOGUE[name].engines or bool(set(CATALOGUE[name].engines) & set(engines))
+
+
 class _Run:
     """Results as they come in; what has not come in is named with its reason at the end."""
 
-    def __init__(self, path: Path, selected: frozenset[str], progress: Progress | None) -> None:
+    def __init__(
+        self, path: Path, selected: frozenset[str], progress: Progress | None, task: TaskRequest | None
+    ) -> None:
         self.path = path
+        self.task = task
         self.selected = selected
         self.interrupted = False
         self._progress = progress or (lambda stage, fraction: None)
@@ -119,7 +145,9 @@ class _Run:
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
-        stages = needed(later_stages([engine for engine in ENGINES if engine in engines]), self.selected)
+        if self.task is not None:
+            request = replace(request, selected=request.selected | _DOUBTS)
+        stages = needed(later_stages([engine for engine in ENGINES if engine in engines]), request.selected)
         for number, end in enumerate(run_stages(stages, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
@@ -130,13 +158,41 @@ class _Run:
         )
         chosen = [engine for engine in ENGINES if engine in engines]
         agreement.compare(request, Recorder(self._take, request.selected), chosen, self._failures)
+        if self.task is not None:
+            self._use(request, chosen)
+
+    def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
+        """Let a robot use the object; it has time of its own."""
+        seconds = request.settings.task.seconds
+        wanted = frozenset(name for name in request.selected if _runs_in(name, engines))
+        request = replace(request, selected=wanted, deadline=time.time() + seconds, suspects=self._suspects())
+        self._progress("task", 0.96)
+        for end in run_stages([task_stage(seconds + _LEEWAY)], request, workers=1):
+            self._take_end(end)
+
+    def _suspects(self) -> dict[str, Suspicion]:
+        """Joints that the checks by geometry doubt, each with the worst that is said of it."""
+        found = [
+            finding
+            for key, result in self._results.items()
+            if key[0] in _DOUBTS
+            for finding in result.findings
+            if finding.blame is Blame.KINEMATICS and finding.joint and finding.severity is not Severity.NOTE
+        ]
+        found.sort(key=lambda finding: finding.severity is Severity.ERROR)
+        return {
+            str(finding.joint): Suspicion(
+                check=finding.check, message=finding.message, error=finding.severity is Severity.ERROR
+            )
+            for finding in found
+        }
 
     def report(self, settings: ValidationSettings, suppressions: Sequence[Suppression]) -> ValidationReport:
         """Put together what is known."""
         if self.interrupted:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
-        checks = suppress([self._result(key) for key in keys(list(CATALOGUE.values()))], suppressions)
+        checks = suppress([self._result(key) for key in keys(list(_checks(self.task).values()))], suppressions)
         facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
             model=str(self.path), checks=checks, joints=tuple(self._joints.values()), environment=facts
@@ -168,7 +224,9 @@ class _Run:
         return f"the meshes cannot be used, see {', '.join(faults)}" if faults else None
 
     def _missing(self) -> Iterable[CheckKey]:
-        return [key for key in keys(list(CATALOGUE.values())) if key not in self._results and key not in self._why]
+        return [
+            key for key in keys(list(_checks(self.task).values())) if key not in self._results and key not in self._why
+        ]
 
     def _explain_rest(self, status: Status, reason: str) -> None:
         self._explain(self._missing(), status, reason)

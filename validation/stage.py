@@ -15,12 +15,13 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from kinematify.validation.finding import Blame
     from kinematify.validation.report import JointSummary
     from kinematify.validation.settings import ValidationSettings
+    from kinematify.validation.task.request import Suspicion, TaskRequest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +38,10 @@ class StageRequest:
     """Ids of the checks that the user wants."""
     deadline: float
     """`time.time()` at which the run should be over; a stage that is late says what it left out."""
+    task: TaskRequest | None = None
+    """What a robot is to do with the object."""
+    suspects: Mapping[str, Suspicion] = field(default_factory=dict)
+    """Joints that earlier stages doubt, for the stage of the task."""
 
     @property
     def remaining(self) -> float:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
         "kinematify validate robot.urdf --package-dir ~/ros/src --engines mujoco,pinocchio",
         "kinematify validate model.urdf --checks 'KV3*,KV401' --skip KV305 --budget 10",
         "kinematify validate model.urdf --suppress accepted.yaml --json - > answer.json",
+        "kinematify validate cabinet.urdf --task pull",
+        "kinematify validate cabinet.urdf --task pull --robot fetch.urdf --tool gripper_link --checks 'KV7*'",
     ),
 )
 @click.argument("models", nargs=-1, required=True, metavar="MODEL...")
@@ -59,6 +61,20 @@ if TYPE_CHECKING:
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
 )
+@click.option("--task", type=click.Choice(["pull"]), help="Let a robot open every joint (KV7xx), with a film of each.")
+@click.option("--robot", type=click.Path(path_type=Path), metavar="FILE", help="Its URDF; a built-in arm if not given.")
+@click.option("--tool", metavar="LINK", help="Link of the robot that carries the fingers.")
+@click.option("--gripper", metavar="JOINTS", help="Joints of its fingers, separated by commas; found if not given.")
+@click.option(
+    "--grasp", type=float, nargs=3, metavar="X Y Z", help="Hold the object there: root frame, units of the file."
+)
+@click.option("--scale", type=float, metavar="FACTOR", help="Metres per unit of the object; found if not given.")
+@click.option(
+    "--films",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Where films of the task go: beside the first report, or here, if not given.",
+)
 @click.option("--json", "json_to", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Report as JUnit XML.")
 @click.option("--sarif", type=click.Path(path_type=Path), metavar="FILE", help="Report as SARIF 2.1.0.")
@@ -75,6 +91,13 @@ def command(
     config: str,
     seed: int | None,
     jobs: int | None,
+    task: str | None,
+    robot: Path | None,
+    tool: str | None,
+    gripper: str | None,
+    grasp: tuple[float, float, float] | None,
+    scale: float | None,
+    films: Path | None,
     json_to: str | None,
     junit: Path | None,
     sarif: Path | None,
@@ -88,12 +111,15 @@ def command(
     Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used.
     Ctrl-C ends with 130 and leaves valid reports of what is known by then.
     """
+    from kinematify.cli.task_options import TaskOptions
     from kinematify.cli.validation_run import ValidationRun
     from kinematify.validation.models import find_models
     from kinematify.validation.suppression_file import load_suppressions
 
     files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html)
     files.check()
+    options = TaskOptions(task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, scale=scale, films=films)
+    asked = options.request(files, _existing(package_dirs))
     run = ValidationRun(
         models=find_models(models),
         package_dirs=_existing(package_dirs),
@@ -103,6 +129,7 @@ def command(
         settings=_settings(config, budget=budget, seed=seed),
         workers=jobs or os.cpu_count() or 1,
         with_pictures=html is not None,
+        task=asked,
     )
     try:
         with progress_reporter() as progress:

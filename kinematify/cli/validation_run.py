@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import click
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.settings import ValidationSettings
     from kinematify.validation.suppression import Suppression
+    from kinematify.validation.task.request import TaskRequest
 
 PICTURES_AT_MOST = 12
 """With more models an HTML report shows none: it would take long to make and to load."""
@@ -42,6 +43,7 @@ class ValidationRun:
     settings: ValidationSettings
     workers: int
     with_pictures: bool
+    task: TaskRequest | None = None
     outcomes: list[Outcome] = field(default_factory=list)
     pictures: dict[str, bytes] = field(default_factory=dict)
     interrupted: bool = False
@@ -68,6 +70,7 @@ class ValidationRun:
                 selected=self.selected,
                 engines=self.engines,
                 suppressions=self.rules,
+                task=self._task_of(model),
                 workers=self.workers,
                 progress=progress,
             )
@@ -79,6 +82,13 @@ class ValidationRun:
         if self.with_pictures and len(self.models) <= PICTURES_AT_MOST and _can_be_drawn(report):
             progress("picture", 0.97)
             self.pictures[report.model] = self._picture(model)
+
+    def _task_of(self, model: Path) -> TaskRequest | None:
+        """The task with names of films that tell the models apart."""
+        if self.task is None:
+            return None
+        stem = model.stem if len(self.models) == 1 else f"{model.absolute().parent.name}_{model.stem}"
+        return replace(self.task, stem=f"{stem}_{self.task.kind}")
 
     def _picture(self, model: Path) -> bytes:
         from kinematify.validation.formats.picture import picture_of

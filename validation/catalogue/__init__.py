@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 
 from kinematify.errors import InputError
-from kinematify.validation.catalogue import agreement, engines, evidence, file, geometry, meshes, physics
+from kinematify.validation.catalogue import agreement, engines, evidence, file, geometry, meshes, physics, task
 from kinematify.validation.catalogue.check import Check
 
 __all__ = ["CATALOGUE", "FAMILIES", "Check", "find_check"]
@@ -17,12 +17,13 @@ FAMILIES = {
     "KV4": "MuJoCo",
     "KV5": "PyBullet",
     "KV6": "agreement",
+    "KV7": "task of a robot",
 }
 """Title of each family, keyed by the beginning of its ids."""
 
 CATALOGUE: dict[str, Check] = {
     check.id: check
-    for module in (file, meshes, physics, geometry, evidence, engines, agreement)
+    for module in (file, meshes, physics, geometry, evidence, engines, agreement, task)
     for check in sorted(module.CHECKS, key=lambda check: check.id)
 }
 """Checks keyed by id, in ascending order within each module."""

@@ -104,7 +104,7 @@ def search_grasps(
     bodies, carried = moved_bodies(scene, joint)
     if point is not None:
         moved = [*bodies, *carried]
-        nearest = min((_distance(scene, poses, body, point) for body in moved), default=np.inf)
+        nearest = min((distance_to(scene, poses, body, point) for body in moved), default=np.inf)
         if nearest > settings.near_point:
             raise InputError(
                 f"The grasp point {point.tolist()} is {nearest:.3f} m from what {joint} moves "
@@ -307,7 +307,35 @@ def _around(point: FloatArray, settings: GraspSettings, seed: int) -> FloatArray
     return np.concatenate([point[None], point + offsets])
 
 
-def _distance(scene: Scene, poses: FloatArray, body: int, point: FloatArray) -> float:
+def joint_at(scene: Scene, point: FloatArray, settings: GraspSettings) -> str:
+    """Find the joint whose part is nearest to a point, the last of several that move the same part.
+
+    Args:
+        scene: The object, in metres.
+        point: Frame of the root link [m], shape (3,).
+        settings: How near is near.
+
+    Raises:
+        InputError: No part that moves is near.
+    """
+    poses = scene.at_rest
+    distances = {
+        travel.joint: min((distance_to(scene, poses, body, point) for body in moved_bodies(scene, travel.joint)[0]),
+                          default=np.inf)
+        for travel in scene.travels
+    }  # fmt: skip
+    joint = min(distances, key=lambda name: distances[name])
+    if distances[joint] > settings.near_point:
+        raise InputError(
+            f"The grasp point {np.round(point, 4).tolist()} (in metres, at the object's real size) is "
+            f"{distances[joint]:.3f} m from the nearest part that moves, that of {joint}; a point on a part is at most "
+            f"{settings.near_point} m off. Give it in the frame of the root link, in the units of the file."
+        )
+    return joint
+
+
+def distance_to(scene: Scene, poses: FloatArray, body: int, point: FloatArray) -> float:
+    """Distance of a point from the surface of a body [m], in the frame of the root link, bodies at `poses`."""
     solid, T = scene.bodies[body].solid, poses[body]
     tree = fcl.CollisionObject(solid.tree, fcl.Transform(T[:3, :3], (T[:3, :3] @ solid.middle + T[:3, 3]) / scene.unit))
     dot = fcl.CollisionObject(fcl.Sphere(1e-3), fcl.Transform(point / scene.unit))

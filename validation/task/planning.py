@@ -42,8 +42,10 @@ class Failure(StrEnum):
     """The grasp is reached, but no way free of collisions leads there."""
     STOPS = "stops"
     """The arm does not get far enough."""
+    COVERED = "covered"
+    """Another part of the object is in the way."""
     JAMS = "jams"
-    """The object itself blocks the joint."""
+    """The part runs into its own parent."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -153,7 +155,7 @@ class _Planning:
         self._places = Places(arm, self._motion, object_box(scene), self._plan)
         self._grasps: GraspReport | None = None
         self._tried = _Tried()
-        self._free, self._own_stop = 1.0, ""
+        self._free = 1.0
 
     def run(self) -> PullPlan:
         """Look at the object first, then at grasps, then at places."""
@@ -161,7 +163,10 @@ class _Planning:
         if self._way([*own, *carried]) < self._plan.least_way:
             words = f"it moves what it carries by less than {self._plan.least_way * 1e3:.0f} mm"
             return self._ended(Failure.NO_WAY, words)
-        self._free, self._own_stop = self._own_freedom()
+        self._free, blocked, by_parent = self._own_freedom()
+        if blocked is not None and self._free < self._plan.opened:
+            failure = Failure.JAMS if by_parent else Failure.COVERED
+            return self._ended(failure, blocked.words, stop=blocked, fraction=self._free)
         self._grasps = search_grasps(
             self._scene, self._joint, self._arm.robot.opening, settings=self._settings.grasp, point=self._point,
             seed=self._seed,
@@ -181,18 +186,20 @@ class _Planning:
             ways.append(float(np.linalg.norm(ends[1] - ends[0], axis=0).max()))
         return max(ways)
 
-    def _own_freedom(self) -> tuple[float, str]:
-        """Share of the range that the object itself leaves free, and who blocks the rest."""
+    def _own_freedom(self) -> tuple[float, Stop | None, bool]:
+        """Share of the range that the object itself leaves free, who blocks the rest, and whether it is the parent."""
         overlap = Overlap(self._scene)
         sweep = Sweeper(self._scene, overlap, Allowance(self._scene, overlap)).sweep(self._leader)
         values = self._motion.values
         side = sweep.sides[0 if values[-1] < values[0] else 1]
-        meeting = next((m for m in side.meetings if m.inside), None)
+        deep = self._scene.settings.wrong * self._scene.size
+        meeting = next((m for m in side.meetings if m.inside and m.depth > deep), None)
         if meeting is None:
-            return 1.0, ""
+            return 1.0, None, False
         first, second = self._scene.name(meeting.pair)
-        share = (meeting.first - values[0]) / (values[-1] - values[0])
-        return float(np.clip(share, 0.0, 1.0)), f"{first} meets {second}"
+        share = float(np.clip((meeting.first - values[0]) / (values[-1] - values[0]), 0.0, 1.0))
+        words = f"{first} meets {second} of the object"
+        return share, Stop(kind=ITSELF, words=words, pair=(first, second)), meeting.pair in sweep.own
 
     def _search(self, world: CollisionWorld, puller: Puller) -> PullPlan:
         """Try the most promising places until one lets the arm open the joint."""
@@ -256,8 +263,6 @@ class _Planning:
 
     def _nothing(self) -> PullPlan:
         """No way to any grasp."""
-        if self._free < self._plan.opened and self._tried.usual is None:
-            return self._ended(Failure.JAMS, self._own_stop)
         if self._tried.ways:
             return self._ended(Failure.NO_PATH, max(self._tried.ways, key=lambda why: self._tried.ways[why]))
         usual = self._tried.usual
@@ -266,23 +271,16 @@ class _Planning:
         return self._ended(Failure.NO_REACH, words, stop=usual)
 
     def _told(self, pull: Pull, way: FloatArray) -> PullPlan:
-        fraction = min(pull.fraction, self._free)
-        failure, words, stop = None, "", pull.stop
-        if self._free < self._plan.opened:
-            failure, words = Failure.JAMS, self._own_stop
-            stop = Stop(kind=ITSELF, words=self._own_stop)
-        elif pull.fraction < self._plan.opened:
-            failure, words = Failure.STOPS, pull.stop.words if pull.stop else ""
-        whole = self._motion.values[-1] - self._motion.values[0]
-        keep = (pull.values - self._motion.values[0]) / whole <= max(fraction, 1e-9) + 1e-9
-        keep[:2] = True
-        return self._ended(failure, words, stop=stop, pull=pull, way=way, keep=keep, fraction=fraction)
+        if pull.fraction >= self._plan.opened:
+            return self._ended(None, "", stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
+        words = pull.stop.words if pull.stop else ""
+        return self._ended(Failure.STOPS, words, stop=pull.stop, pull=pull, way=way, fraction=pull.fraction)
 
     def _ended(
         self, failure: Failure | None, words: str, *, stop: Stop | None = None, pull: Pull | None = None,
-        way: FloatArray | None = None, keep: FloatArray | None = None, fraction: float = 0.0,
+        way: FloatArray | None = None, fraction: float = 0.0,
     ) -> PullPlan:  # fmt: skip
-        path = None if pull is None else pull.path[keep]
+        path = None if pull is None else pull.path
         return PullPlan(
             joint=self._joint,
             turns=self._travel.turns,
@@ -291,7 +289,7 @@ class _Planning:
             T_world_object=self._motion.T_world_object,
             reach=way,
             pull=path,
-            opened=None if pull is None else pull.values[keep],
+            opened=None if pull is None else pull.values,
             fraction=fraction,
             free=self._free,
             failure=failure,

@@ -90,6 +90,10 @@ class ExecutionSettings(StageConfig):
     """Of each finger with its drive [kg or kg m^2]; light fingers sink into what they hold."""
     grip_force: float
     """Of each finger [N]."""
+    pad_width: float
+    """Of the pads, across approach and closing direction [m]."""
+    pad_length: float
+    """Of the pads, along the approach direction [m]."""
     friction: float
     """Of pads on the object."""
     weld_force: float
@@ -134,6 +138,8 @@ class FilmSettings(StageConfig):
 class TaskSettings(StageConfig):
     """KV7xx: tasks of a robot."""
 
+    seconds: float
+    """Wall time for a task with one object, beside that of the other checks [s]."""
     grasp: GraspSettings
     plan: PlanSettings
     execution: ExecutionSettings

@@ -1,0 +1,67 @@
+"""Options of `kinematify validate` that ask for a task of a robot."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kinematify.errors import OutputError
+
+if TYPE_CHECKING:
+    from kinematify.cli.report_files import ReportFiles
+    from kinematify.validation.task.request import TaskRequest
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskOptions:
+    """As they were given; None where one was not."""
+
+    task: str | None
+    robot: Path | None
+    tool: str | None
+    gripper: str | None
+    grasp: tuple[float, float, float] | None
+    scale: float | None
+    films: Path | None
+
+    def request(self, files: ReportFiles, package_dirs: tuple[Path, ...]) -> TaskRequest | None:
+        """What the options ask for; the robot is read once, so that what is wrong with it is said at once.
+
+        Raises:
+            InputError: There is no such robot, tool or gripper.
+            OutputError: Films cannot be written where they should go.
+        """
+        if self.task is None:
+            self._refuse_without_task()
+            return None
+        from kinematify.validation.task.request import TaskRequest
+
+        request = TaskRequest(
+            kind=self.task,
+            robot=None if self.robot is None else self.robot.absolute(),
+            tool=self.tool,
+            gripper=tuple(word.strip() for word in (self.gripper or "").split(",") if word.strip()),
+            package_dirs=package_dirs,
+            grasp=self.grasp or None,
+            scale=self.scale,
+            films=self._films(files),
+        )
+        with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+            request.write_robot(Path(folder))
+        return request
+
+    def _refuse_without_task(self) -> None:
+        for name in ("robot", "tool", "gripper", "grasp", "scale", "films"):
+            if getattr(self, name):
+                raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
+
+    def _films(self, files: ReportFiles) -> Path:
+        beside = next((path.absolute().parent for path in files.paths.values()), Path.cwd())
+        folder = beside if self.films is None else self.films.absolute()
+        if not folder.is_dir():
+            raise OutputError(f"--films {folder} is no folder. Give a folder that exists.")
+        return folder

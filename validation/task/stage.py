@@ -1,0 +1,310 @@
+"""The stage `task`: a robot opens every joint of the object (KV7xx), and films show how.
+
+Joints are planned one after the other, then executed, then filmed, so that a lack of time costs films first.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.validation.catalogue.task import CHECKS
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.scene import read_scene, visible_shapes
+from kinematify.validation.read import read_model
+from kinematify.validation.task import execute_mujoco, execute_pybullet
+from kinematify.validation.task.copies import write_scaled
+from kinematify.validation.task.execute import Execution, Hold, Loaded, load
+from kinematify.validation.task.film import write_film
+from kinematify.validation.task.grasp import joint_at
+from kinematify.validation.task.kinematics import Arm
+from kinematify.validation.task.motion import Motion
+from kinematify.validation.task.place import object_box
+from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
+from kinematify.validation.task.sizes import sizing
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.validation.geometry.scene import Scene
+    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+    from kinematify.validation.task.request import Suspicion, TaskRequest
+    from kinematify.validation.task.sizes import Sizing
+
+OBJECT_FILE = "object.urdf"
+_FILM_SECONDS = 12.0  # a film is begun only with so much time left [s]
+_CHECK_OF = {
+    Failure.NO_WAY: "KV702",
+    Failure.NO_GRASP: "KV702",
+    Failure.NO_REACH: "KV703",
+    Failure.NO_PATH: "KV704",
+    Failure.STOPS: "KV705",
+    Failure.COVERED: "KV705",
+    Failure.JAMS: "KV706",
+}
+
+
+def run(request: StageRequest, recorder: Recorder) -> None:
+    """Carry out the task of a request; see `kinematify.validation.stage`."""
+    task = request.task
+    if task is None:
+        return
+    with recorder.check("KV701") as check:
+        setting = _set_up(request, task, check)
+    if setting is None:
+        _skip_rest(recorder, "the task cannot be set up, see KV701")
+        return
+    setting.plan_all()
+    _tell_plans(recorder, setting)
+    setting.execute_all(mujoco=recorder.wants("KV707", "KV708"), pybullet=recorder.wants("KV707"))
+    _tell_executions(recorder, setting)
+
+
+class _Setting:
+    """Robot and object in one world, and what came of each joint."""
+
+    def __init__(self, request: StageRequest, task: TaskRequest, scene: Scene, sized: Sizing) -> None:
+        self.request, self.task, self.scene, self.sized = request, task, scene, sized
+        self.settings = request.settings.task
+        self.plans: list[PullPlan] = []
+        self.runs: dict[str, list[Execution]] = {}
+        self.films: dict[str, Path] = {}
+        self.left: list[str] = []
+
+    @cached_property
+    def arm(self) -> Arm:
+        """The robot."""
+        return Arm(self.task.write_robot(self.request.work), self.settings.plan, seed=self.request.settings.seed)
+
+    @property
+    def joints(self) -> list[str]:
+        """Joints to be opened: all that lead, or the one that the given point belongs to."""
+        names = [travel.joint for travel in self.scene.travels]
+        if self.point is None:
+            return names
+        return [name for name in names if name == self._joint_at_point]
+
+    @cached_property
+    def point(self) -> FloatArray | None:
+        """Where to hold, frame of the object's root link [m], shape (3,)."""
+        return None if self.task.grasp is None else self.sized.factor * np.array(self.task.grasp)
+
+    @cached_property
+    def _joint_at_point(self) -> str:
+        assert self.point is not None
+        return joint_at(self.scene, self.point, self.settings.grasp)
+
+    def plan_all(self) -> None:
+        """Plan joint by joint, as long as there is time."""
+        for joint in self.joints:
+            if self.request.remaining <= 0.0:
+                self.left.append(joint)
+                continue
+            self.plans.append(
+                plan_pull(self.arm, self.scene, joint, self.settings, point=self.point, seed=self.request.settings.seed)
+            )
+
+    def execute_all(self, *, mujoco: bool, pybullet: bool) -> None:
+        """Execute the plans that lead anywhere, in each engine that is wanted, and film them."""
+        for plan in self.plans:
+            motion = self._motion(plan)
+            if motion is None or self.request.remaining <= 0.0:
+                continue
+            loaded = load(motion, self.request.work, self.request.settings.prepare)
+            runs = self.runs.setdefault(plan.joint, [])
+            if mujoco:
+                runs += [execute_mujoco.execute(loaded, self.settings.execution, hold=hold) for hold in Hold]
+            if pybullet:
+                runs.append(execute_pybullet.execute(loaded, self.settings.execution))
+            if self.task.films is not None and runs and self.request.remaining > _FILM_SECONDS:
+                self.films[plan.joint] = self._film(plan.joint, loaded, runs[0])
+
+    def runs_of(self, engine: str, hold: Hold) -> list[tuple[str, Execution]]:
+        """Executions of one kind with their joints."""
+        return [
+            (joint, execution)
+            for joint, executions in self.runs.items()
+            for execution in executions
+            if (execution.engine, execution.hold) == (engine, hold)
+        ]
+
+    def _film(self, joint: str, loaded: Loaded, execution: Execution) -> Path:
+        assert self.task.films is not None
+        safe = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in joint)
+        film = self.task.films / f"{self.task.stem}_{safe}.gif"
+        write_film(loaded, execution, film, film.with_suffix(".png"), self.settings.film)
+        return film
+
+    def _motion(self, plan: PullPlan) -> Motion | None:
+        if plan.pull is None or plan.reach is None or plan.opened is None or plan.place is None:
+            return None
+        if len(plan.pull) < 2:
+            return None
+        return Motion(
+            robot=self.arm.robot,
+            object_urdf=self.request.work / OBJECT_FILE,
+            T_world_base=plan.place.T_world_base,
+            T_world_object=plan.T_world_object,
+            joint=plan.joint,
+            start={},
+            grasp=plan.place.grasp,
+            reach=plan.reach,
+            pull=plan.pull,
+            opened=plan.opened,
+        )
+
+
+def _set_up(request: StageRequest, task: TaskRequest, check: OpenCheck) -> _Setting | None:
+    """Bring the object to its size; None with a finding where that makes no sense."""
+    try:
+        model = read_model(request.urdf, package_dirs=request.package_dirs)
+        scene = read_scene(model, request.settings.geometry, visible_shapes)
+        if not scene.travels or len(scene.bodies) < 1:
+            check.find(
+                "The object has no joint that moves by itself, so there is nothing that a robot could open.",
+                "Give a model with a movable joint.",
+            )
+            return None
+        sized = sizing(request.urdf, model.name, object_box(scene), scale=task.scale)
+        path = request.work / OBJECT_FILE
+        write_scaled(request.urdf, sized.factor, path, package_dirs=request.package_dirs)
+        scene = read_scene(read_model(path), request.settings.geometry)
+        setting = _Setting(request, task, scene, sized)
+        joints = setting.joints
+    except InputError as error:
+        check.find(str(error), "Give what the message asks for.")
+        return None
+    check.measured["scale"] = sized.factor
+    check.measured["joints"] = len(joints)
+    if sized.factor != 1.0:
+        check.find(f"The object is scaled by {sized.factor:.4g}: {sized.reason}.", "Give --scale if that is wrong.",
+                   severity=Severity.NOTE, value=sized.factor)  # fmt: skip
+    return setting
+
+
+def _tell_plans(recorder: Recorder, setting: _Setting) -> None:
+    """KV702 to KV706."""
+    suspects = setting.request.suspects
+    late = f"time ran out before {', '.join(setting.left)}" if setting.left else None
+    for name in ("KV702", "KV703", "KV704", "KV705", "KV706"):
+        with recorder.check(name) as check:
+            for plan in setting.plans:
+                if name == "KV705":
+                    _measure(check, plan)
+                if plan.failure is not None and _CHECK_OF[plan.failure] == name:
+                    _find_failure(check, plan, setting, suspects.get(plan.joint))
+                elif name == "KV705" and plan.failure is None:
+                    _find_success(check, plan, setting)
+                elif name == "KV706" and plan.joint in suspects and plan.failure is None:
+                    _find_doubt(check, plan, suspects[plan.joint])
+            if late is not None:
+                check.skip(late)
+
+
+def _measure(check: OpenCheck, plan: PullPlan) -> None:
+    check.measured[f"{plan.joint} opened"] = plan.fraction
+    check.measured[f"{plan.joint} seconds"] = plan.seconds
+    check.measured[f"{plan.joint} tried"] = plan.tried
+    if plan.pull is not None:
+        check.measured[f"{plan.joint} manipulability"] = plan.manipulability
+
+
+def _find_failure(check: OpenCheck, plan: PullPlan, setting: _Setting, suspect: Suspicion | None) -> None:
+    """Say what failed, and blame the joint where the geometry doubts it."""
+    limit = setting.settings.plan.opened
+    opened = f"{plan.fraction:.0%} of its range"
+    messages: Mapping[Failure, str] = {
+        Failure.NO_WAY: f"{plan.joint} is left out: {plan.words}.",
+        Failure.NO_GRASP: f"A gripper finds no hold on what {plan.joint} moves. {plan.words}",
+        Failure.NO_REACH: f"The arm reaches no hold of {plan.joint}: {plan.words}.",
+        Failure.NO_PATH: f"A hold of {plan.joint} can be reached, but {plan.words}.",
+        Failure.STOPS: f"The arm opens {plan.joint} by {opened} and stops there, because {plan.words}.",
+        Failure.COVERED: f"{plan.joint} opens by {opened} only: {plan.words}, which another joint can move away.",
+        Failure.JAMS: f"{plan.joint} jams at {plan.free:.0%} of its range, whoever pulls: {plan.words}.",
+    }
+    assert plan.failure is not None
+    message, blame, severity, remedy = messages[plan.failure], None, None, _remedy(check.id)
+    if plan.failure is Failure.NO_WAY:
+        severity = Severity.NOTE
+    elif plan.failure is Failure.COVERED:
+        severity = Severity.WARNING
+        remedy = "Open the other joint first."
+    elif suspect is not None:
+        message += f" The joint itself is doubtful, {suspect.check}: {suspect.message}"
+        blame, remedy = Blame.KINEMATICS, f"Correct the joint as {suspect.check} says, and plan again."
+    stop = plan.stop
+    check.find(
+        message, remedy, severity=severity, blame=blame, joint=plan.joint, value=plan.fraction, limit=limit,
+        pair=stop.pair if stop is not None else None,
+    )  # fmt: skip
+
+
+def _find_success(check: OpenCheck, plan: PullPlan, setting: _Setting) -> None:
+    assert plan.place is not None
+    place, grasp = plan.place.T_world_base[:3, 3] - plan.T_world_object[:3, 3], plan.place.grasp
+    x, y, z = (f"{value:.2f}" for value in place)
+    check.find(
+        f"The arm opens {plan.joint} by {plan.fraction:.0%} of its range: it holds a {grasp.kind} that is "
+        f"{grasp.width * 1e3:.0f} mm thick, with its base at x {x}, y {y}, z {z} m from the object's origin.",
+        "Nothing to do.",
+        severity=Severity.NOTE,
+        joint=plan.joint,
+        value=plan.fraction,
+        limit=setting.settings.plan.opened,
+    )
+
+
+def _find_doubt(check: OpenCheck, plan: PullPlan, suspect: Suspicion) -> None:
+    check.find(
+        f"The arm can follow {plan.joint} as declared, but the joint itself is doubtful, {suspect.check}: "
+        f"{suspect.message}",
+        f"Correct the joint as {suspect.check} says, and plan again.",
+        severity=Severity.ERROR if suspect.error else Severity.WARNING,
+        joint=plan.joint,
+    )
+
+
+def _tell_executions(recorder: Recorder, setting: _Setting) -> None:
+    """KV707 and KV708."""
+    for name, engine, hold in (
+        ("KV707", "mujoco", Hold.WELD), ("KV707", "pybullet", Hold.WELD), ("KV708", "mujoco", Hold.CONTACT),
+    ):  # fmt: skip
+        with recorder.check(name, engine) as check:
+            runs = setting.runs_of(engine, hold)
+            if not runs:
+                check.skip("no joint has a plan that could be executed")
+            for joint, execution in runs:
+                check.measured[f"{joint} share"] = execution.share
+                check.measured[f"{joint} depth"] = execution.depth
+                if not execution.success:
+                    check.find(
+                        f"The plan for {joint} fails in {_ENGINE[engine]}, {_HOLD[hold]}: {execution.reason}.",
+                        _remedy(name), joint=joint, value=execution.share,
+                        limit=setting.settings.execution.opened, pair=execution.deepest,
+                    )  # fmt: skip
+                elif engine == "mujoco" and hold is Hold.WELD and joint in setting.films:
+                    check.find(
+                        f"{setting.films[joint].name} shows how {joint} is opened.", "Nothing to do.",
+                        severity=Severity.NOTE, joint=joint,
+                    )  # fmt: skip
+
+
+_ENGINE = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
+_HOLD = {Hold.WELD: "with the hand welded to the part", Hold.CONTACT: "with fingers that hold by friction"}
+
+
+def _remedy(name: str) -> str:
+    return next(check.remedy for check in CHECKS if check.id == name)
+
+
+def _skip_rest(recorder: Recorder, reason: str) -> None:
+    for check in CHECKS:
+        for engine in check.engines or (None,):
+            if check.id != "KV701":
+                with recorder.check(check.id, engine) as opened:
+                    opened.skip(reason)
