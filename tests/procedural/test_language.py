@@ -107,3 +107,24 @@ def test_what_cannot_be_built_is_refused_with_its_bounds(text, reason):
     meant = understand(text, FAMILIES)
     with pytest.raises(InputError, match=reason):
         build(FAMILIES[meant.family], meant.values)
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("a double door", {"leaves": 2}),
+        ("a double sliding door", {"leaves": 2, "kind": "sliding"}),
+        ("a door", {}),
+        ("tower crane", {"kind": "tower"}),
+        ("a desk lamp with two joints and a knob", {"joints": 2, "switch": "knob"}),
+        ("an office chair without armrests", {"armrests": "none"}),
+        ("a door with no handle", {"handle": "none"}),
+        ("a keypad with five buttons", {"buttons": 5}),
+        ("hand with two fingers with four joints per finger", {"fingers": 2, "joints": 4}),
+        ("a tracked tree with five branches", {"branches": 5}),
+    ],
+)
+def test_names_may_be_counted_and_say_a_kind_and_parts_may_be_refused(text, values):
+    meant = understand(text, FAMILIES)
+    assert dict(meant.values) == values
+    assert not meant.ignored

@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.sources.procedural.family import Family, Parameter
 from kinematify.sources.procedural.pieces.bearings import bent_fork
 from kinematify.sources.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
-from kinematify.sources.procedural.solids import ball, cylinder, rod
+from kinematify.sources.procedural.solids import ball, cylinder
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -47,17 +47,17 @@ def _add_branch(values: Values, workshop: Workshop, k: int, angle: float, first:
 
     foot = np.array([0.0, 0.0, first[2] - abs(first[1]) / math.tan(_START)])
     parent, pivot, below = "trunk", first, _START
-    workshop.add(parent, *turned(rod(0.7 * radius, foot, pivot - 2.0 * radius * _along(below), segments=20)))
+    workshop.add(parent, *turned(cylinder(0.7 * radius, foot, pivot - 1.6 * radius * _along(below), segments=20)))
     links = values.count("links")
     for link in range(links):
         above, name = _LEANS[link % 2], f"branch_{k + 1}_{link + 1}"
         forked, tongue = bent_fork(pivot, (below, above), 2.4 * radius, radius, clearance)
         end = pivot + long * _along(above)
         last = link + 1 == links
-        stop = end if last else end - 2.0 * radius * _along(above)
+        stop = end if last else end - 1.6 * radius * _along(above)
         workshop.add(parent, *turned(forked))
-        bar = rod(0.7 * radius, pivot + 2.0 * radius * _along(above), stop, segments=20)
-        workshop.body(name, *turned(tongue, bar, *([ball(1.3 * radius, end)] if last else [])))
+        bar = cylinder(0.7 * radius, pivot + 1.6 * radius * _along(above), stop, segments=20)
+        workshop.body(name, *turned(tongue, bar, *([ball(1.3 * radius, end, segments=20)] if last else [])))
         workshop.turns(name, parent, turn @ (-1.0, 0.0, 0.0), turn @ pivot, (-_SWING, _SWING))
         parent, pivot, below = name, end, above
 
@@ -73,12 +73,12 @@ FAMILY = Family(
     material="metal",
     parameters=(
         Parameter(
-            name="branches", default=4, bounds=(1, 10), usual=(2, 7), words=("branch", "limb"), help="Around the trunk."
+            name="branches", default=4, bounds=(1, 8), usual=(2, 6), words=("branch", "limb"), help="Around the trunk."
         ),
         Parameter(
             name="links",
             default=2,
-            bounds=(1, 4),
+            bounds=(1, 3),
             usual=(1, 3),
             words=("link", "joint", "joint per branch"),
             help="Of a branch.",
