@@ -1,7 +1,8 @@
 """Stage 3: a planned motion tracked by joint servos in an engine, and what became of the object's joint.
 
 Two ways of holding: with a *weld*, the hand is fixed to the part when the fingers have arrived, so that only the plan
-is judged; with *contact*, the fingers close and friction alone holds.
+is judged; with *contact*, the fingers close and friction alone holds. In both, the hand does not collide with the held
+part but, with contact, for the piece between the pads (`grip_piece`).
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class Hold(StrEnum):
     """What connects the hand with the part."""
 
     WELD = "weld"
-    """They are fixed to each other once the fingers have arrived; the hand and the part do not collide."""
+    """They are fixed to each other once the fingers have arrived."""
     CONTACT = "contact"
     """Fingers that close, and friction."""
 

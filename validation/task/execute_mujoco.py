@@ -15,6 +15,7 @@ from kinematify.validation.engines.configurations import GRAVITY
 from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.engines.mujoco_model import parse
 from kinematify.validation.task.execute import Execution, Frame, Hold, Log, judged
+from kinematify.validation.task.grip import grip_piece
 from kinematify.validation.task.motion import timed
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 _ROBOT, _THING = "robot_", "object_"
+_HELD, _OTHERS, _GRIP = 1, 2, 4  # bits: the held part, all that is not held, and what lies between the pads
 _WELD, _LATCH = "kinematify weld", "kinematify latch"
 
 
@@ -122,7 +124,7 @@ class _World:
             frame = spec.worldbody.add_frame(pos=T[:3, 3], quat=_quaternion(T[:3, :3]))
             spec.attach(part, prefix=prefix, frame=frame)
         floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
-        floor.size, floor.contype, floor.conaffinity = [0.0, 0.0, 1.0], 5, 0
+        floor.size, floor.contype, floor.conaffinity = [0.0, 0.0, 1.0], _OTHERS, 0
         self._add_drives(spec)
         self._add_bonds(spec)
         return spec
@@ -134,16 +136,28 @@ class _World:
 
     def _set_contacts(self, robot: mujoco.MjSpec, thing: mujoco.MjSpec) -> None:
         """The robot meets the object and the floor; neither meets itself, which the planner has looked at."""
-        free = self.loaded.hand_links if self.hold is Hold.WELD else frozenset()
         for geom in robot.geoms:
-            geom.contype, geom.conaffinity = 2, 1
+            geom.contype, geom.conaffinity = 0, _HELD | _OTHERS
             geom.condim, geom.friction = 4, [self.settings.friction, 0.02, 0.0001]
             geom.solref[:2], geom.solimp[:2], geom.priority = [2.0 * self.settings.time_step, 1.0], [0.95, 0.99], 1
-            if geom.parent.name in free:
-                geom.conaffinity = 4  # what the hand holds is in none of its groups
+            if geom.parent.name in self.loaded.hand_links:
+                geom.conaffinity = _OTHERS | _GRIP
         for geom in thing.geoms:
             held = geom.parent.name in self.loaded.held_links
-            geom.contype, geom.conaffinity = (1, 0) if held else (5, 0)
+            geom.contype, geom.conaffinity = _HELD if held else _OTHERS, 0
+        if self.hold is Hold.CONTACT:
+            vertices, faces = grip_piece(
+                self.loaded.thing, self.loaded.held, self._leaders(), self.loaded.motion.grasp, self.settings
+            )
+            mesh = thing.add_mesh(name="kinematify grip", uservert=vertices.ravel(), userface=faces.ravel())
+            grip = thing.body(self.loaded.held).add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, mass=0.0)
+            grip.contype, grip.conaffinity = _GRIP, 0
+
+    def _leaders(self) -> dict[str, float]:
+        """Leading joints of the object at the start [rad or m]."""
+        rest = rest_configuration(self.loaded.thing.kinematics)
+        start = {**self.loaded.motion.start, self.loaded.motion.joint: float(self.loaded.motion.opened[0])}
+        return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.thing.moving}
 
     def _add_drives(self, spec: mujoco.MjSpec) -> None:
         robot = self.loaded.motion.robot
@@ -278,7 +292,8 @@ class _World:
         if depths[deepest] > log.depth:
             bodies = (self.model.body(self.model.geom_bodyid[geom]).name for geom in geoms[deepest])
             link, other = sorted(bodies, key=lambda name: not name.startswith(_ROBOT))
-            log.touch(link.removeprefix(_ROBOT), other.removeprefix(_THING), float(depths[deepest]))
+            other = "the floor" if other == "world" else other.removeprefix(_THING)
+            log.touch(link.removeprefix(_ROBOT), other, float(depths[deepest]))
 
     @cached_property
     def _gripped(self) -> BoolArray:

@@ -12,6 +12,7 @@ from PIL import Image
 from kinematify.validation.task import execute_mujoco, execute_pybullet
 from kinematify.validation.task.execute import Execution, Hold, Loaded, load
 from kinematify.validation.task.film import write_film
+from kinematify.validation.task.grip import grip_piece
 from kinematify.validation.task.motion import Motion, timed
 from tests.validation.task import furniture
 
@@ -121,12 +122,25 @@ def test_a_weak_grip_slips(drawer: tuple[Loaded, Path]) -> None:
 
 
 def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Path]) -> None:
-    """The object stands 6 cm farther in front than it was planned: fingers and palm run into the front."""
+    """The object stands 30 cm farther in front than it was planned: the arm runs into it."""
     loaded = drawer[0]
     T = loaded.motion.T_world_object.copy()
-    T[:3, 3] += [-0.06, 0.0, 0.0]
-    result = execute_mujoco.execute(changed(loaded, T_world_object=T), EXECUTION, hold=Hold.CONTACT)
-    assert not result.success or result.share < 0.9 or result.depth > 0.0 or result.tracking > 0.02
+    T[:3, 3] += [-0.3, 0.0, 0.0]
+    result = execute_mujoco.execute(changed(loaded, T_world_object=T), EXECUTION, hold=Hold.WELD)
+    assert not result.success
+    assert result.depth > 0.0
+    assert result.deepest is not None
+
+
+def test_pads_press_on_what_lies_between_them(drawer: tuple[Loaded, Path]) -> None:
+    """A bar that is 12 mm thick; the piece is cut to the size of the pads."""
+    loaded = drawer[0]
+    grasp = loaded.motion.grasp
+    vertices, faces = grip_piece(loaded.thing, loaded.held, {"slide": 0.0}, grasp, EXECUTION)
+    local = (vertices - grasp.T_link_grasp[:3, 3]) @ grasp.T_link_grasp[:3, :3]
+    assert np.ptp(local[:, 1]) == pytest.approx(grasp.width, abs=1e-4)
+    assert np.ptp(local[:, 0]) == pytest.approx(EXECUTION.pad_width, abs=1e-4)
+    assert faces.max() < len(vertices)
 
 
 def test_runs_repeat(drawer: tuple[Loaded, Path], pulled: Execution) -> None:
