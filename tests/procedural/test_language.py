@@ -82,7 +82,10 @@ def test_the_colour_reaches_the_bodies():
         ("cabinet " * 10_000, "at most"),
         ("ein Schrank mit zwei Türen", "names nothing"),
         ("шкаф с двумя дверями", "not English"),
+        ("eine Kommode mit drei Schubladen", "in English"),
         ("a spaceship", "names nothing"),
+        ("a door with no hinge that swings", "needs a hinge"),
+        ("a chest of 5 drawers in 3 rows and 2 columns", "Say one of them"),
         ("a cabinet with -3 drawers", "negative"),
         ("a cabinet with minus two drawers", "negative"),
         ("a cabinet with two drawers and three drawers", "Say one of them"),
@@ -112,6 +115,9 @@ def test_what_cannot_be_built_is_refused_with_its_bounds(text, reason):
 @pytest.mark.parametrize(
     ("text", "values"),
     [
+        ("a chest of drawers, 3 rows and 2 columns", {"drawers": 6}),
+        ("a cabinet with two columns of four drawers", {"drawers": 8}),
+        ("cabinet three doors", {"doors": 3}),
         ("a double door", {"leaves": 2}),
         ("a double sliding door", {"leaves": 2, "kind": "sliding"}),
         ("a door", {}),

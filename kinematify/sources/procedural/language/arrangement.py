@@ -28,6 +28,8 @@ class Mention:
     """Index of the first word."""
     last: int
     """Index of the last word."""
+    grid: tuple[int, int] | None = None
+    """Columns and rows, where the sentence gives both."""
 
 
 @dataclass(kw_only=True)
@@ -95,6 +97,9 @@ def _place(words: Sequence[str], blocks: list[_Block], k: int, between: range, u
 def _cells(words: Sequence[str], mention: Mention, used: list[int]) -> str:
     """The cells of one mention: stacked, side by side, or in a grid."""
     kind, count = mention.kind, mention.count
+    if mention.grid is not None:
+        used.append(mention.first)
+        return _grid(kind, *mention.grid)
     near = range(mention.first, min(mention.last + 6, len(words)))
     for at in near:
         number = NUMBERS.get(words[at - 1], 0) or (int(words[at - 1]) if words[at - 1].isdigit() else 0)

@@ -41,6 +41,10 @@ _PLACES = {
 _OPENABLE = ("door", "lid", "drawer", "flap", "cover", "leaf", "window")
 _JOINING = ("x", "by")
 _NOT = ("no", "without")
+_HINGES = ("hinge", "hinges", "joint", "pivot")
+_SWINGING = ("swing", "swings", "swinging", "hinged", "turns", "rotates")
+_STRANGE = 0.6  # of the words; with no English function word among them the text is in another language
+_LINES = ("row", "column")
 _NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of them counts something else
 
 
@@ -110,19 +114,37 @@ def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
     reading = _Reading(tokens=tokens, family=family, used=set(where), named=frozenset(where))
     reading.understood.append(family.title)
     _counted_name(reading, where)
-    for step in (_sizes, _products, _counts, _choices, _parts_it_has, _openness, _looks):
+    for step in (_sizes, _products, _grids, _counts, _choices, _parts_it_has, _openness, _looks):
         step(reading)
     _arrangement(reading)
+    ignored = tuple(
+        token.given
+        for k, token in enumerate(tokens)
+        if k not in reading.used and token.text not in STOP_WORDS and not token.is_sign
+    )
+    _refuse_what_makes_no_sense(sentence, reading, ignored)
     return Understanding(
         family=family.name,
         values=dict(reading.values),
         understood=tuple(reading.understood),
-        ignored=tuple(
-            token.given
-            for k, token in enumerate(tokens)
-            if k not in reading.used and token.text not in STOP_WORDS and not token.is_sign
-        ),
+        ignored=ignored,
     )
+
+
+def _refuse_what_makes_no_sense(sentence: str, reading: _Reading, ignored: tuple[str, ...]) -> None:
+    texts = [token.text for token in reading.tokens]
+    hinge = any(word in _NOT and reading.text(k + 1) in _HINGES for k, word in enumerate(texts))
+    if hinge and any(word in _SWINGING for word in texts):
+        raise InputError(
+            f"The text {sentence[:80]!r} asks for no hinge and for something that swings. What swings needs a hinge: "
+            "leave out one of the two."
+        )
+    words = sum(not token.is_sign for token in reading.tokens)
+    if len(ignored) > _STRANGE * words and not any(word in STOP_WORDS for word in texts):
+        raise InputError(
+            f"Of the text {sentence[:80]!r} only {', '.join(reading.understood)} was understood. Describe the object "
+            "in English, e.g. 'a cabinet with two doors above three drawers'."
+        )
 
 
 def _vocabulary(families: Iterable[Family]) -> set[str]:
@@ -137,8 +159,9 @@ def _vocabulary(families: Iterable[Family]) -> set[str]:
 
 
 def _bare(phrase: str, words: set[str]) -> tuple[str, ...]:
-    """The words of a name, singular where the singular means something by itself."""
-    return tuple(singular(word, frozenset(words - {word})) for word in phrase.split())
+    """The words of a name, singular where the singular means something by itself; glasses are not made of glasses."""
+    substances = {word for material in MATERIALS.values() for word in material.words}
+    return tuple(singular(word, frozenset(words - {word} - substances)) for word in phrase.split())
 
 
 def _nouns(parameter: Parameter) -> tuple[str, ...]:
@@ -159,7 +182,7 @@ def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) ->
     end = next((k for k, token in enumerate(tokens) if k > 0 and token.text in _HEAD_ENDS), len(tokens))
     found = _named(tokens[:end], names)
     if found:
-        return found[-1]
+        return next((whole for whole in found[:-1] if _counts_parts(tokens, whole[0], found[-1][1])), found[-1])
     anywhere = _named(tokens, names)
     if anywhere:
         return anywhere[0]
@@ -175,6 +198,15 @@ def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) ->
         f"The text {sentence[:80]!r} names nothing that can be built. Nearest: {', '.join(nearest)}. `kinematify "
         "generate --list` shows all categories."
     )
+
+
+def _counts_parts(tokens: tuple[Token, ...], family: Family, where: range) -> bool:
+    """Whether the words are parts of a family, counted, as in `cabinet, three doors`."""
+    number = tokens[where.start - 1].number if where.start else None
+    if number is None or tokens[where.start - 1].text in ARTICLES:
+        return False
+    noun = " ".join(tokens[i].text for i in where)
+    return any(isinstance(p.default, int) and noun in _nouns(p) for p in family.parameters)
 
 
 def _named(tokens: tuple[Token, ...], names: Sequence[_Name]) -> list[tuple[Family, range]]:
@@ -253,6 +285,53 @@ def _products(reading: _Reading) -> None:
                     reading.take(name, size, f"{name} {size:g} m", *range(k, at + 1))
 
 
+# ---- grids ---------------------------------------------------------------------------------------------------------
+
+
+def _grids(reading: _Reading) -> None:
+    """`six drawers in 3 rows and 2 columns`, `two columns of four drawers`; of what the family's name has, too."""
+    for k in range(len(reading.tokens)):
+        grid = _grid(reading, k)
+        found = grid and _gridded(reading, k, grid[2])
+        if not grid or not found:
+            continue
+        columns, rows, end = grid
+        parameter, noun = found
+        total = columns * rows
+        number, first = _number_before(reading, noun) if noun < k else (None, k)
+        said = f"{total} {parameter.name} in {columns} columns and {rows} rows"
+        reading.take(parameter.name, number or total, said, *range(first, k))
+        reading.take(parameter.name, total, said, *range(k, end), noun)
+        reading.mentions.append(
+            Mention(kind=_kind(parameter), count=total, first=min(k, noun), last=max(end - 1, noun), grid=grid[:2])
+        )
+
+
+def _grid(reading: _Reading, k: int) -> tuple[int, int, int] | None:
+    """Columns, rows, and the word behind, of `3 rows and 2 columns` or `two columns of four` at word k."""
+    line, joint = reading.text(k + 1), reading.text(k + 2)
+    numbers = [token.number for token in reading.tokens[k : k + 4]]
+    if len(numbers) < 4 or not numbers[0] or not numbers[3] or line not in _LINES or k in reading.used:
+        return None
+    other = reading.text(k + 4)
+    crossed = other in _LINES and other != line
+    if joint != "of" and not (crossed and joint in ("and", "by", "with", ",", "x")):
+        return None
+    first, second = int(numbers[0]), int(numbers[3])
+    columns, rows = (first, second) if line == "column" else (second, first)
+    return columns, rows, k + (5 if crossed else 4)
+
+
+def _gridded(reading: _Reading, k: int, end: int) -> tuple[Parameter, int] | None:
+    """What stands in the grid, and the word that says so: the next word, or the nearest one before."""
+    for at in (end, *range(k - 1, -1, -1)):
+        for parameter in reading.family.parameters:
+            nouns = _nouns(parameter)
+            if isinstance(parameter.default, int) and singular(reading.text(at), frozenset(nouns)) in nouns:
+                return parameter, at
+    return None
+
+
 # ---- counts --------------------------------------------------------------------------------------------------------
 
 
@@ -285,6 +364,8 @@ def _counted_name(reading: _Reading, where: range) -> None:
     """`a double door` has two of what a door is made of, where the family counts them by its own name."""
     name = " ".join(reading.text(i) for i in where)
     number, first = _number_before(reading, where.start)
+    if (reading.text(where.start - 2), reading.text(where.start - 1)) == ("pair", "of"):  # of glasses, of scissors
+        reading.used.add(where.start - 2)
     parameter = next((p for p in reading.family.parameters if isinstance(p.default, int) and name in _nouns(p)), None)
     if parameter is not None and number is not None and number > 1:
         counting = [k for k in range(first, where.start) if reading.tokens[k].number is not None]
