@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +37,19 @@ def _build(values: Values, workshop: Workshop) -> None:
         boss, hole, links, pivots = leg_solids(hip, side, radius, lengths, values.number("clearance"))
         workshop.add("trunk", boss)
         workshop.cut("trunk", hole)
-        _add_leg(workshop, leg, links, pivots, side, radius=radius, three=values.count("joints") > 2)
+        _add_leg(
+            workshop, leg, links, pivots, side, radius=radius, swings=_swings(values), three=values.count("joints") > 2
+        )
+
+
+def _swings(values: Values) -> tuple[float, float, float]:
+    """How far hips roll inwards, and thighs and shanks swing, until two legs could meet [rad]."""
+    shank = values.number("shank")
+    leg = values.number("thigh") + shank
+    beside = 0.5 * values.number("width")  # from the hip to half the way to the other side
+    between = values.number("length") + 0.04  # of the legs in front and behind
+    thigh = math.asin(min(math.sin(0.8), between / leg))
+    return min(0.2, beside / leg), thigh, math.asin(min(math.sin(1.2), between / shank))
 
 
 def _add_leg(
@@ -47,20 +60,21 @@ def _add_leg(
     side: tuple[int, int],
     *,
     radius: float,
+    swings: tuple[float, float, float],
     three: bool,
 ) -> None:
-    above = "trunk"
+    above, (roll, thigh, shank) = "trunk", swings
     if three:
         workshop.body(f"{leg}_hip", links["hip"])
-        workshop.turns(f"{leg}_hip", "trunk", (1, 0, 0), pivots[0], (-0.2, 0.5) if side[1] > 0 else (-0.5, 0.2))
+        workshop.turns(f"{leg}_hip", "trunk", (1, 0, 0), pivots[0], (-roll, 0.5) if side[1] > 0 else (-0.5, roll))
         above = f"{leg}_hip"
     else:
         hip = pivots[0]
         workshop.add("trunk", links["hip"], cylinder(radius, off(hip, -radius, 0, 0), off(hip, radius, 0, 0)))
     workshop.body(f"{leg}_thigh", links["thigh"])
-    workshop.turns(f"{leg}_thigh", above, (0, 1, 0), pivots[1], (-0.8, 1.0))
+    workshop.turns(f"{leg}_thigh", above, (0, 1, 0), pivots[1], (-thigh, thigh))
     workshop.body(f"{leg}_shank", links["shank"])
-    workshop.turns(f"{leg}_shank", f"{leg}_thigh", (0, 1, 0), pivots[2], (-1.2, 1.2))
+    workshop.turns(f"{leg}_shank", f"{leg}_thigh", (0, 1, 0), pivots[2], (-shank, shank))
 
 
 FAMILY = Family(
