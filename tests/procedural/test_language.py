@@ -115,9 +115,6 @@ def test_what_cannot_be_built_is_refused_with_its_bounds(text, reason):
 @pytest.mark.parametrize(
     ("text", "values"),
     [
-        ("a chest of drawers, 3 rows and 2 columns", {"drawers": 6}),
-        ("a cabinet with two columns of four drawers", {"drawers": 8}),
-        ("cabinet three doors", {"doors": 3}),
         ("a double door", {"leaves": 2}),
         ("a double sliding door", {"leaves": 2, "kind": "sliding"}),
         ("a door", {}),
@@ -134,3 +131,19 @@ def test_names_may_be_counted_and_say_a_kind_and_parts_may_be_refused(text, valu
     meant = understand(text, FAMILIES)
     assert dict(meant.values) == values
     assert not meant.ignored
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("a chest of drawers, 3 rows and 2 columns", {"drawers": 6, "layout": " / ".join(3 * ["(drawer | drawer)"])}),
+        ("a cabinet with two columns of four drawers", {"drawers": 8}),
+        ("a cabinet with two doors above three rows of two drawers", {"doors": 2, "drawers": 6}),
+        ("cabinet three doors", {"doors": 3, "drawers": 0}),
+    ],
+)
+def test_cells_stand_in_grids_and_parts_behind_a_name_are_counted(text, values):
+    meant = understand(text, FAMILIES)
+    assert meant.family == "cabinet"
+    assert values.items() <= meant.values.items()
+    assert meant.ignored == ()
