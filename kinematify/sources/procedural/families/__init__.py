@@ -22,6 +22,7 @@ from kinematify.sources.procedural.families import (
     folding_chair,
     fridge,
     gantry,
+    globe,
     gripper,
     hand,
     hexapod,
@@ -45,6 +46,7 @@ from kinematify.sources.procedural.families import (
     toilet,
     tracked_tree,
     trash_can,
+    umbrella,
     washing_machine,
     window,
 )
@@ -97,6 +99,8 @@ FAMILIES: dict[str, Family] = {
         excavator,
         crane,
         tracked_tree,
+        globe,
+        umbrella,
     )
 }
 """Keyed by name."""
