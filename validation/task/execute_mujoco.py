@@ -178,12 +178,11 @@ class _World:
                     continue
                 if prefix == _ROBOT and joint.name in driven:
                     continue
-                name = _LATCH if (prefix, joint.name) == (_THING, self.loaded.motion.joint) else ""
                 latch = spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT)
                 latch.name1 = prefix + joint.name
                 latch.data[0] = values[joint.name]
-                if name:
-                    latch.name = name
+                if prefix == _THING and joint.name in self._freed:
+                    latch.name = f"{_LATCH} {joint.name}"
 
     def _sides(self) -> Sequence[tuple[str, DeclaredModel, dict[str, float]]]:
         """Prefix, model and values of all joints at the start, of robot and object."""
@@ -254,6 +253,10 @@ class _World:
             [model.jnt_dofadr[k] for k, name in enumerate(names) if name.startswith(prefix)], dtype=np.int64
         )
 
+    @property
+    def _freed(self) -> tuple[str, ...]:
+        return (self.loaded.motion.joint, *self.loaded.motion.freed)
+
     @cached_property
     def _arm_qpos(self) -> IntArray:
         names = self.loaded.motion.robot.arm_joints
@@ -269,7 +272,8 @@ class _World:
     def _take_hold(self) -> None:
         """Let the joint go, and weld the hand to the part where it now is."""
         model, data = self.model, self.data
-        data.eq_active[model.equality(_LATCH).id] = 0
+        for name in self._freed:
+            data.eq_active[model.equality(f"{_LATCH} {name}").id] = 0
         if self.hold is not Hold.WELD:
             return
         weld = model.equality(_WELD).id

@@ -175,9 +175,10 @@ class _World:
     def _take_hold(self) -> None:
         """Let the joint go, and weld the hand to the part where it now is."""
         motion, client = self.loaded.motion, self.client
-        bullet.setJointMotorControl2(
-            self.thing.body, self.thing.joints[motion.joint], bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
-        )
+        for name in (motion.joint, *motion.freed):
+            bullet.setJointMotorControl2(
+                self.thing.body, self.thing.joints[name], bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
+            )
         T_world_tool = self.robot.frame(motion.robot.tool)
         local = [
             np.linalg.inv(side.center(link)) @ T_world_tool

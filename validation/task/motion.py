@@ -39,6 +39,8 @@ class Motion:
     """Arm joints during the pull, the first row is the last of `reach`, shape (m, dof), m >= 2."""
     opened: FloatArray
     """Value of the object's joint in each row of `pull` [rad or m], shape (m,)."""
+    freed: tuple[str, ...] = ()
+    """Other joints of the object that the hand moves too; all that are not named stay where they are."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -135,6 +135,25 @@ class FilmSettings(StageConfig):
     """Rays per pixel for how much of the sky a point sees."""
 
 
+class PourSettings(StageConfig):
+    """Pouring from a cup into a container."""
+
+    turns: int
+    """Ways round of the cup that are tried, at equal angles."""
+    apart: float
+    """Gap between cup and container at the start [m]."""
+    least_lift: float
+    """The cup is lifted by no less [m]."""
+    above: float
+    """The lip stands so high above the container when the cup tilts [m]."""
+    tilt_deg: float
+    """Angle by which the cup is tilted [deg]."""
+    step: float
+    """Of the plan, while the cup is lifted and carried [m]."""
+    step_deg: float
+    """Of the plan, while it tilts [deg]."""
+
+
 class TaskSettings(StageConfig):
     """KV7xx: tasks of a robot."""
 
@@ -144,5 +163,6 @@ class TaskSettings(StageConfig):
     plan: PlanSettings
     execution: ExecutionSettings
     film: FilmSettings
+    pour: PourSettings
     srdf_rows: int
     """Configurations in which pairs of links are looked at for an SRDF."""
