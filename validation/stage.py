@@ -40,6 +40,8 @@ class StageRequest:
     """`time.time()` at which the run should be over; a stage that is late says what it left out."""
     task: TaskRequest | None = None
     """What a robot is to do with the object."""
+    task_engines: tuple[str, ...] = ()
+    """Engines in which its plans are executed."""
     suspects: Mapping[str, Suspicion] = field(default_factory=dict)
     """Joints that earlier stages doubt, for the stage of the task."""
 

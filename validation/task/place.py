@@ -15,6 +15,7 @@ import numpy as np
 from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.robot import forward_kinematics, rest_configuration
 from kinematify.validation.geometry.scene import transformed
+from kinematify.validation.task.grasp import moved_bodies
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
 
 _FLIP = np.diag([-1.0, -1.0, 1.0, 1.0])  # half a turn about the approach direction holds as well
 _GRASP_RANK, _PLACE_RANK = 0.01, 0.02  # dearness of one more try with the same grasp, or the same place [m]
-_QUALITY = 0.15  # a grasp of no quality at all may be so much easier to reach [m]
+_ALIKE = np.cos(np.radians(30.0))
+_QUALITY = 0.06  # a grasp of no quality at all may be so much easier to reach [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,22 +60,28 @@ class Place:
     """The grasp or the same after half a turn, shape (4, 4)."""
 
 
-def object_motion(scene: Scene, joint: str, end: float, steps: int) -> ObjectMotion:
+def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) -> ObjectMotion:
     """Stand the object on the floor and move one joint from rest to a value.
+
+    An object whose part swings down to the floor, such as an oven to be built in, stands on a plinth.
 
     Args:
         scene: The object, in metres.
         joint: One of its leading joints.
         end: Value at the end [rad or m].
-        steps: Number of values.
+        settings: Number of values, and room for a hand above the floor.
     """
     leader = [travel.joint for travel in scene.travels].index(joint)
-    values = np.linspace(scene.travels[leader].rest, end, steps)
-    rows = np.tile(scene.mechanism.rest, (steps, 1))
+    values = np.linspace(scene.travels[leader].rest, end, settings.steps)
+    rows = np.tile(scene.mechanism.rest, (settings.steps, 1))
     rows[:, leader] = values
     box = object_box(scene)
+    body_poses = scene.poses(rows)
+    lowest = np.array([_lowest(scene, joint, poses) for poses in body_poses])
+    sinks = lowest.min() < lowest[0] - 0.5 * settings.plinth
+    bottom = min(float(box[0, 2]), float(lowest.min()) - settings.plinth) if sinks else float(box[0, 2])
     T_world_object = np.eye(4)
-    T_world_object[:3, 3] = [*(-0.5 * box.sum(axis=0)[:2]), -box[0, 2]]
+    T_world_object[:3, 3] = [*(-0.5 * box.sum(axis=0)[:2]), -bottom]
     names = [travel.joint for travel in scene.travels]
     child = scene.model.kinematics.joint_by_name[joint].child
     links = [
@@ -85,8 +93,15 @@ def object_motion(scene: Scene, joint: str, end: float, steps: int) -> ObjectMot
         values=values,
         rows=rows,
         link_poses=T_world_object @ np.stack(links),
-        body_poses=scene.poses(rows),
+        body_poses=body_poses,
     )
+
+
+def _lowest(scene: Scene, joint: str, poses: FloatArray) -> float:
+    """Lowest point of what a joint moves, bodies at `poses` (B, 4, 4), frame of the root link [m]."""
+    moved = [body for bodies in moved_bodies(scene, joint) for body in bodies]
+    corners = [transformed(corners, poses[body])[:, 2].min() for body in moved for corners in scene.bodies[body].shapes]
+    return float(min(corners, default=np.inf))
 
 
 def object_box(scene: Scene) -> FloatArray:
@@ -124,7 +139,7 @@ class Places:
             given: The robot stands there, shape (4, 4); anywhere if None.
         """
         found: list[tuple[float, int, int, Place]] = []
-        for number, grasp in enumerate(grasps[: self._settings.grasps]):
+        for number, grasp in enumerate(self._diverse(grasps)):
             for T_link_tool in (grasp.T_link_grasp, grasp.T_link_grasp @ _FLIP):
                 tools = self._motion.link_poses[self._looked_at] @ T_link_tool
                 bases = self._bases(tools[:, :3, 3].mean(axis=0)) if given is None else given[None]
@@ -137,6 +152,16 @@ class Places:
                 ]  # fmt: skip
         found.sort(key=lambda item: item[0])
         return [place for _, place in sorted(self._spread(found), key=lambda item: item[0])][: self._settings.places]
+
+    def _diverse(self, grasps: Sequence[Grasp]) -> list[Grasp]:
+        """The best grasps, but of each approach direction a few: what one cannot follow, another one may."""
+        settings, chosen = self._settings, list[Grasp]()
+        for grasp in grasps:
+            approach = grasp.T_link_grasp[:3, 2]
+            alike = sum(float(other.T_link_grasp[:3, 2] @ approach) > _ALIKE for other in chosen)
+            if alike < settings.per_direction:
+                chosen.append(grasp)
+        return chosen[: settings.grasps]
 
     def _spread(self, found: list[tuple[float, int, int, Place]]) -> list[tuple[float, Place]]:
         """Make further tries of the same grasp, or of the same place, dearer."""

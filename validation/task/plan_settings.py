@@ -14,6 +14,8 @@ class PlanSettings(StageConfig):
     """Joints without limits are to be turned so far [rad]."""
     least_way: float
     """Joints with a shorter way of what is held are not planned for [m]."""
+    plinth: float
+    """What swings down to the floor ends so far above it, the object on a plinth [m]."""
     opened: float
     """Share of the range from which a pull counts as complete."""
     iterations: int
@@ -34,6 +36,8 @@ class PlanSettings(StageConfig):
     """Samples of the arm from which inverse kinematics starts."""
     grasps: int
     """Grasps that are planned with at most, the best first."""
+    per_direction: int
+    """Of these, so many at most come in from nearly the same direction."""
     bearings: int
     """Directions around the part in which the arm may stand."""
     distances: list[float]

@@ -63,6 +63,8 @@ class PullPlan:
     """Arm joints from the grasp on [rad or m], shape (m, dof)."""
     opened: FloatArray | None
     """Value of the object's joint in each row of `pull` [rad or m], shape (m,)."""
+    way: float
+    """Longest way of a point of what is moved, over the whole range [m]."""
     fraction: float
     """How much of the declared range opens, in [0, 1]."""
     free: float
@@ -151,16 +153,17 @@ class _Planning:
         moved_bodies(scene, joint)
         self._leader = [travel.joint for travel in scene.travels].index(joint)
         self._travel = scene.travels[self._leader]
-        self._motion = object_motion(scene, joint, pull_end(self._travel, settings), self._plan.steps)
+        self._motion = object_motion(scene, joint, pull_end(self._travel, settings), self._plan)
         self._places = Places(arm, self._motion, object_box(scene), self._plan)
         self._grasps: GraspReport | None = None
         self._tried = _Tried()
-        self._free = 1.0
+        self._free, self._longest = 1.0, 0.0
 
     def run(self) -> PullPlan:
         """Look at the object first, then at grasps, then at places."""
         own, carried = moved_bodies(self._scene, self._joint)
-        if self._way([*own, *carried]) < self._plan.least_way:
+        self._longest = self._way([*own, *carried])
+        if self._longest < self._plan.least_way:
             words = f"it moves what it carries by less than {self._plan.least_way * 1e3:.0f} mm"
             return self._ended(Failure.NO_WAY, words)
         self._free, blocked, by_parent = self._own_freedom()
@@ -290,6 +293,7 @@ class _Planning:
             reach=way,
             pull=path,
             opened=None if pull is None else pull.values,
+            way=self._longest,
             fraction=fraction,
             free=self._free,
             failure=failure,
