@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.sources.procedural.family import Family, Parameter
 from kinematify.sources.procedural.pieces.bearings import bent_fork, stub
 from kinematify.sources.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
-from kinematify.sources.procedural.solids import ball, bore, box, cylinder, off, rod
+from kinematify.sources.procedural.solids import ball, bore, box, cylinder, off, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -83,18 +83,20 @@ def _add_trolley(values: Values, workshop: Workshop, half: float, thick: float, 
 
 
 def _add_hook(values: Values, workshop: Workshop, parent: str, top: FloatArray, *, half: float, length: float) -> None:
-    """A stiff rope of `length` below a point of the parent, and a hook block that runs on it."""
+    """Two stiff ropes of `length` below a point of the parent, tied at both ends, and a hook block on them."""
     clearance = values.number("clearance")
-    rope, size = 0.16 * half, 0.9 * half
-    tight = min(clearance, 0.5 * rope)
+    rope, size = 0.12 * half, 0.9 * half
+    tight, x = min(clearance, 0.5 * rope), 0.42 * size
     end = off(top, 0, 0, -length)
-    workshop.add(parent, cylinder(rope, top, end), ball(2.2 * rope, end))
+    ties = [box(off(at, -x - rope, -rope, -rope), off(at, x + rope, rope, rope)) for at in (top, end)]
+    falls = [(off(top, s * x, 0, 0), off(end, s * x, 0, 0)) for s in (-1, 1)]
+    workshop.add(parent, *ties, *(cylinder(rope, *fall) for fall in falls))
     start = off(top, 0, 0, -0.6 * half - 2.0 * clearance)
-    block = cylinder(0.6 * size, off(start, 0, 0, -size), start) - bore(rope, tight, off(end, 0, 0, -1.0), top)
-    x = 0.45 * size
-    shape = ((1.0, 0.8), (1.0, 1.6), (1.3, 2.0), (2.2, 2.1), (2.5, 1.6))
-    points = [off(start, across * x, 0, -down * size) for across, down in shape]
-    hook = [rod(0.14 * size, a, b, segments=16) for a, b in pairwise(points)]
+    block = box(off(start, -0.62 * size, -0.35 * size, -size), off(start, 0.62 * size, 0.35 * size, 0))
+    block -= union(*(bore(rope, tight, off(low, 0, 0, -1.0), high) for high, low in falls))
+    shape = ((0.0, 0.8), (0.0, 1.4), (0.3, 1.8), (-0.1, 2.2), (-0.5, 2.0), (-0.6, 1.6))
+    points = [off(start, 0, ahead * size, -down * size) for ahead, down in shape]
+    hook = [rod(0.13 * size, one, other, segments=16) for one, other in pairwise(points)]
     workshop.body("hook", block, *hook, material="steel", color="yellow")
     travel = length - 0.6 * half - 2.0 * clearance - 2.4 * size - 3.0 * rope
     workshop.slides("hook", parent, (0, 0, -1), start, (0.0, travel), rest=values.number("open"))
