@@ -98,4 +98,14 @@ CHECKS: tuple[Check, ...] = (
         matters="A policy has no weld. Round knobs and thin rims slip where the motion turns in the hand.",
         remedy="Take a hold with flat sides, or let the hand turn about the hold.",
     ),
+    Check(
+        id="KV709",
+        title="films of the task",
+        severity=Severity.NOTE,
+        blame=Blame.TASK,
+        verifies="Nothing: it names the films. Each shows the first execution of a plan, as a GIF, and beside it a "
+        "still of its three moments: before, at the grasp, and open.",
+        matters="A picture shows at once whether the hold and the motion are what was meant.",
+        remedy="Nothing to do.",
+    ),
 )

@@ -155,7 +155,8 @@ class Places:
 
     def _diverse(self, grasps: Sequence[Grasp]) -> list[Grasp]:
         """The best grasps, but of each approach direction a few: what one cannot follow, another one may."""
-        settings, chosen = self._settings, list[Grasp]()
+        settings = self._settings
+        chosen: list[Grasp] = []
         for grasp in grasps:
             approach = grasp.T_link_grasp[:3, 2]
             alike = sum(float(other.T_link_grasp[:3, 2] @ approach) > _ALIKE for other in chosen)

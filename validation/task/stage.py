@@ -36,12 +36,13 @@ if TYPE_CHECKING:
     from kinematify.validation.geometry.scene import Scene
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
     from kinematify.validation.task.request import Suspicion, TaskRequest
+    from kinematify.validation.task.robot import TaskRobot
     from kinematify.validation.task.sizes import Sizing
 
 OBJECT_FILE = "object.urdf"
 LEEWAY = 20.0
 """Before the deadline no more work is begun, so that what is known can be told [s]."""
-_FILM_SECONDS = 10.0  # a film is begun only with so much time left [s]
+_FILM_SECONDS = 15.0  # a film is begun only with so much time left [s]
 _CHECK_OF = {
     Failure.NO_WAY: "KV702",
     Failure.NO_GRASP: "KV702",
@@ -66,6 +67,8 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     setting.plan_all()
     _tell_plans(recorder, setting)
     _tell_executions(recorder, setting)
+    if recorder.wants("KV709"):
+        _tell_films(recorder, setting)
 
 
 class _Setting:
@@ -114,7 +117,9 @@ class _Setting:
     @cached_property
     def worlds(self) -> list[Loaded]:
         """What the engines load, for each plan that leads anywhere."""
-        motions = [motion for motion in map(self._motion, self.plans) if motion is not None]
+        thing = self.request.work / OBJECT_FILE
+        found = [motion_of(plan, self.arm.robot, thing) for plan in self.plans]
+        motions = [motion for motion in found if motion is not None]
         if not motions:
             return []
         loaded = load(motions[0], self.request.work, self.request.settings.prepare)
@@ -137,10 +142,13 @@ class _Setting:
 
     def film_all(self) -> Iterator[tuple[str, Path]]:
         """Film the first execution of each plan."""
+        longest = _FILM_SECONDS
         for world in self.worlds if self.task.films is not None else ():
             joint = world.motion.joint
-            if joint in self.runs and self.remaining > _FILM_SECONDS:
+            if joint in self.runs and self.remaining > longest:
+                start = time.monotonic()
                 yield joint, self._film(joint, world, self.runs[joint])
+                longest = max(longest, time.monotonic() - start)
 
     @property
     def remaining(self) -> float:
@@ -154,23 +162,29 @@ class _Setting:
         write_film(loaded, execution, film, film.with_suffix(".png"), self.settings.film)
         return film
 
-    def _motion(self, plan: PullPlan) -> Motion | None:
-        if plan.pull is None or plan.reach is None or plan.opened is None or plan.place is None:
-            return None
-        if len(plan.pull) < 2:
-            return None
-        return Motion(
-            robot=self.arm.robot,
-            object_urdf=self.request.work / OBJECT_FILE,
-            T_world_base=plan.place.T_world_base,
-            T_world_object=plan.T_world_object,
-            joint=plan.joint,
-            start={},
-            grasp=plan.place.grasp,
-            reach=plan.reach,
-            pull=plan.pull,
-            opened=plan.opened,
-        )
+
+def motion_of(plan: PullPlan, robot: TaskRobot, thing: Path) -> Motion | None:
+    """Return what the engines are to track; None where the plan leads nowhere.
+
+    Args:
+        plan: The plan.
+        robot: Its robot.
+        thing: URDF of the object at its real size.
+    """
+    if plan.pull is None or plan.reach is None or plan.opened is None or plan.place is None or len(plan.pull) < 2:
+        return None
+    return Motion(
+        robot=robot,
+        object_urdf=thing,
+        T_world_base=plan.place.T_world_base,
+        T_world_object=plan.T_world_object,
+        joint=plan.joint,
+        start={},
+        grasp=plan.place.grasp,
+        reach=plan.reach,
+        pull=plan.pull,
+        opened=plan.opened,
+    )
 
 
 def _set_up(request: StageRequest, task: TaskRequest, check: OpenCheck) -> _Setting | None:
@@ -284,7 +298,7 @@ def _find_doubt(check: OpenCheck, plan: PullPlan, suspect: Suspicion) -> None:
 
 
 def _tell_executions(recorder: Recorder, setting: _Setting) -> None:
-    """KV707 and KV708; the films come last, since time may run out."""
+    """KV707 and KV708."""
     for name, engine, hold in (
         ("KV707", "mujoco", Hold.WELD), ("KV707", "pybullet", Hold.WELD), ("KV708", "mujoco", Hold.CONTACT),
     ):  # fmt: skip
@@ -299,14 +313,19 @@ def _tell_executions(recorder: Recorder, setting: _Setting) -> None:
                 check.skip(f"time ran out before {len(setting.worlds) - told} of the plans were executed")
             elif not told:
                 check.skip("no joint has a plan that could be executed")
-            if name == "KV708":
-                for joint, film in setting.film_all():
-                    check.find(
-                        f"{film.name} shows how {joint} is opened.",
-                        "Nothing to do.",
-                        severity=Severity.NOTE,
-                        joint=joint,
-                    )
+
+
+def _tell_films(recorder: Recorder, setting: _Setting) -> None:
+    """KV709."""
+    with recorder.check("KV709") as check:
+        films = list(setting.film_all())
+        for joint, film in films:
+            words = f"{film.name} shows how {joint} is opened."
+            check.find(words, "Nothing to do.", severity=Severity.NOTE, joint=joint)
+        if len(films) < len(setting.runs):
+            check.skip("no films were asked for" if setting.task.films is None else "time ran out before all films")
+        elif not films:
+            check.skip("no plan was executed that could be shown")
 
 
 def _tell_execution(check: OpenCheck, joint: str, execution: Execution, setting: _Setting) -> None:
