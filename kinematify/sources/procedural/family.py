@@ -39,7 +39,7 @@ class Parameter:
     choices: tuple[str, ...] = ()
     """Of a choice; a seed draws from all of them."""
     words: tuple[str, ...] = ()
-    """How people call what is counted or measured, singular; the name itself and its singular count anyway."""
+    """How people call what is counted, measured or chosen, singular; the name itself and its singular count anyway."""
     choice_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How people call a choice, besides its own name."""
 

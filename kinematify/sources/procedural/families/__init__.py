@@ -17,6 +17,7 @@ from kinematify.sources.procedural.families import (
     dishwasher,
     door,
     excavator,
+    eyeglasses,
     fan,
     faucet,
     folding_chair,
@@ -40,6 +41,7 @@ from kinematify.sources.procedural.families import (
     serial_arm,
     snake,
     stapler,
+    suitcase,
     switch_panel,
     table,
     toaster,
@@ -101,6 +103,8 @@ FAMILIES: dict[str, Family] = {
         tracked_tree,
         globe,
         umbrella,
+        suitcase,
+        eyeglasses,
     )
 }
 """Keyed by name."""

@@ -123,9 +123,10 @@ FAMILY = Family(
             name="cap",
             default="screw",
             choices=("screw", "pull", "flip"),
+            words=("lid", "top"),
             help="How it opens.",
             choice_words={
-                "screw": ("screw top", "screw on", "twist", "twist off", "twisting", "lid"),
+                "screw": ("screw top", "screw on", "twist", "twist off", "twisting"),
                 "pull": ("stopper", "cork", "plug", "push on", "pull off"),
                 "flip": ("flip top", "hinged", "flip up", "snap"),
             },

@@ -98,6 +98,7 @@ FAMILY = Family(
             name="handle",
             default="grip",
             choices=("grip", "wire"),
+            words=("bail",),
             help="A bail with a grip around its top, or the wire alone.",
             choice_words={"grip": ("with a grip",), "wire": ("bare wire",)},
         ),

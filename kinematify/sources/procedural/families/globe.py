@@ -85,6 +85,7 @@ FAMILY = Family(
             name="mount",
             default="arc",
             choices=("arc", "ring"),
+            words=("meridian",),
             help="A half or a full meridian.",
             choice_words={"arc": ("half meridian",), "ring": ("full meridian",)},
         ),

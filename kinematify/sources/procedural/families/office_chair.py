@@ -9,17 +9,15 @@ import numpy as np
 
 from kinematify.sources.procedural.family import Family, Parameter
 from kinematify.sources.procedural.pieces.bearings import at, bent_fork, stub
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, off, rod, union
+from kinematify.sources.procedural.pieces.castors import STEM, castor
+from kinematify.sources.procedural.solids import bore, box, cylinder, hull, rod
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.sources.procedural.family import Values
     from kinematify.sources.procedural.workshop import Workshop
 
-_STEM = 0.006  # radius of a castor's stem [m]
-_TREAD = 0.011  # half the width of a wheel [m]
 _COLUMN = 0.026  # radius of the tube around the gas spring [m]
 _SPRING = 0.014  # radius of the gas spring [m]
 _FORK = (0.07, 0.016)  # width and radius of the backrest's hinge [m]
@@ -48,26 +46,13 @@ def _add_castor(values: Values, workshop: Workshop, number: int, angle: float, l
         cylinder(0.016, (0, 0, level), (0, 0, level + 0.03), segments=24),
     )
     workshop.add("base", arm.transform(place))
-    workshop.cut("base", bore(_STEM, clearance, (0, 0, level - 0.01), (0, 0, level + 0.024)).transform(place))
+    workshop.cut("base", bore(STEM, clearance, (0, 0, level - 0.01), (0, 0, level + 0.024)).transform(place))
     axle = np.array([0.0, -0.4 * wheel, wheel])
-    castor, roller = (solid.transform(place) for solid in _castor(axle, level - clearance, wheel, clearance))
-    workshop.body(f"castor_{number}", castor, material="metal")
+    fork, roller = (solid.transform(place) for solid in castor(axle, level - clearance, wheel, clearance))
+    workshop.body(f"castor_{number}", fork, material="metal")
     workshop.turns(f"castor_{number}", "base", (0, 0, 1), place[:, 3])
     workshop.body(f"wheel_{number}", roller, material="rubber")
     workshop.turns(f"wheel_{number}", f"castor_{number}", turn[:, 0], place @ (*axle, 1.0))
-
-
-def _castor(axle: FloatArray, top: float, wheel: float, clearance: float) -> tuple[Manifold, Manifold]:
-    """A fork whose stem stands on the z axis and whose pin carries a wheel, and that wheel."""
-    tight = min(clearance, 0.0015)
-    y, inner, outer = axle[1], _TREAD + tight, _TREAD + 0.006
-    crown = box((-outer, y - 0.012, 2.0 * wheel + 0.004), (outer, 0.012, top))
-    cheeks = [box((x, y - 0.01, wheel - 0.01), (x + outer - inner, y + 0.01, top)) for x in (-outer, inner)]
-    ends = off(axle, 1e-3 - outer, 0, 0), off(axle, outer - 1e-3, 0, 0)
-    stem = cylinder(_STEM, (0, 0, top - 0.005), (0, 0, top + 0.022))
-    tyre = cylinder(wheel, off(axle, -_TREAD, 0, 0), off(axle, _TREAD, 0, 0))
-    roller = tyre - bore(0.004, tight, off(axle, -0.1, 0, 0), off(axle, 0.1, 0, 0))
-    return union(crown, stem, cylinder(0.004, *ends), *cheeks), roller
 
 
 def _add_spring(values: Values, workshop: Workshop, level: float, column: float) -> float:

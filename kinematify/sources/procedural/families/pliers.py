@@ -78,6 +78,7 @@ FAMILY = Family(
             name="jaws",
             default="flat",
             choices=("flat", "needle", "cutting"),
+            words=("jaw", "nose"),
             help="Shape of the jaws.",
             choice_words={
                 "flat": ("combination", "flat nose"),
@@ -89,6 +90,7 @@ FAMILY = Family(
             name="grips",
             default="sleeve",
             choices=("sleeve", "none"),
+            words=("grip", "handle"),
             help="Around the ends of the handles.",
             choice_words={"sleeve": ("insulated", "cushioned"), "none": ("bare",)},
         ),

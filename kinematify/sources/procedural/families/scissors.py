@@ -81,6 +81,7 @@ FAMILY = Family(
             name="loops",
             default="round",
             choices=("round", "oval", "mixed"),
+            words=("loop", "handle"),
             help="Of the handles: both round, both long, or one of each.",
         ),
     ),

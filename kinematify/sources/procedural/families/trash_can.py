@@ -144,6 +144,7 @@ FAMILY = Family(
             name="lid",
             default="pedal",
             choices=("pedal", "swing", "lift"),
+            words=("cover",),
             help="How it opens.",
             choice_words={
                 "pedal": ("pedal bin", "foot pedal"),

@@ -97,7 +97,17 @@ def _add_controls(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="washing_machine",
     title="washing machine",
-    words=("washing machine", "washer", "dryer", "tumble dryer", "laundry machine", "clothes washer"),
+    words=(
+        "washing machine",
+        "washer",
+        "dryer",
+        "tumble dryer",
+        "laundry machine",
+        "clothes washer",
+        "front loading washer",
+        "front loading washing machine",
+        "front loader",
+    ),
     material="metal",
     parameters=(
         Parameter(name="width", default=0.6, unit="m", bounds=(0.4, 0.9), usual=(0.5, 0.7), help="Outer width."),

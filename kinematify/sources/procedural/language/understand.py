@@ -428,12 +428,12 @@ def _choices(reading: _Reading) -> None:
 
 def _parts_it_has(reading: _Reading) -> None:
     """`with a lid`: what every object of the family has, and only its kind could be chosen; `no handle`."""
-    chosen = {p.name: p.choices for p in reading.family.parameters if p.choices}
+    chosen = {name: p for p in reading.family.parameters if p.choices for name in (p.name, *p.words)}
     for k, token in enumerate(reading.tokens):
-        choices = chosen.get(token.text)
-        if choices and "none" in choices and reading.text(k - 1) in _NOT:
-            reading.take(token.text, "none", f"no {token.text}", k - 1, k)
-        elif choices:
+        parameter = chosen.get(token.text)
+        if parameter and "none" in parameter.choices and reading.text(k - 1) in _NOT:
+            reading.take(parameter.name, "none", f"no {token.text}", k - 1, k)
+        elif parameter:
             reading.used.add(k)
 
 
