@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kinematify.errors import OutputError
+from kinematify.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from kinematify.cli.report_files import ReportFiles
@@ -27,6 +27,7 @@ class TaskOptions:
     grasp: tuple[float, float, float] | None
     scale: float | None
     films: Path | None
+    into: Path | None = None
 
     def request(self, files: ReportFiles, package_dirs: tuple[Path, ...]) -> TaskRequest | None:
         """What the options ask for; the robot is read once, so that what is wrong with it is said at once.
@@ -48,6 +49,7 @@ class TaskOptions:
             package_dirs=package_dirs,
             grasp=self.grasp or None,
             scale=self.scale,
+            into=self._container(),
             films=self._films(files),
         )
         with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
@@ -55,9 +57,16 @@ class TaskOptions:
         return request
 
     def _refuse_without_task(self) -> None:
-        for name in ("robot", "tool", "gripper", "grasp", "scale", "films"):
+        for name in ("robot", "tool", "gripper", "grasp", "scale", "films", "into"):
             if getattr(self, name):
                 raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
+
+    def _container(self) -> Path | None:
+        if (self.into is None) == (self.task == "pour"):
+            raise click.UsageError("--task pour and --into, which names the container, belong together.")
+        if self.into is not None and not self.into.is_file():
+            raise InputError(f"--into {self.into} is no file. Give the URDF of the container that is poured into.")
+        return None if self.into is None else self.into.absolute()
 
     def _films(self, files: ReportFiles) -> Path:
         beside = next((path.absolute().parent for path in files.paths.values()), Path.cwd())

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         "kinematify validate model.urdf --checks 'KV3*,KV401' --skip KV305 --budget 10",
         "kinematify validate model.urdf --suppress accepted.yaml --json - > answer.json",
         "kinematify validate cabinet.urdf --task pull",
+        "kinematify validate cup.urdf --task pour --into bowl.urdf",
         "kinematify validate cabinet.urdf --task pull --robot fetch.urdf --tool gripper_link --checks 'KV7*'",
     ),
 )
@@ -61,7 +62,12 @@ if TYPE_CHECKING:
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
 )
-@click.option("--task", type=click.Choice(["pull"]), help="Let a robot open every joint (KV7xx), with a film of each.")
+@click.option(
+    "--task",
+    type=click.Choice(["pull", "pour"]),
+    help="Let a robot open every joint, or pour from a cup (KV7xx), with a film.",
+)
+@click.option("--into", type=click.Path(path_type=Path), metavar="FILE", help="Container to pour into, a URDF.")
 @click.option("--robot", type=click.Path(path_type=Path), metavar="FILE", help="Its URDF; a built-in arm if not given.")
 @click.option("--tool", metavar="LINK", help="Link of the robot that carries the fingers.")
 @click.option("--gripper", metavar="JOINTS", help="Joints of its fingers, separated by commas; found if not given.")
@@ -92,6 +98,7 @@ def command(
     seed: int | None,
     jobs: int | None,
     task: str | None,
+    into: Path | None,
     robot: Path | None,
     tool: str | None,
     gripper: str | None,
@@ -118,7 +125,9 @@ def command(
 
     files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html)
     files.check()
-    options = TaskOptions(task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, scale=scale, films=films)
+    options = TaskOptions(
+        task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, scale=scale, films=films, into=into
+    )
     asked = options.request(files, _existing(package_dirs))
     run = ValidationRun(
         models=find_models(models),

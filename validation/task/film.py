@@ -73,7 +73,7 @@ def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path, se
     seconds = execution.frames[-1].time - execution.frames[0].time
     _write_gif(pictures, film, seconds / max(len(pictures) - 1, 1), settings)
     panels = stage.pictures(moments, azimuth, (settings.still_width, settings.still_height))
-    _write_still(panels, still, ("before", "at the grasp", f"opened {execution.share:.0%} of the planned way"))
+    _write_still(panels, still, ("before", "at the grasp", f"after {execution.share:.0%} of the planned way"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
     from kinematify.validation.task.robot import TaskRobot
 
-PULL = "pull"
-TASKS = (PULL,)
+PULL, POUR = "pull", "pour"
+TASKS = (PULL, POUR)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,6 +46,8 @@ class TaskRequest:
     """Hold the part there, frame of the object's root link [units of the file]; found if None."""
     scale: float | None = None
     """Metres per unit of the object; from the table of sizes if None."""
+    into: Path | None = None
+    """URDF of the container that is poured into, absolute."""
     films: Path | None = None
     """Existing folder for films and stills; none are made if None."""
     stem: str = PULL
