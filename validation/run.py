@@ -5,14 +5,15 @@ Every check of the catalogue ends up in the report: passed, failed, skipped or b
 
 from __future__ import annotations
 
+import importlib
 import os
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.validation import agreement
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
@@ -96,8 +97,8 @@ _LAST_GUARD = "KV152"
 """Told when every mesh file has been opened and read."""
 
 
-_DOUBTS = frozenset(check for check in CATALOGUE if check.startswith("KV3"))
-"""What the stage of a task wants to know of the joints."""
+_DOUBTS = frozenset(("KV310", "KV320", "KV341", "KV342", "KV343", "KV344", "KV345", "KV346"))
+"""What the stage of a task wants to know of the joints: whether parent, axis, place, type and direction are right."""
 _LEEWAY = 20.0
 """Seconds in which the stage of a task may still finish what it is at."""
 
@@ -105,6 +106,9 @@ _LEEWAY = 20.0
 def _checks(task: TaskRequest | None) -> dict[str, Check]:
     """Checks of the report."""
     return {name: check for name, check in CATALOGUE.items() if task is not None or not name.startswith("KV7")}
+
+
+_importer = ThreadPoolExecutor(1, thread_name_prefix="import")
 
 
 class _Run:
@@ -127,6 +131,8 @@ class _Run:
     def all(self, request: StageRequest, engines: Sequence[str], workers: int) -> None:
         """Run everything that can run."""
         start_server()
+        # Importing it takes a second, and nothing needs it until the stages, which run elsewhere, have ended.
+        comparing = _importer.submit(importlib.import_module, "kinematify.validation.agreement")
         asset_request = replace(request, selected=request.selected | _GUARDS)
         usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)
@@ -152,7 +158,7 @@ class _Run:
             "the engine was not asked for",
         )
         chosen = [engine for engine in ENGINES if engine in engines]
-        agreement.compare(request, Recorder(self._take, request.selected), chosen, self._failures)
+        comparing.result().compare(request, Recorder(self._take, request.selected), chosen, self._failures)
         if self.task is not None:
             self._use(request, chosen)
 

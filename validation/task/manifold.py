@@ -7,6 +7,7 @@ and the tangent bundle leaves the manifold.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 _HALF_METRES = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
 _DELTA = 1e-4  # of the share, for its derivative
+_STEP = 0.02  # between states on the manifold: the middles deviate with its square
+_HALVINGS = 5
 _SEEDED: list[int] = []
 
 
@@ -51,7 +54,7 @@ class _HoldsOn(ob.Constraint):  # type: ignore[misc]
 
     def __init__(self, puller: Puller, targets: FloatArray) -> None:
         super().__init__(puller.arm.dof + 1, 6)
-        self._puller, self._targets = puller, targets
+        self._puller, self.targets = puller, targets
         self.counter = Counter(puller.settings.manifold_checks)
 
     def function(self, x: FloatArray, out: FloatArray) -> None:
@@ -65,7 +68,7 @@ class _HoldsOn(ob.Constraint):  # type: ignore[misc]
         out[:, -1] = (self.residual(ahead) - self.residual(behind)) / (2.0 * _DELTA)
 
     def residual(self, x: FloatArray) -> FloatArray:
-        target = self._puller.target_at(self._targets, float(x[-1]))
+        target = self._puller.target_at(self.targets, float(x[-1]))
         return np.asarray(_HALF_METRES * self._puller.arm.error(x[:-1], target))
 
 
@@ -86,9 +89,11 @@ def search_manifold(
     """
     quiet_and_seeded(seed)
     constraint = _HoldsOn(puller, puller.targets(place))
-    for goal in goals[:1]:
+    for goal in goals:
         states = _solved(puller, place, constraint, start, goal)
-        if states is not None and _keeps(constraint, states, puller.settings.residual):
+        if states is not None:
+            states = _refined(puller, constraint, states)
+        if states is not None:
             return states
     return None
 
@@ -104,6 +109,7 @@ def _solved(
         bounds.setHigh(k, float(high))
     ambient.setBounds(bounds)
     space = ob.AtlasStateSpace(ambient, constraint)
+    space.setDelta(_STEP)
     setup = og.SimpleSetup(ob.ConstrainedSpaceInformation(space))
 
     def valid(state: ob.State) -> bool:
@@ -129,7 +135,26 @@ def _solved(
     return np.array(rows)
 
 
-def _keeps(constraint: _HoldsOn, states: FloatArray, residual: float) -> bool:
-    """Whether the states and the middles between them keep the constraint."""
-    middles = 0.5 * (states[1:] + states[:-1])
-    return all(float(np.linalg.norm(constraint.residual(x))) <= residual for x in (*states, *middles))
+def _refined(puller: Puller, constraint: _HoldsOn, states: FloatArray) -> FloatArray | None:
+    """Put states between those whose middle leaves the manifold, shape (n, dof + 1); None where that fails.
+
+    Whoever follows the path goes straight from state to state, so the straight lines must keep the constraint too.
+    """
+    most, targets = puller.settings.residual, constraint.targets
+    if any(float(np.linalg.norm(constraint.residual(x))) > most for x in states):
+        return None
+    for _ in range(_HALVINGS):
+        rows, kept = [states[0]], True
+        for before, after in pairwise(states):
+            middle = 0.5 * (before + after)
+            if float(np.linalg.norm(constraint.residual(middle))) > most:
+                q = puller.arm.solve(puller.target_at(targets, float(middle[-1])), middle[:-1], center=False)
+                if q is None:
+                    return None
+                rows.append(np.append(q, middle[-1]))
+                kept = False
+            rows.append(after)
+        if kept:
+            return states
+        states = np.array(rows)
+    return None

@@ -10,6 +10,10 @@ class PlanSettings(StageConfig):
 
     seconds: float
     """Time of one core for the plan of one joint [s]."""
+    smallest: float
+    """Objects with a smaller extent are nothing that an arm could use [m]."""
+    largest: float
+    """The same for larger ones [m]."""
     range_turn: float
     """Joints without limits are to be turned so far [rad]."""
     least_way: float

@@ -17,7 +17,7 @@ from kinematify.validation.catalogue.task import CHECKS
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.scene import read_scene, visible_shapes
 from kinematify.validation.read import read_model
-from kinematify.validation.task import execute_mujoco, execute_pybullet
+from kinematify.validation.task import execute_mujoco, execute_pybullet, pour_stage
 from kinematify.validation.task.copies import write_scaled
 from kinematify.validation.task.execute import Execution, Hold, Loaded, load
 from kinematify.validation.task.film import write_film
@@ -26,6 +26,7 @@ from kinematify.validation.task.kinematics import Arm
 from kinematify.validation.task.motion import Motion
 from kinematify.validation.task.place import object_box
 from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
+from kinematify.validation.task.request import POUR
 from kinematify.validation.task.sizes import sizing
 
 if TYPE_CHECKING:
@@ -58,6 +59,9 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     """Carry out the task of a request; see `kinematify.validation.stage`."""
     task = request.task
     if task is None:
+        return
+    if task.kind == POUR:
+        pour_stage.run(request, task, recorder)
         return
     with recorder.check("KV701") as check:
         setting = _set_up(request, task, check)
@@ -199,6 +203,16 @@ def _set_up(request: StageRequest, task: TaskRequest, check: OpenCheck) -> _Sett
             )
             return None
         sized = sizing(request.urdf, model.name, object_box(scene), scale=task.scale)
+        extent = sized.factor * float(np.ptp(object_box(scene), axis=0).max())
+        plan = request.settings.task.plan
+        if not plan.smallest <= extent <= plan.largest:
+            check.find(
+                f"The object is {extent:.4g} m large with a scale of {sized.factor:.4g}, and no arm can use a thing of "
+                "that size.",
+                "Give --scale with the metres per unit of the model, e.g. 0.001 for millimetres.",
+                value=extent, limit=plan.largest if extent > plan.largest else plan.smallest, unit="m",
+            )  # fmt: skip
+            return None
         path = request.work / OBJECT_FILE
         write_scaled(request.urdf, sized.factor, path, package_dirs=request.package_dirs)
         scene = read_scene(read_model(path), request.settings.geometry)

@@ -1,0 +1,201 @@
+"""Plans of the built-in arm for furniture of boxes, and what is said where they fail."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.errors import InputError
+from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.geometry.scene import Scene, read_scene
+from kinematify.validation.read import read_model
+from kinematify.validation.run import validate
+from kinematify.validation.task.collision import CollisionWorld
+from kinematify.validation.task.kinematics import Arm
+from kinematify.validation.task.manifold import search_manifold
+from kinematify.validation.task.place import object_motion
+from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
+from kinematify.validation.task.pull import Puller
+from kinematify.validation.task.request import PULL, TaskRequest
+from kinematify.validation.task.robot import builtin_robot
+from tests.validation.task.furniture import SETTINGS, write_door_cabinet, write_drawer_cabinet
+
+PLAN = SETTINGS.task.plan
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> Arm:
+    return Arm(builtin_robot(tmp_path_factory.mktemp("arm")), PLAN)
+
+
+def scene_of(urdf: Path) -> Scene:
+    return read_scene(read_model(urdf), SETTINGS.geometry)
+
+
+@pytest.fixture(scope="module")
+def drawer(tmp_path_factory: pytest.TempPathFactory) -> Scene:
+    return scene_of(write_drawer_cabinet(tmp_path_factory.mktemp("drawer") / "cabinet.urdf"))
+
+
+@pytest.fixture(scope="module")
+def drawer_plan(arm: Arm, drawer: Scene) -> PullPlan:
+    return plan_pull(arm, drawer, "slide", SETTINGS.task)
+
+
+def test_inverse_kinematics_reaches_poses_that_the_arm_can_take(arm: Arm) -> None:
+    """The project's own arm, and its own forward kinematics as the judge."""
+    rng = np.random.default_rng(0)
+    rows = arm.lower + rng.random((40, arm.dof)) * (arm.upper - arm.lower)
+    reached = 0
+    for q in rows:
+        target = forward_kinematics(arm.declared.kinematics, dict(zip(arm.robot.arm_joints, q.tolist(), strict=True)))[
+            arm.robot.tool
+        ]
+        found = arm.solve_anew(target, 6)
+        reached += bool(found)
+        for solution in found:
+            assert np.all(solution >= arm.lower)
+            assert np.all(solution <= arm.upper)
+            assert np.abs(arm.pose(solution) - target).max() < 2e-3
+    assert reached >= 36
+
+
+def test_arm_opens_a_drawer_and_holds_on_all_the_way(arm: Arm, drawer: Scene, drawer_plan: PullPlan) -> None:
+    plan = drawer_plan
+    assert plan.failure is None
+    assert plan.fraction == pytest.approx(1.0)
+    assert plan.opened is not None
+    assert plan.pull is not None
+    assert plan.place is not None
+    assert plan.opened[0] == 0.0
+    assert plan.opened[-1] == pytest.approx(0.25)
+    T_base_world = np.linalg.inv(plan.place.T_world_base)
+    for q, value in zip(plan.pull, plan.opened, strict=True):
+        link = forward_kinematics(drawer.model.kinematics, {"slide": float(value)})["part_7"]
+        wanted = T_base_world @ plan.T_world_object @ link @ plan.place.T_link_tool
+        assert np.abs(arm.pose(q) - wanted).max() < 2e-3
+
+
+def test_way_to_the_grasp_is_free_of_collisions_between_its_rows_too(
+    arm: Arm, drawer: Scene, drawer_plan: PullPlan
+) -> None:
+    plan = drawer_plan
+    assert plan.reach is not None
+    assert plan.pull is not None
+    assert plan.place is not None
+    assert np.array_equal(plan.reach[-1], plan.pull[0])
+    world = CollisionWorld(arm, drawer, "slide", PLAN)
+    world.place(plan.place.T_world_base, plan.T_world_object, column=plan.on_column)
+    world.pose_object(drawer.at_rest, plan.place.grasp.spread)
+    for first, second in zip(plan.reach[:-1], plan.reach[1:], strict=True):
+        for share in np.linspace(0.0, 1.0, 8):
+            hit = world.hit((1.0 - share) * first + share * second, holding=False)
+            assert hit is None, hit
+
+
+def test_arm_opens_a_door(arm: Arm, tmp_path: Path) -> None:
+    plan = plan_pull(arm, scene_of(write_door_cabinet(tmp_path / "cabinet.urdf")), "hinge", SETTINGS.task)
+    assert plan.failure is None
+    assert plan.fraction >= PLAN.opened
+
+
+def test_manifold_search_keeps_the_constraint(arm: Arm, drawer: Scene, drawer_plan: PullPlan) -> None:
+    """OMPL's atlas finds its own way from the first posture of a known pull to its last."""
+    plan = drawer_plan
+    assert plan.place is not None
+    assert plan.pull is not None
+    world = CollisionWorld(arm, drawer, "slide", PLAN)
+    world.place(plan.place.T_world_base, plan.T_world_object, column=plan.on_column)
+    motion = object_motion(drawer, "slide", 0.25, PLAN)
+    puller = Puller(arm, world, motion, PLAN)
+    states = search_manifold(puller, plan.place, np.append(plan.pull[0], 0.0), [np.append(plan.pull[-1], 1.0)], seed=0)
+    assert states is not None
+    targets = puller.targets(plan.place)
+    for state in (*states, *(0.5 * (states[1:] + states[:-1]))):
+        assert np.linalg.norm(arm.error(state[:-1], puller.target_at(targets, state[-1]))) < 2e-3
+
+
+def test_drawer_that_slides_sideways_is_blamed_on_its_joint(arm: Arm, tmp_path: Path) -> None:
+    scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf", axis="0 1 0"))
+    plan = plan_pull(arm, scene, "slide", SETTINGS.task)
+    assert plan.failure is Failure.JAMS
+    assert plan.fraction < 0.5
+
+
+def test_handle_wider_than_the_gripper_is_no_hold(arm: Arm, tmp_path: Path) -> None:
+    scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf"))
+    narrow = SETTINGS.task.grasp.model_copy(update={"slack": 0.2})
+    settings = SETTINGS.task.model_copy(update={"grasp": narrow})
+    assert plan_pull(arm, scene, "slide", settings).failure is Failure.NO_GRASP
+
+
+def test_grasp_beside_the_object_is_refused(arm: Arm, drawer: Scene) -> None:
+    with pytest.raises(InputError, match="grasp point"):
+        plan_pull(arm, drawer, "slide", SETTINGS.task, point=np.array([3.0, 0.0, 0.0]))
+
+
+def test_place_that_is_given_is_kept(arm: Arm, drawer: Scene, drawer_plan: PullPlan) -> None:
+    far = np.eye(4)
+    far[0, 3] = 5.0
+    assert plan_pull(arm, drawer, "slide", SETTINGS.task, base=far).failure is Failure.NO_REACH
+    assert drawer_plan.place is not None
+    given = plan_pull(arm, drawer, "slide", SETTINGS.task, base=drawer_plan.place.T_world_base)
+    assert given.failure is None
+    assert given.place is not None
+    assert np.array_equal(given.place.T_world_base, drawer_plan.place.T_world_base)
+
+
+def test_fresh_process_makes_the_same_plan(tmp_path: Path) -> None:
+    """Both plans in processes of their own: OMPL takes one seed in each."""
+    urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf")
+    program = (
+        "import sys, hashlib; from pathlib import Path; import numpy as np\n"
+        "from tests.validation.task.test_planning import *\n"
+        f"arm = Arm(builtin_robot(Path({str(tmp_path)!r})), PLAN)\n"
+        f"plan = plan_pull(arm, scene_of(Path({str(urdf)!r})), 'slide', SETTINGS.task)\n"
+        "print(hashlib.sha256(plan.reach.tobytes() + plan.pull.tobytes()).hexdigest())\n"
+    )
+    said = [
+        subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True) for _ in range(2)
+    ]
+    assert said[0].stdout == said[1].stdout != ""
+    assert "leaked" not in said[0].stderr
+
+
+@pytest.mark.parametrize(("axis", "verdict"), [("-1 0 0", "pass"), ("0 1 0", "fail")])
+def test_validate_says_who_can_act(tmp_path: Path, axis: str, verdict: str) -> None:
+    urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf", axis=axis)
+    report = validate(
+        urdf, selected={f"KV70{k}" for k in range(1, 10)}, engines=(), task=TaskRequest(kind=PULL), workers=1
+    )
+    found = [finding for finding in report.findings if finding.joint == "slide" and finding.check >= "KV7"]
+    if verdict == "pass":
+        assert [(f.check, f.severity) for f in found] == [("KV705", Severity.NOTE)], found
+        assert found[0].value == pytest.approx(1.0)
+    else:
+        assert any(f.severity is Severity.ERROR and f.blame is Blame.KINEMATICS for f in found)
+    assert {c.status for c in report.checks if c.check == "KV707"} == {Status.SKIPPED}
+
+
+def test_without_a_task_its_checks_are_not_in_the_report(tmp_path: Path) -> None:
+    report = validate(write_drawer_cabinet(tmp_path / "cabinet.urdf"), selected={"KV101"}, engines=())
+    assert not [check for check in report.checks if check.check.startswith("KV7")]
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [{"scale": 0.0}, {"scale": 1e4}, {"grasp": (3.0, 0.0, 0.0)}],
+    ids=["scale of nothing", "kilometres", "grasp beside the object"],
+)
+def test_what_cannot_be_set_up_is_a_finding(tmp_path: Path, asked: dict[str, Any]) -> None:
+    urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf")
+    task = TaskRequest(kind=PULL, **asked)
+    report = validate(urdf, selected={"KV701", "KV703"}, engines=(), task=task, workers=1)
+    assert [finding.check for finding in report.findings if finding.severity is Severity.ERROR] == ["KV701"]
+    assert {check.status for check in report.checks if check.check == "KV703"} == {Status.SKIPPED}
