@@ -99,6 +99,7 @@ def search_grasps(
     Raises:
         InputError: The object has no such leading joint, or `point` is not on what it moves.
     """
+    settings = settings.model_copy(update={"slack": min(settings.slack, settings.slack_share * opening)})
     values = scene.mechanism.rest if leaders is None else leaders
     poses = scene.poses(values[None])[0]
     bodies, carried = moved_bodies(scene, joint)

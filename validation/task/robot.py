@@ -57,7 +57,7 @@ class TaskRobot:
     fingers_open: tuple[float, ...]
     """Values of `finger_joints` with the fingers apart [rad or m]."""
     fingers_closed: tuple[float, ...]
-    """The same with the fingers together."""
+    """The same with the pads together; in between, the gap is taken to grow evenly."""
     home: tuple[float, ...]
     """Values of `arm_joints` from which a reach starts [rad or m]."""
 
@@ -125,6 +125,7 @@ def user_robot(
         )
     hand = _Hand(model=model, tool=tool, fingers=fingers)
     frame, opening = hand.measured(urdf)
+    closed = hand.meeting(frame, opening)
     path = folder.resolve() / ROBOT_FILE
     _write_copy(document, model, path, tool, frame)
     rest = rest_configuration(robot)
@@ -135,7 +136,7 @@ def user_robot(
         finger_joints=tuple(joint.name for joint in fingers),
         opening=opening,
         fingers_open=tuple(hand.apart[joint.name] for joint in fingers),
-        fingers_closed=tuple(hand.together[joint.name] for joint in fingers),
+        fingers_closed=tuple(closed[joint.name] for joint in fingers),
         home=tuple(rest[name] for name in chain),
     )
 
@@ -220,9 +221,7 @@ class _Hand:
         approach = self._approach(np.concatenate([first, second]), closing)
         frame = np.eye(4)
         frame[:3, :3] = np.column_stack([np.cross(closing, approach), closing, approach])
-        ends = [_end(part, part @ approach) for part in (first, second)]
-        low, high = sorted(((float((e @ closing).min()), float((e @ closing).max())) for e in ends), key=sum)
-        gap = high[0] - low[1]
+        gap, between = self._gap(points, closing, approach)
         if gap < _NARROW:
             raise InputError(
                 f"The fingers at {self.tool!r} of {urdf} stand {max(gap, 0.0) * 1e3:.1f} mm apart when open, which "
@@ -233,8 +232,25 @@ class _Hand:
         side = frame[:3, 0]
         middle = 0.5 * ((both @ side).min() + (both @ side).max())
         reach = float((both @ approach).max()) - _TIP_DEPTH
-        frame[:3, 3] = middle * side + 0.5 * (high[0] + low[1]) * closing + reach * approach
+        frame[:3, 3] = middle * side + between * closing + reach * approach
         return frame, gap
+
+    def meeting(self, frame: FloatArray, opening: float) -> dict[str, float]:
+        """Values of the finger joints that bring the pads together, short of where they would go into each other.
+
+        Args:
+            frame: Grasp frame in the tool frame, shape (4, 4).
+            opening: Gap between the open fingers [m].
+        """
+        gap = self._gap(self._surfaces(self.together), frame[:3, 1], frame[:3, 2])[0]
+        share = max(0.0, -gap) / max(opening - gap, 1e-9)
+        return {name: value + share * (self.apart[name] - value) for name, value in self.together.items()}
+
+    def _gap(self, points: Sequence[FloatArray], closing: FloatArray, approach: FloatArray) -> tuple[float, float]:
+        """Gap between the ends of the first two fingers and the middle of it, along the closing direction [m]."""
+        ends = [_end(part, part @ approach) @ closing for part in points[:2]]
+        low, high = sorted(ends, key=lambda end: float(end.min() + end.max()))
+        return float(high.min() - low.max()), 0.5 * float(high.min() + low.max())
 
     def _ends(self) -> tuple[dict[str, float], dict[str, float]]:
         """Values of the finger joints closed and open, leaders taken to the end that parts the fingers."""

@@ -37,6 +37,8 @@ class GraspSettings(StageConfig):
     """Closing directions per approach direction, over half a turn."""
     slack: float
     """Room between pad and surface on either side before the fingers close [m]."""
+    slack_share: float
+    """The same at most, fraction of the opening of the gripper."""
     tilt_deg: float
     """Angle between closing direction and surface normal at either pad at most [deg]."""
     plenty: float
