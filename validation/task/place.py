@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 _FLIP = np.diag([-1.0, -1.0, 1.0, 1.0])  # half a turn about the approach direction holds as well
 _GRASP_RANK, _PLACE_RANK = 0.01, 0.02  # dearness of one more try with the same grasp, or the same place [m]
+_SINKS = 0.005  # a part that folds down gets so much lower than it was [m]
 _ALIKE = np.cos(np.radians(30.0))
 _QUALITY = 0.06  # a grasp of no quality at all may be so much easier to reach [m]
 
@@ -78,7 +79,7 @@ def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) 
     box = object_box(scene)
     body_poses = scene.poses(rows)
     lowest = np.array([_lowest(scene, joint, poses) for poses in body_poses])
-    sinks = lowest.min() < lowest[0] - 0.5 * settings.plinth
+    sinks = float(lowest.min()) < float(lowest[0]) - _SINKS
     bottom = min(float(box[0, 2]), float(lowest.min()) - settings.plinth) if sinks else float(box[0, 2])
     T_world_object = np.eye(4)
     T_world_object[:3, 3] = [*(-0.5 * box.sum(axis=0)[:2]), -bottom]
