@@ -94,7 +94,7 @@ def _leave_interrupts_to_the_parent() -> None:
 
 def _write_object(out: Path, entry: dict[str, Any]) -> str:
     """Write one object; it appears whole or not at all."""
-    folder = out / entry["name"]
+    folder: Path = out / entry["name"]
     aside = out / f".{folder.name}.{os.getpid()}"
     shutil.rmtree(aside, ignore_errors=True)
     blueprint = build(FAMILIES[entry["category"]], {}, seed=entry["seed"], name=entry["name"])
