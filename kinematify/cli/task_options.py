@@ -40,6 +40,7 @@ class TaskOptions:
             self._refuse_without_task()
             return None
         from kinematify.validation.task.request import TaskRequest
+        from kinematify.validation.task.robot import robot_of
 
         request = TaskRequest(
             kind=self.task,
@@ -53,7 +54,7 @@ class TaskOptions:
             films=self._films(files),
         )
         with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
-            request.write_robot(Path(folder))
+            robot_of(request, Path(folder))
         return request
 
     def _refuse_without_task(self) -> None:

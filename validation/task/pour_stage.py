@@ -14,6 +14,7 @@ from kinematify.validation.task.film import write_film
 from kinematify.validation.task.kinematics import Arm
 from kinematify.validation.task.pour import CARRIED, GRASP, PATH, REACH, PourPlan, plan_pour
 from kinematify.validation.task.pour_scene import read_vessel
+from kinematify.validation.task.robot import robot_of
 
 if TYPE_CHECKING:
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
@@ -65,7 +66,7 @@ def _poured(request: StageRequest, task: TaskRequest, check: OpenCheck) -> _Pour
             raise InputError("--task pour needs --into with the URDF of the container, e.g. --into bowl.urdf.")
         cup = read_vessel(request.urdf, work / "cup.urdf", settings, scale=task.scale)
         into = read_vessel(task.into, work / "into.urdf", settings)
-        arm = Arm(task.write_robot(work), settings.task.plan, seed=settings.seed)
+        arm = Arm(robot_of(task, work), settings.task.plan, seed=settings.seed)
         plan = plan_pour(arm, cup, into, work, settings, seed=settings.seed)
     except InputError as error:
         check.find(str(error), "Give what the message asks for.")

@@ -5,13 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.errors import InputError
-from kinematify.validation.task.robot import builtin_robot, user_robot
-
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from kinematify.validation.task.robot import TaskRobot
 
 PULL, POUR = "pull", "pour"
 TASKS = (PULL, POUR)
@@ -52,18 +47,3 @@ class TaskRequest:
     """Existing folder for films and stills; none are made if None."""
     stem: str = PULL
     """Beginning of their names."""
-
-    def write_robot(self, folder: Path) -> TaskRobot:
-        """Write the robot into an existing folder and describe it.
-
-        Raises:
-            InputError: There is no such robot, tool or gripper.
-            OSError: The folder cannot be written.
-        """
-        if self.robot is None:
-            return builtin_robot(folder)
-        if self.tool is None:
-            raise InputError(
-                f"--robot {self.robot} needs --tool with the link that carries the fingers, e.g. --tool gripper_link."
-            )
-        return user_robot(self.robot, self.tool, self.gripper, folder=folder, package_dirs=self.package_dirs)

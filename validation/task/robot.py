@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
     from kinematify.assembly.robot import DescribedJoint, RobotDescription
     from kinematify.validation.declared import DeclaredModel
+    from kinematify.validation.task.request import TaskRequest
 
 ROBOT_FILE = "robot.urdf"
 GRASP_LINK = "kinematify_grasp_frame"
@@ -60,6 +61,22 @@ class TaskRobot:
     """The same with the pads together; in between, the gap is taken to grow evenly."""
     home: tuple[float, ...]
     """Values of `arm_joints` from which a reach starts [rad or m]."""
+
+
+def robot_of(task: TaskRequest, folder: Path) -> TaskRobot:
+    """Write the robot of a task into an existing folder and describe it.
+
+    Raises:
+        InputError: There is no such robot, tool or gripper.
+        OSError: The folder cannot be written.
+    """
+    if task.robot is None:
+        return builtin_robot(folder)
+    if task.tool is None:
+        raise InputError(
+            f"--robot {task.robot} needs --tool with the link that carries the fingers, e.g. --tool gripper_link."
+        )
+    return user_robot(task.robot, task.tool, task.gripper, folder=folder, package_dirs=task.package_dirs)
 
 
 def builtin_robot(folder: Path) -> TaskRobot:
@@ -248,9 +265,15 @@ class _Hand:
 
     def _gap(self, points: Sequence[FloatArray], closing: FloatArray, approach: FloatArray) -> tuple[float, float]:
         """Gap between the ends of the first two fingers and the middle of it, along the closing direction [m]."""
-        ends = [_end(part, part @ approach) @ closing for part in points[:2]]
-        low, high = sorted(ends, key=lambda end: float(end.min() + end.max()))
+        low, high = (_end(part, part @ approach) @ closing for part in points[:2])
+        if self._parted() @ closing > 0.0:
+            low, high = high, low
         return float(high.min() - low.max()), 0.5 * float(high.min() + low.max())
+
+    def _parted(self) -> FloatArray:
+        """From the middle of the second open finger to that of the first one, tool frame [m], shape (3,)."""
+        first, second = self._surfaces(self.apart)[:2]
+        return np.asarray(first.mean(axis=0) - second.mean(axis=0))
 
     def _ends(self) -> tuple[dict[str, float], dict[str, float]]:
         """Values of the finger joints closed and open, leaders taken to the end that parts the fingers."""

@@ -27,6 +27,7 @@ from kinematify.validation.task.motion import Motion
 from kinematify.validation.task.place import object_box
 from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
 from kinematify.validation.task.request import POUR
+from kinematify.validation.task.robot import robot_of
 from kinematify.validation.task.sizes import sizing
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class _Setting:
     @cached_property
     def arm(self) -> Arm:
         """The robot."""
-        return Arm(self.task.write_robot(self.request.work), self.settings.plan, seed=self.request.settings.seed)
+        return Arm(robot_of(self.task, self.request.work), self.settings.plan, seed=self.request.settings.seed)
 
     @property
     def joints(self) -> list[str]:
