@@ -161,3 +161,10 @@ def test_grippers_of_published_robots_open_as_stated(name: str, tool: str, openi
     frame = np.linalg.inv(rows[tool]) @ rows[GRASP_LINK]
     approach = [0, 0, 1] if name == "panda" else [1, 0, 0]
     assert frame[:3, 2] == pytest.approx(approach, abs=1e-3)
+
+
+def test_pads_meet_where_fingers_could_pass_through_each_other(gripper: Path, tmp_path: Path) -> None:
+    gripper.write_text(GRIPPER.replace('lower="0" upper="0.03"', 'lower="-0.02" upper="0.03"'))
+    robot = user_robot(gripper, "palm", folder=tmp_path)
+    assert robot.opening == pytest.approx(0.07)
+    assert robot.fingers_closed == pytest.approx((-0.005, 0.005))
