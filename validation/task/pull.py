@@ -185,4 +185,5 @@ class Puller:
     def _pull(self, place: Place, path: FloatArray, stop: Stop | None) -> Pull:
         values = self._motion.values[: len(path)]
         whole = float(self._motion.values[-1] - self._motion.values[0])
-        return Pull(place=place, path=path, values=values, fraction=abs(float(values[-1] - values[0]) / whole), stop=stop)
+        fraction = abs(float(values[-1] - values[0]) / whole)
+        return Pull(place=place, path=path, values=values, fraction=fraction, stop=stop)
