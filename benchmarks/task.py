@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from kinematify.validation.settings import ValidationSettings
 
 _WAY = 0.12  # a door or drawer moves its outermost point by more [m]; buttons, knobs and levers move less
+_ENDLESS = "endless"  # wheels and dials have no range to be opened
 _UNTRIED = (Failure.NO_WAY, Failure.NO_GRASP)
 _FAULTS = ("axis turned by 90 deg", "axis turned by 20 deg", "type swapped")
 
@@ -75,8 +76,8 @@ class Opened:
 
     @property
     def counts(self) -> bool:
-        """A door or drawer with a hold outside."""
-        return self.way > _WAY and self.failure not in _UNTRIED
+        """A door, lid or drawer with a hold outside."""
+        return self.kind != _ENDLESS and self.way > _WAY and self.failure not in _UNTRIED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,7 +135,7 @@ def _opened(name: str, urdf: Path, folder: Path, settings: ValidationSettings, *
         yield Opened(
             model=name,
             joint=travel.joint,
-            kind="hinge" if travel.turns else "slide",
+            kind=("hinge" if travel.turns else "slide") if travel.limited else _ENDLESS,
             way=plan.way,
             fraction=plan.fraction,
             failure=None if plan.failure is None else plan.failure.value,
@@ -255,8 +256,8 @@ def _markdown(opened: list[Opened], noticed: list[Noticed]) -> str:
 def _summary(opened: list[Opened], counted: list[Opened], done: list[Opened]) -> str:
     planned = [joint.seconds for joint in opened if joint.failure != Failure.NO_WAY.value]
     return (
-        f"{len({joint.model for joint in opened})} objects, {len(opened)} joints. {len(counted)} of them are doors or "
-        f"drawers (their outermost point moves by more than {_WAY * 1e2:.0f} cm) with a hold outside; of {len(done)} "
+        f"{len({joint.model for joint in opened})} objects, {len(opened)} joints. {len(counted)} of them are doors, "
+        f"lids or drawers (limited, their outermost point moves by more than {_WAY * 1e2:.0f} cm) with a hold outside; of {len(done)} "
         f"({len(done) / max(len(counted), 1):.0%}) the arm opens at least 90 % of the range. Median time of a plan: "
         f"{np.median(planned) if planned else 0.0:.1f} s of one core."
     )
