@@ -257,9 +257,9 @@ def _summary(opened: list[Opened], counted: list[Opened], done: list[Opened]) ->
     planned = [joint.seconds for joint in opened if joint.failure != Failure.NO_WAY.value]
     return (
         f"{len({joint.model for joint in opened})} objects, {len(opened)} joints. {len(counted)} of them are doors, "
-        f"lids or drawers (limited, their outermost point moves by more than {_WAY * 1e2:.0f} cm) with a hold outside; of {len(done)} "
-        f"({len(done) / max(len(counted), 1):.0%}) the arm opens at least 90 % of the range. Median time of a plan: "
-        f"{np.median(planned) if planned else 0.0:.1f} s of one core."
+        f"lids or drawers (limited, their outermost point moves by more than {_WAY * 1e2:.0f} cm) with a "
+        f"hold outside. Of {len(done)} ({len(done) / max(len(counted), 1):.0%}) the arm opens at least 90 % of the "
+        f"range. Median time of a plan: {np.median(planned) if planned else 0.0:.1f} s of one core."
     )
 
 

@@ -45,7 +45,7 @@ class Failure(StrEnum):
     COVERED = "covered"
     """Another part of the object is in the way."""
     JAMS = "jams"
-    """The part runs into its own parent."""
+    """The part runs into what no other joint can move away."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -166,9 +166,9 @@ class _Planning:
         if self._longest < self._plan.least_way:
             words = f"it moves what it carries by less than {self._plan.least_way * 1e3:.0f} mm"
             return self._ended(Failure.NO_WAY, words)
-        self._free, blocked, by_parent = self._own_freedom()
+        self._free, blocked, alone = self._own_freedom()
         if blocked is not None and self._free < self._plan.opened:
-            failure = Failure.JAMS if by_parent else Failure.COVERED
+            failure = Failure.JAMS if alone else Failure.COVERED
             return self._ended(failure, blocked.words, stop=blocked, fraction=self._free)
         self._grasps = search_grasps(
             self._scene, self._joint, self._arm.robot.opening, settings=self._settings.grasp, point=self._point,
@@ -190,7 +190,7 @@ class _Planning:
         return max(ways)
 
     def _own_freedom(self) -> tuple[float, Stop | None, bool]:
-        """Share of the range that the object itself leaves free, who blocks the rest, and whether it is the parent."""
+        """Share of the range that the object leaves free, who blocks the rest, and whether no other joint helps."""
         overlap = Overlap(self._scene)
         sweep = Sweeper(self._scene, overlap, Allowance(self._scene, overlap)).sweep(self._leader)
         values = self._motion.values
@@ -202,7 +202,8 @@ class _Planning:
         first, second = self._scene.name(meeting.pair)
         share = float(np.clip((meeting.first - values[0]) / (values[-1] - values[0]), 0.0, 1.0))
         words = f"{first} meets {second} of the object"
-        return share, Stop(kind=ITSELF, words=words, pair=(first, second)), meeting.pair in sweep.own
+        alone = not self._scene.between(meeting.pair) - {self._leader}
+        return share, Stop(kind=ITSELF, words=words, pair=(first, second)), alone
 
     def _search(self, world: CollisionWorld, puller: Puller) -> PullPlan:
         """Try the most promising places until one lets the arm open the joint."""

@@ -267,19 +267,19 @@ def _find_failure(check: OpenCheck, plan: PullPlan, setting: _Setting, suspect: 
         Failure.NO_REACH: f"The arm reaches no hold of {plan.joint}: {plan.words}.",
         Failure.NO_PATH: f"A hold of {plan.joint} can be reached, but {plan.words}.",
         Failure.STOPS: f"The arm opens {plan.joint} by {opened} and stops there, because {plan.words}.",
-        Failure.COVERED: f"{plan.joint} opens by {opened} only: {plan.words}, which another joint can move away.",
+        Failure.COVERED: f"{plan.joint} opens by {opened} only: {plan.words}, which another joint may move away.",
         Failure.JAMS: f"{plan.joint} jams at {plan.free:.0%} of its range, whoever pulls: {plan.words}.",
     }
     assert plan.failure is not None
     message, blame, severity, remedy = messages[plan.failure], None, None, _remedy(check.id)
     if plan.failure is Failure.NO_WAY:
         severity = Severity.NOTE
-    elif plan.failure is Failure.COVERED:
-        severity = Severity.WARNING
-        remedy = "Open the other joint first."
     elif suspect is not None:
         message += f" The joint itself is doubtful, {suspect.check}: {suspect.message}"
         blame, remedy = Blame.KINEMATICS, f"Correct the joint as {suspect.check} says, and plan again."
+    elif plan.failure is Failure.COVERED:
+        severity = Severity.WARNING
+        remedy = "Open the other joint first."
     stop = plan.stop
     check.find(
         message, remedy, severity=severity, blame=blame, joint=plan.joint, value=plan.fraction, limit=limit,
