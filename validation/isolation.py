@@ -15,7 +15,7 @@ import sys
 import time
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import connection, forkserver
+from multiprocessing import connection, forkserver, resource_tracker
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -74,7 +74,8 @@ class _Running:
 def start_server() -> None:
     """Start the server that workers are forked from; returns at once, the imports go on beside the caller's work."""
     multiprocessing.get_context("forkserver").set_forkserver_preload(list(_PRELOADED))
-    with _one_thread(), _without_main():
+    resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
+    with _one_thread(), _without_main(), _deaf():
         forkserver.ensure_running()
 
 
@@ -219,6 +220,16 @@ def _one_thread() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Keep Ctrl-C from what is started meanwhile, its imports included; it is answered here right after."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
