@@ -9,7 +9,6 @@ import importlib
 import os
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -108,7 +107,8 @@ def _checks(task: TaskRequest | None) -> dict[str, Check]:
     return {name: check for name, check in CATALOGUE.items() if task is not None or not name.startswith("KV7")}
 
 
-_importer = ThreadPoolExecutor(1, thread_name_prefix="import")
+_AGREEMENT = "kinematify.validation.agreement"
+"""Importing it takes a second, which is spent while stages run in other processes."""
 
 
 class _Run:
@@ -131,8 +131,6 @@ class _Run:
     def all(self, request: StageRequest, engines: Sequence[str], workers: int) -> None:
         """Run everything that can run."""
         start_server()
-        # Importing it takes a second, and nothing needs it until the stages, which run elsewhere, have ended.
-        comparing = _importer.submit(importlib.import_module, "kinematify.validation.agreement")
         asset_request = replace(request, selected=request.selected | _GUARDS)
         usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)
@@ -150,6 +148,7 @@ class _Run:
             request = replace(request, selected=request.selected | _DOUBTS)
         stages = needed(later_stages([engine for engine in ENGINES if engine in engines]), request.selected)
         for number, end in enumerate(run_stages(stages, request, workers=workers)):
+            importlib.import_module(_AGREEMENT)
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
         self._explain(
@@ -158,7 +157,8 @@ class _Run:
             "the engine was not asked for",
         )
         chosen = [engine for engine in ENGINES if engine in engines]
-        comparing.result().compare(request, Recorder(self._take, request.selected), chosen, self._failures)
+        compare = importlib.import_module(_AGREEMENT).compare
+        compare(request, Recorder(self._take, request.selected), chosen, self._failures)
         if self.task is not None:
             self._use(request, chosen)
 
