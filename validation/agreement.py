@@ -241,6 +241,9 @@ def _compare_masses(check: OpenCheck, left: EngineResults) -> None:
     if not left.chosen:
         check.skip("no engine was asked for")
         return
+    if not left.engines:  # the stage `prepare` may have left nothing then
+        left.say_absent(check, left.chosen, ())
+        return
     prepared = load_prepared(left.request.work)
     for engine, poses in left.engines.items():
         known = {} if poses.masses is None else dict(zip(poses.links, poses.masses.tolist(), strict=True))

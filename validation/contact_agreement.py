@@ -57,7 +57,7 @@ def compare_contacts(check: OpenCheck, left: EngineResults) -> None:
     ]
     exact = [] if left.exact is None else _views(left, left.exact, None)
     none = np.zeros(len(left.rows.links))
-    reach = _reach(left) if exact else none
+    reach = _reach(left) if exact and views else none
     found = [item for sees, misses in permutations(views, 2) for item in _unseen(left, sees, misses, none)]
     for true in exact:
         for view in views:

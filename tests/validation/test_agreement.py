@@ -321,3 +321,11 @@ def test_engines_agree_on_panda(tmp_path: Path) -> None:
         tell(stage.run, request)
     results = compared(request)
     assert {name: (r.status, r.reason) for name, r in results.items() if r.status is not Status.PASS} == {}
+
+
+def test_nothing_left_by_any_engine_blocks_with_reasons(request_copy: StageRequest) -> None:
+    for path in (*request_copy.work.glob("poses-*.npz"), *request_copy.work.glob("prepared.*")):
+        path.unlink()
+    results = compared(request_copy)
+    assert {results[name].status for name in ("KV601", "KV602", "KV603", "KV605")} == {Status.BLOCKED}
+    assert not any("Error" in (result.reason or "") for result in results.values())
