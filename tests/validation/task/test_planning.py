@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -130,9 +131,8 @@ def test_drawer_that_slides_sideways_is_blamed_on_its_joint(arm: Arm, tmp_path: 
 
 def test_handle_wider_than_the_gripper_is_no_hold(arm: Arm, tmp_path: Path) -> None:
     scene = scene_of(write_drawer_cabinet(tmp_path / "cabinet.urdf"))
-    narrow = SETTINGS.task.grasp.model_copy(update={"slack": 0.2})
-    settings = SETTINGS.task.model_copy(update={"grasp": narrow})
-    assert plan_pull(arm, scene, "slide", settings).failure is Failure.NO_GRASP
+    narrow = Arm(replace(arm.robot, opening=0.004), PLAN)
+    assert plan_pull(narrow, scene, "slide", SETTINGS.task).failure is Failure.NO_GRASP
 
 
 def test_grasp_beside_the_object_is_refused(arm: Arm, drawer: Scene) -> None:
