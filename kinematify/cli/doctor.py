@@ -39,6 +39,7 @@ MODULES = {
     "mujoco": ("mujoco", "engine"),
     "pybullet": ("pybullet", "engine"),
     "pin": ("pinocchio", "engine"),
+    "coal": ("coal", "engine"),
     "ompl": ("ompl.base", "motion planning"),
     "gymnasium": ("gymnasium", "environments"),
     "click": ("click", "command line"),
