@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import qmc
 
 from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.robot import forward_kinematics, rest_configuration
+from kinematify.validation.engines.configurations import spread_rows
 from kinematify.validation.finding import Severity
 from kinematify.validation.precheck.problem import Problem
 
@@ -154,9 +154,7 @@ def _configurations(physics: Physics) -> list[dict[str, float]]:
     if joints:
         ends = np.array([[joint.joint.lower, joint.joint.upper] for joint in joints])
         low, high = np.clip(ends, -_NO_LIMIT, _NO_LIMIT).T
-        known = min(len(joints), qmc.Sobol.MAXDIM)
-        rows = qmc.Sobol(known, rng=np.random.default_rng(0)).random_base2(physics.settings.load_doublings)
-        values = low + rows[:, np.arange(len(joints)) % known] * (high - low)
+        values = spread_rows(low, high, 2**physics.settings.load_doublings, seed=0)
         found += [dict(zip([joint.name for joint in joints], row.tolist(), strict=True)) for row in values]
     return found
 

@@ -104,7 +104,7 @@ def agreement_configurations(description: RobotDescription, settings: AgreementS
         [
             np.zeros((1, len(leaders))),
             middle[None],
-            _spread(lower, upper, settings.random_rows, seed),
+            spread_rows(lower, upper, settings.random_rows, seed),
             _at_ends(middle, lower, upper, settings.end_rows),
         ]
     )
@@ -125,7 +125,7 @@ def joint_ends(leaders: Sequence[DescribedJoint]) -> tuple[FloatArray, FloatArra
     return np.clip(lower, -widest, widest), np.clip(upper, -widest, widest)
 
 
-def _spread(lower: FloatArray, upper: FloatArray, rows: int, seed: int) -> FloatArray:
+def spread_rows(lower: FloatArray, upper: FloatArray, rows: int, seed: int) -> FloatArray:
     """Latin hypercube in the box of the limits, shape (rows, m): every joint's range is covered evenly.
 
     NumPy alone makes it; SciPy's Sobol points would cost every engine's process half a second for the import.
