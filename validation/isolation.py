@@ -79,13 +79,16 @@ def start_server() -> None:
         forkserver.ensure_running()
 
 
-def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> Iterator[StageEnd]:
+def run_stages(
+    stages: list[Stage], request: StageRequest, *, workers: int, meanwhile: Callable[[], object] | None = None
+) -> Iterator[StageEnd]:
     """Run stages, each as soon as those before it have ended; yield each end. Closing the iterator stops all.
 
     Args:
         stages: In an order in which each stands behind those that it comes after.
         request: What each of them is given.
         workers: Processes at a time.
+        meanwhile: Called once, as soon as the first ones run.
     """
     start_server()
     waiting, ended = list(stages), dict[str, str | None]()
@@ -105,6 +108,9 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
                 else:
                     receiver, running = _start(stage, request)
                     active[receiver] = running
+            if meanwhile is not None:
+                meanwhile()
+                meanwhile = None
             for end in _listen(active, request):
                 ended[end.stage.name] = end.failure
                 yield end

@@ -10,6 +10,7 @@ import os
 import tempfile
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -108,7 +109,7 @@ def _checks(task: TaskRequest | None) -> dict[str, Check]:
 
 
 _AGREEMENT = "kinematify.validation.agreement"
-"""Importing it takes a second, which is spent while stages run in other processes."""
+"""Importing it takes a second, which is spent while the first stage runs in another process."""
 
 
 class _Run:
@@ -137,7 +138,8 @@ class _Run:
         if not usable:
             self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
             return
-        for end in run_stages([asset_stage()], asset_request, workers=1):
+        meanwhile = partial(importlib.import_module, _AGREEMENT)
+        for end in run_stages([asset_stage()], asset_request, workers=1, meanwhile=meanwhile):
             self._take_end(end)
         self._progress("meshes and declared physics", 0.15)
         fault = self._fault_of_meshes()
@@ -148,7 +150,6 @@ class _Run:
             request = replace(request, selected=request.selected | _DOUBTS)
         stages = needed(later_stages([engine for engine in ENGINES if engine in engines]), request.selected)
         for number, end in enumerate(run_stages(stages, request, workers=workers)):
-            importlib.import_module(_AGREEMENT)
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
         self._explain(
