@@ -135,7 +135,10 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     limit = request.settings.budget.stage_bytes
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    _silence(_log(stage, request))
+    try:
+        _silence(_log(stage, request))
+    except FileNotFoundError:
+        return  # the run was stopped meanwhile, and its folder is gone
     module, function = stage.function.split(":")
     run: Callable[[StageRequest, Recorder], None] = getattr(importlib.import_module(module), function)
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
