@@ -25,6 +25,7 @@ class TaskOptions:
     tool: str | None
     gripper: str | None
     grasp: tuple[float, float, float] | None
+    base: tuple[float, float, float, float] | None
     scale: float | None
     films: Path | None
     into: Path | None = None
@@ -39,6 +40,8 @@ class TaskOptions:
         if self.task is None:
             self._refuse_without_task()
             return None
+        if self.task == "pour" and (self.grasp or self.base):
+            raise click.UsageError("--grasp and --base belong to --task pull. Leave them out.")
         from kinematify.validation.task.request import TaskRequest
         from kinematify.validation.task.robot import robot_of
 
@@ -49,6 +52,7 @@ class TaskOptions:
             gripper=tuple(word.strip() for word in (self.gripper or "").split(",") if word.strip()),
             package_dirs=package_dirs,
             grasp=self.grasp or None,
+            base=self.base or None,
             scale=self.scale,
             into=self._container(),
             films=self._films(files),
@@ -58,7 +62,7 @@ class TaskOptions:
         return request
 
     def _refuse_without_task(self) -> None:
-        for name in ("robot", "tool", "gripper", "grasp", "scale", "films", "into"):
+        for name in ("robot", "tool", "gripper", "grasp", "base", "scale", "films", "into"):
             if getattr(self, name):
                 raise click.UsageError(f"--{name} belongs to a task. Give --task pull with it.")
 

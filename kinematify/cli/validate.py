@@ -74,6 +74,13 @@ if TYPE_CHECKING:
 @click.option(
     "--grasp", type=float, nargs=3, metavar="X Y Z", help="Hold the object there: root frame, units of the file."
 )
+@click.option(
+    "--base",
+    type=float,
+    nargs=4,
+    metavar="X Y Z YAW",
+    help="Let the robot stand there [m, deg], in the object's root frame; found if not given.",
+)
 @click.option("--scale", type=float, metavar="FACTOR", help="Metres per unit of the object; found if not given.")
 @click.option(
     "--films",
@@ -103,6 +110,7 @@ def command(
     tool: str | None,
     gripper: str | None,
     grasp: tuple[float, float, float] | None,
+    base: tuple[float, float, float, float] | None,
     scale: float | None,
     films: Path | None,
     json_to: str | None,
@@ -126,7 +134,7 @@ def command(
     files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html)
     files.check()
     options = TaskOptions(
-        task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, scale=scale, films=films, into=into
+        task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, base=base, scale=scale, films=films, into=into
     )
     asked = options.request(files, _existing(package_dirs))
     run = ValidationRun(

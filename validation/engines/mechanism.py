@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,8 @@ from kinematify.assembly.robot import joint_values, rest_configuration, rigid_gr
 from kinematify.validation.engines.configurations import joint_ends
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from kinematify.assembly.part import FloatArray, IntArray
@@ -52,12 +54,14 @@ class Mechanism:
     """A tree, its leading joints and its bodies (links held together by fixed joints)."""
 
     description: RobotDescription
+    standing: Mapping[str, float] = field(default_factory=dict)
+    """Leaders that rest elsewhere than they would, and where [rad or m]."""
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
         """Of every joint that is neither fixed nor a follower, in the order of the document."""
         leaders = [j for j in self.description.joints if j.kind is not JointType.FIXED and j.mimic is None]
-        rest = rest_configuration(self.description)
+        rest = {**rest_configuration(self.description), **self.standing}
         lower, upper = joint_ends(leaders)
         return tuple(
             Travel(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.geometry.solid import Solid
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.assembly.robot import DescribedJoint, RigidGroup
@@ -76,6 +76,11 @@ class Scene:
     def travels(self) -> tuple[Travel, ...]:
         """Joints that lead, with their ranges."""
         return self.mechanism.travels
+
+    def standing(self, leaders: Mapping[str, float]) -> Scene:
+        """The same model with some leaders resting elsewhere [rad or m]."""
+        mechanism = replace(self.mechanism, standing={**self.mechanism.standing, **leaders})
+        return replace(self, mechanism=mechanism)
 
     @cached_property
     def size(self) -> float:

@@ -61,10 +61,20 @@ class Place:
     """The grasp or the same after half a turn, shape (4, 4)."""
 
 
-def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) -> ObjectMotion:
-    """Stand the object on the floor and move one joint from rest to a value.
+def standing_at(x: float, y: float, z: float, yaw: float) -> FloatArray:
+    """Pose of an upright robot at a place [m], turned by `yaw` [deg], shape (4, 4)."""
+    T = np.eye(4)
+    cosine, sine = np.cos(np.radians(yaw)), np.sin(np.radians(yaw))
+    T[:2, :2] = [[cosine, -sine], [sine, cosine]]
+    T[:3, 3] = x, y, z
+    return T
 
-    An object whose part swings down to the floor, such as an oven to be built in, stands on a plinth.
+
+def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) -> ObjectMotion:
+    """Stand the object in the world and move one joint from rest to a value.
+
+    An object whose part swings down to the floor, such as an oven to be built in, stands on a plinth, and a small
+    object on a table.
 
     Args:
         scene: The object, in metres.
@@ -80,7 +90,8 @@ def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) 
     body_poses = scene.poses(rows)
     lowest = np.array([_lowest(scene, joint, poses) for poses in body_poses])
     sinks = float(lowest.min()) < float(lowest[0]) - _SINKS
-    bottom = min(float(box[0, 2]), float(lowest.min()) - settings.plinth) if sinks else float(box[0, 2])
+    raised = sinks or float(np.ptp(box, axis=0).max()) < settings.tabletop
+    bottom = min(float(box[0, 2]), float(lowest.min()) - settings.plinth) if raised else float(box[0, 2])
     T_world_object = np.eye(4)
     T_world_object[:3, 3] = [*(-0.5 * box.sum(axis=0)[:2]), -bottom]
     names = [travel.joint for travel in scene.travels]
@@ -195,14 +206,14 @@ class Places:
         for bearing in 2.0 * np.pi * np.arange(settings.bearings) / settings.bearings:
             outward = np.array([np.cos(bearing), np.sin(bearing)])
             yaw = bearing + np.pi - arm.forward
-            turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+            turned = standing_at(0.0, 0.0, 0.0, float(np.degrees(yaw)))
             for distance in settings.distances:
-                place = middle[:2] + distance * arm.reach * outward - turn @ arm.shoulder[:2]
+                place = middle[:2] + distance * arm.reach * outward - turned[:2, :2] @ arm.shoulder[:2]
                 if not self._clear(place):
                     continue
                 for height in self._heights(float(middle[2])):
-                    T = np.eye(4)
-                    T[:2, :2], T[:2, 3], T[2, 3] = turn, place, height
+                    T = turned.copy()
+                    T[:3, 3] = *place, height
                     found.append(T)
         return np.stack(found) if found else np.empty((0, 4, 4))
 

@@ -20,8 +20,12 @@ class PlanSettings(StageConfig):
     """Joints with a shorter way of what is held are not planned for [m]."""
     plinth: float
     """What swings down to the floor ends so far above it, the object on a plinth [m]."""
+    tabletop: float
+    """Objects that measure less along every axis stand on a table that is as high as a plinth [m]."""
     opened: float
     """Share of the range from which a pull counts as complete."""
+    openers: int
+    """So many other joints at most are opened before one that they cover."""
     iterations: int
     """Steps of inverse kinematics."""
     damping: float

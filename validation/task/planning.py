@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.sweep import Sweeper
+from kinematify.validation.task.clearing import Clearing, Freedom, clear_way, pull_end
 from kinematify.validation.task.collision import CollisionWorld
-from kinematify.validation.task.grasp import moved_bodies, opening_sign, search_grasps
+from kinematify.validation.task.grasp import moved_bodies, search_grasps
 from kinematify.validation.task.place import Places, object_box, object_motion
 from kinematify.validation.task.pull import ITSELF, Pull, Puller, Stop
 from kinematify.validation.task.reach import plan_reach
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import FloatArray
-    from kinematify.validation.engines.mechanism import Travel
     from kinematify.validation.geometry.scene import Scene
     from kinematify.validation.task.grasp import GraspReport
     from kinematify.validation.task.kinematics import Arm
     from kinematify.validation.task.place import Place
+    from kinematify.validation.task.plan_settings import PlanSettings
     from kinematify.validation.task.settings import TaskSettings
 
 
@@ -43,7 +41,7 @@ class Failure(StrEnum):
     STOPS = "stops"
     """The arm does not get far enough."""
     COVERED = "covered"
-    """Another part of the object is in the way."""
+    """Another part of the object is in the way, and opening that one first does not help or fails."""
     JAMS = "jams"
     """The part runs into what no other joint can move away."""
 
@@ -69,6 +67,8 @@ class PullPlan:
     """How much of the declared range opens, in [0, 1]."""
     free: float
     """How much of the declared range the object itself leaves free, in [0, 1]."""
+    first: Mapping[str, float]
+    """Joints that have to be opened before, and where to [rad or m]."""
     failure: Failure | None
     stop: Stop | None
     """What ends the pull; None if it is complete."""
@@ -123,53 +123,77 @@ def plan_pull(
         joint: Joint that leads.
         settings: Thresholds of grasps and plans.
         point: Hold the part there, frame of the object's root link [m], shape (3,); anywhere if None.
-        base: Pose of the robot's root link in the world, shape (4, 4); searched if None.
+        base: Pose of the robot's root link in the frame of the object's root link, shape (4, 4); searched if None.
         seed: Of all that is random.
 
     Raises:
         InputError: The object has no such joint, or `point` is not on what it moves.
     """
-    return _Planning(arm, scene, joint, settings, point=point, base=base, seed=seed).run()
+    started = time.process_time()
+    way = _longest_way(scene, joint, settings.plan)
+    moves = way >= settings.plan.least_way
+    clearing = clear_way(scene, joint, settings.plan) if moves else Clearing(scene=scene, freedom=Freedom())
+    planning = _Planning(arm, clearing, joint, settings, point=point, base=base, seed=seed, started=started, way=way)
+    return planning.run()
 
 
-def pull_end(travel: Travel, settings: TaskSettings) -> float:
-    """Value at which a joint counts as open: the farther end of its range from rest [rad or m]."""
-    if not travel.limited:
-        return travel.rest + settings.plan.range_turn
-    return travel.upper if opening_sign(travel) > 0.0 else travel.lower
+def depend(plans: Sequence[PullPlan]) -> tuple[PullPlan, ...]:
+    """Let plans fail that need another joint opened first, where the plan for that one fails."""
+    failed = {plan.joint for plan in plans if plan.failure is not None}
+    while True:
+        held = {plan.joint for plan in plans if plan.joint not in failed and failed & plan.first.keys()}
+        if not held:
+            break
+        failed |= held
+    return tuple(_held_up(plan, failed) if plan.failure is None and plan.joint in failed else plan for plan in plans)
+
+
+def _held_up(plan: PullPlan, failed: set[str]) -> PullPlan:
+    other = next(name for name in plan.first if name in failed)
+    return replace(plan, failure=Failure.COVERED, words=f"{other} has to be opened first, and the arm fails to do so")
+
+
+def _longest_way(scene: Scene, joint: str, settings: PlanSettings) -> float:
+    """Longest way of the middle of a moved part's corners, from rest to the open end [m]."""
+    own, carried = moved_bodies(scene, joint)
+    travel = next(travel for travel in scene.travels if travel.joint == joint)
+    motion = object_motion(scene, joint, pull_end(travel, settings), settings)
+    ways = [0.0]
+    for body in [*own, *carried]:
+        corners = np.concatenate(scene.bodies[body].shapes)
+        ends = [T[:3, :3] @ corners.T + T[:3, 3:] for T in motion.body_poses[[0, -1], body]]
+        ways.append(float(np.linalg.norm(ends[1] - ends[0], axis=0).max()))
+    return max(ways)
 
 
 class _Planning:
     """One joint."""
 
     def __init__(
-        self, arm: Arm, scene: Scene, joint: str, settings: TaskSettings, *, point: FloatArray | None,
-        base: FloatArray | None, seed: int,
+        self, arm: Arm, clearing: Clearing, joint: str, settings: TaskSettings, *, point: FloatArray | None,
+        base: FloatArray | None, seed: int, started: float, way: float,
     ) -> None:  # fmt: skip
-        self._arm, self._scene, self._joint = arm, scene, joint
+        scene = clearing.scene
+        self._arm, self._clearing, self._scene, self._joint = arm, clearing, scene, joint
         self._settings, self._plan, self._seed = settings, settings.plan, seed
-        self._point, self._base = point, base
-        self._started = time.process_time()
-        moved_bodies(scene, joint)
-        self._leader = [travel.joint for travel in scene.travels].index(joint)
-        self._travel = scene.travels[self._leader]
-        self._motion = object_motion(scene, joint, pull_end(self._travel, settings), self._plan)
+        self._point, self._started, self._way = point, started, way
+        self._travel = next(travel for travel in scene.travels if travel.joint == joint)
+        self._motion = object_motion(scene, joint, pull_end(self._travel, self._plan), self._plan)
+        self._base = None if base is None else self._motion.T_world_object @ base
         self._places = Places(arm, self._motion, object_box(scene), self._plan)
         self._grasps: GraspReport | None = None
         self._tried = _Tried()
-        self._free, self._longest = 1.0, 0.0
 
     def run(self) -> PullPlan:
         """Look at the object first, then at grasps, then at places."""
-        own, carried = moved_bodies(self._scene, self._joint)
-        self._longest = self._way([*own, *carried])
-        if self._longest < self._plan.least_way:
+        if self._way < self._plan.least_way:
             words = f"it moves what it carries by less than {self._plan.least_way * 1e3:.0f} mm"
             return self._ended(Failure.NO_WAY, words)
-        self._free, blocked, alone = self._own_freedom()
-        if blocked is not None and self._free < self._plan.opened:
-            failure = Failure.JAMS if alone else Failure.COVERED
-            return self._ended(failure, blocked.words, stop=blocked, fraction=self._free)
+        free = self._clearing.freedom
+        if free.pair is not None and free.share < self._plan.opened:
+            failure = Failure.COVERED if free.helpers else Failure.JAMS
+            words = f"{free.pair[0]} meets {free.pair[1]} of the object"
+            return self._ended(failure, words, stop=Stop(kind=ITSELF, words=words, pair=free.pair), fraction=free.share)
         self._grasps = search_grasps(
             self._scene, self._joint, self._arm.robot.opening, settings=self._settings.grasp, point=self._point,
             seed=self._seed,
@@ -179,31 +203,6 @@ class _Planning:
         world = CollisionWorld(self._arm, self._scene, self._joint, self._plan)
         puller = Puller(self._arm, world, self._motion, self._plan)
         return self._search(world, puller)
-
-    def _way(self, bodies: list[int]) -> float:
-        """Longest way of the middle of a moved part's corners [m]."""
-        ways = [0.0]
-        for body in bodies:
-            corners = np.concatenate(self._scene.bodies[body].shapes)
-            ends = [T[:3, :3] @ corners.T + T[:3, 3:] for T in self._motion.body_poses[[0, -1], body]]
-            ways.append(float(np.linalg.norm(ends[1] - ends[0], axis=0).max()))
-        return max(ways)
-
-    def _own_freedom(self) -> tuple[float, Stop | None, bool]:
-        """Share of the range that the object leaves free, who blocks the rest, and whether no other joint helps."""
-        overlap = Overlap(self._scene)
-        sweep = Sweeper(self._scene, overlap, Allowance(self._scene, overlap)).sweep(self._leader)
-        values = self._motion.values
-        side = sweep.sides[0 if values[-1] < values[0] else 1]
-        deep = self._scene.settings.wrong * self._scene.size
-        meeting = next((m for m in side.meetings if m.inside and m.depth > deep), None)
-        if meeting is None:
-            return 1.0, None, False
-        first, second = self._scene.name(meeting.pair)
-        share = float(np.clip((meeting.first - values[0]) / (values[-1] - values[0]), 0.0, 1.0))
-        words = f"{first} meets {second} of the object"
-        alone = not self._scene.between(meeting.pair) - {self._leader}
-        return share, Stop(kind=ITSELF, words=words, pair=(first, second)), alone
 
     def _search(self, world: CollisionWorld, puller: Puller) -> PullPlan:
         """Try the most promising places until one lets the arm open the joint."""
@@ -294,9 +293,10 @@ class _Planning:
             reach=way,
             pull=path,
             opened=None if pull is None else pull.values,
-            way=self._longest,
+            way=self._way,
             fraction=fraction,
-            free=self._free,
+            free=self._clearing.freedom.share,
+            first=self._clearing.first,
             failure=failure,
             stop=stop,
             words=words,

@@ -39,6 +39,9 @@ class TaskRequest:
     """Where the robot's packages lie."""
     grasp: tuple[float, float, float] | None = None
     """Hold the part there, frame of the object's root link [units of the file]; found if None."""
+    base: tuple[float, float, float, float] | None = None
+    """The robot's root link stands there: x, y, z [m] at the object's real size and yaw [deg], frame of the object's
+    root link; searched if None."""
     scale: float | None = None
     """Metres per unit of the object; from the table of sizes if None."""
     into: Path | None = None

@@ -24,8 +24,8 @@ from kinematify.validation.task.film import write_film
 from kinematify.validation.task.grasp import joint_at
 from kinematify.validation.task.kinematics import Arm
 from kinematify.validation.task.motion import Motion
-from kinematify.validation.task.place import object_box
-from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
+from kinematify.validation.task.place import object_box, standing_at
+from kinematify.validation.task.planning import Failure, PullPlan, depend, plan_pull
 from kinematify.validation.task.request import POUR
 from kinematify.validation.task.robot import robot_of
 from kinematify.validation.task.sizes import sizing
@@ -104,6 +104,11 @@ class _Setting:
         """Where to hold, frame of the object's root link [m], shape (3,)."""
         return None if self.task.grasp is None else self.sized.factor * np.array(self.task.grasp)
 
+    @property
+    def base(self) -> FloatArray | None:
+        """Where the robot has to stand, frame of the object's root link [m], shape (4, 4)."""
+        return None if self.task.base is None else standing_at(*self.task.base)
+
     @cached_property
     def _joint_at_point(self) -> str:
         assert self.point is not None
@@ -116,8 +121,12 @@ class _Setting:
                 self.left.append(joint)
                 continue
             self.plans.append(
-                plan_pull(self.arm, self.scene, joint, self.settings, point=self.point, seed=self.request.settings.seed)
-            )
+                plan_pull(
+                    self.arm, self.scene, joint, self.settings, point=self.point, base=self.base,
+                    seed=self.request.settings.seed,
+                )
+            )  # fmt: skip
+        self.plans = list(depend(self.plans))
 
     @cached_property
     def worlds(self) -> list[Loaded]:
@@ -184,7 +193,7 @@ def motion_of(plan: PullPlan, robot: TaskRobot, thing: Path) -> Motion | None:
         T_world_base=plan.place.T_world_base,
         T_world_object=plan.T_world_object,
         joint=plan.joint,
-        start={},
+        start=plan.first,
         grasp=plan.place.grasp,
         reach=plan.reach,
         pull=plan.pull,
@@ -267,7 +276,7 @@ def _find_failure(check: OpenCheck, plan: PullPlan, setting: _Setting, suspect: 
         Failure.NO_REACH: f"The arm reaches no hold of {plan.joint}: {plan.words}.",
         Failure.NO_PATH: f"A hold of {plan.joint} can be reached, but {plan.words}.",
         Failure.STOPS: f"The arm opens {plan.joint} by {opened} and stops there, because {plan.words}.",
-        Failure.COVERED: f"{plan.joint} opens by {opened} only: {plan.words}, which another joint may move away.",
+        Failure.COVERED: f"{plan.joint} opens by {opened} only: {plan.words}.",
         Failure.JAMS: f"{plan.joint} jams at {plan.free:.0%} of its range, whoever pulls: {plan.words}.",
     }
     assert plan.failure is not None
@@ -279,7 +288,7 @@ def _find_failure(check: OpenCheck, plan: PullPlan, setting: _Setting, suspect: 
         blame, remedy = Blame.KINEMATICS, f"Correct the joint as {suspect.check} says, and plan again."
     elif plan.failure is Failure.COVERED:
         severity = Severity.WARNING
-        remedy = "Open the other joint first."
+        remedy = "Open what is in the way first."
     stop = plan.stop
     check.find(
         message, remedy, severity=severity, blame=blame, joint=plan.joint, value=plan.fraction, limit=limit,
@@ -289,11 +298,14 @@ def _find_failure(check: OpenCheck, plan: PullPlan, setting: _Setting, suspect: 
 
 def _find_success(check: OpenCheck, plan: PullPlan, setting: _Setting) -> None:
     assert plan.place is not None
-    place, grasp = plan.place.T_world_base[:3, 3] - plan.T_world_object[:3, 3], plan.place.grasp
-    x, y, z = (f"{value:.2f}" for value in place)
+    place, grasp = plan.place.T_world_base, plan.place.grasp
+    x, y, z = (f"{value:.2f}" for value in place[:3, 3] - plan.T_world_object[:3, 3])
+    yaw = np.degrees(np.arctan2(place[1, 0], place[0, 0]))
+    after = f", after {' and '.join(plan.first)}," if plan.first else ""
     check.find(
-        f"The arm opens {plan.joint} by {plan.fraction:.0%} of its range: it holds a {grasp.kind} that is "
-        f"{grasp.width * 1e3:.0f} mm thick, with its base at x {x}, y {y}, z {z} m from the object's origin.",
+        f"The arm opens {plan.joint}{after} by {plan.fraction:.0%} of its range: it holds a {grasp.kind} that is "
+        f"{grasp.width * 1e3:.0f} mm thick, with its base at x {x}, y {y}, z {z} m from the object's origin "
+        f"(--base {x} {y} {z} {yaw:.0f}).",
         "Nothing to do.",
         severity=Severity.NOTE,
         joint=plan.joint,

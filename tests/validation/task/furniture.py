@@ -68,6 +68,27 @@ def write_door_cabinet(path: Path) -> Path:
     return path
 
 
+def write_covered_drawer(path: Path, *, door: str = "") -> Path:
+    """A drawer with a bar handle behind the door of `write_door_cabinet`; `door` stands in for the limits of the hinge.
+
+    The cabinet is deeper than that one, so that the drawer and its handle find room behind the door.
+    """
+    front = box((0.018, 0.33, 0.16), (-0.1, 0.0, 0.0))
+    tray = box((0.26, 0.3, 0.01), (0.03, 0.0, -0.06)) + box((0.26, 0.01, 0.12), (0.03, 0.145, 0.0))
+    bar = box((0.012, 0.14, 0.012), (-0.145, 0.0, 0.02))
+    posts = box((0.036, 0.01, 0.01), (-0.127, 0.06, 0.02)) + box((0.036, 0.01, 0.01), (-0.127, -0.06, 0.02))
+    write_door_cabinet(path)
+    text = path.read_text(encoding="utf-8").replace(
+        "</robot>",
+        f"""<link name="part_9">{front}{tray}{bar}{posts}</link>
+<joint name="slide" type="prismatic"><origin xyz="0 0 0.3"/><parent link="body"/><child link="part_9"/>
+<axis xyz="-1 0 0"/><limit lower="0" upper="0.2" effort="100" velocity="1"/></joint>
+</robot>""",
+    )
+    path.write_text(text.replace('lower="-1.4" upper="0"', door) if door else text, encoding="utf-8")
+    return path
+
+
 def planned(
     folder: Path, urdf: Path, joint: str, end: float, base: tuple[float, float, float], *, steps: int = 25
 ) -> Motion:

@@ -21,11 +21,11 @@ from kinematify.validation.task.collision import CollisionWorld
 from kinematify.validation.task.kinematics import Arm
 from kinematify.validation.task.manifold import search_manifold
 from kinematify.validation.task.place import object_motion
-from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
+from kinematify.validation.task.planning import Failure, PullPlan, depend, plan_pull
 from kinematify.validation.task.pull import Puller
 from kinematify.validation.task.request import PULL, TaskRequest
 from kinematify.validation.task.robot import builtin_robot
-from tests.validation.task.furniture import SETTINGS, write_door_cabinet, write_drawer_cabinet
+from tests.validation.task.furniture import SETTINGS, write_covered_drawer, write_door_cabinet, write_drawer_cabinet
 
 PLAN = SETTINGS.task.plan
 
@@ -145,10 +145,44 @@ def test_place_that_is_given_is_kept(arm: Arm, drawer: Scene, drawer_plan: PullP
     far[0, 3] = 5.0
     assert plan_pull(arm, drawer, "slide", SETTINGS.task, base=far).failure is Failure.NO_REACH
     assert drawer_plan.place is not None
-    given = plan_pull(arm, drawer, "slide", SETTINGS.task, base=drawer_plan.place.T_world_base)
+    T_object_base = np.linalg.inv(drawer_plan.T_world_object) @ drawer_plan.place.T_world_base
+    given = plan_pull(arm, drawer, "slide", SETTINGS.task, base=T_object_base)
     assert given.failure is None
     assert given.place is not None
-    assert np.array_equal(given.place.T_world_base, drawer_plan.place.T_world_base)
+    assert np.allclose(given.place.T_world_base, drawer_plan.place.T_world_base, rtol=0.0, atol=1e-12)
+
+
+def test_door_is_opened_before_the_drawer_behind_it(arm: Arm, tmp_path: Path) -> None:
+    scene = scene_of(write_covered_drawer(tmp_path / "cabinet.urdf"))
+    door, drawer = depend([plan_pull(arm, scene, joint, SETTINGS.task) for joint in ("hinge", "slide")])
+    assert door.failure is None
+    assert not door.first
+    assert drawer.failure is None
+    assert drawer.first == {"hinge": pytest.approx(-1.4)}
+    assert drawer.pull is not None
+    assert drawer.place is not None
+    world = CollisionWorld(arm, scene, "slide", PLAN)
+    world.place(drawer.place.T_world_base, drawer.T_world_object, column=drawer.on_column)
+    opened = scene.standing(drawer.first)
+    motion = object_motion(opened, "slide", 0.2, PLAN)
+    assert np.array_equal(motion.T_world_object, drawer.T_world_object)
+    for poses, q in ((motion.body_poses[0], drawer.pull[0]), (motion.body_poses[-1], drawer.pull[-1])):
+        world.pose_object(poses, drawer.place.grasp.spread)
+        assert world.hit(q, holding=True) is None
+
+
+def test_drawer_stays_covered_where_the_door_opens_too_little_or_not_at_all(arm: Arm, tmp_path: Path) -> None:
+    ajar = scene_of(write_covered_drawer(tmp_path / "ajar.urdf", door='lower="-0.3" upper="0"'))
+    plan = plan_pull(arm, ajar, "slide", SETTINGS.task)
+    assert plan.failure is Failure.COVERED
+    assert not plan.first
+    assert plan.stop is not None
+    assert plan.stop.pair == ("part_3", "part_9")
+    door = replace(plan, joint="hinge", failure=Failure.NO_REACH)
+    drawer = replace(plan, failure=None, first={"hinge": -1.4})
+    held_up = depend([door, drawer])[1]
+    assert held_up.failure is Failure.COVERED
+    assert "hinge has to be opened first" in held_up.words
 
 
 def test_fresh_process_makes_the_same_plan(tmp_path: Path) -> None:

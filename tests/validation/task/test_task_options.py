@@ -28,6 +28,8 @@ if TYPE_CHECKING:
         (["--task", "pull", "--robot", "{cabinet}", "--tool", "body"], "There is no arm"),
         (["--task", "pull", "--films", "{arm}"], "is no folder"),
         (["--task", "juggle"], "juggle"),
+        (["--base", "1", "0", "0", "180"], "--task pull"),
+        (["--task", "pour", "--base", "1", "0", "0", "180"], "--task pull"),
     ],
     ids=lambda value: None if isinstance(value, str) else " ".join(value[-2:]),
 )
