@@ -55,18 +55,24 @@ def _vessel(values: Values) -> Manifold:
 
 
 def _screw(values: Values, workshop: Workshop) -> None:
-    """A cap over the neck, with ribs around it."""
+    """A cap over the neck, with ribs around it; a bead of the neck holds its lip, as a thread would."""
     (neck, tall), height, clearance = _neck(values), values.number("height"), values.number("clearance")
     bottom, top = height - tall + 0.002 + clearance, height + clearance
-    inner = (neck + clearance) / math.cos(math.pi / 48)
+    lip = (neck + clearance) / math.cos(math.pi / 48)
+    bead = lip + 1e-3
+    inner = (bead + clearance) / math.cos(math.pi / 48)
     outer = inner + _CAP
+    held = bottom + 0.003 + clearance  # underside of the bead
+    ring = cylinder(bead, (0, 0, held), (0, 0, held + 0.002)) - cylinder(neck - 1e-4, (0, 0, -1.0), (0, 0, 1.0))
+    workshop.add("body", ring)
     ribs = [
         cylinder(
             0.0008, (outer * math.cos(a), outer * math.sin(a), bottom), (outer * math.cos(a), outer * math.sin(a), top)
         )
         for a in (2.0 * math.pi * k / _RIBS for k in range(_RIBS))
     ]
-    cap = cylinder(outer, (0, 0, bottom), (0, 0, top + _CAP)) - cylinder(inner, (0, 0, -1), (0, 0, top))
+    hollow = cylinder(inner, (0, 0, bottom + 0.003), (0, 0, top)) + cylinder(lip, (0, 0, -1.0), (0, 0, top))
+    cap = cylinder(outer, (0, 0, bottom), (0, 0, top + _CAP)) - hollow
     workshop.body("cap", cap, *ribs, material="plastic")
     workshop.turns("cap", "body", (0, 0, 1), (0, 0, height))
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _COLUMN = 0.026  # radius of the tube around the gas spring [m]
 _SPRING = 0.014  # radius of the gas spring [m]
+_SIDES = 8  # of the gas spring
 _FORK = (0.07, 0.016)  # width and radius of the backrest's hinge [m]
 _SEAT = 0.065  # thickness of the cushion [m]
 
@@ -56,13 +57,14 @@ def _add_castor(values: Values, workshop: Workshop, number: int, angle: float, l
 
 
 def _add_spring(values: Values, workshop: Workshop, level: float, column: float) -> float:
-    """A rod that rises in the column; returns the level of what turns on it."""
+    """A rod that rises in the column, of eight sides that it may not turn; returns the level of what turns on it."""
     clearance = values.number("clearance")
     top = column + 0.012
     travel = min(0.1, 0.5 * values.number("column"))
-    workshop.cut("base", bore(_SPRING, clearance, (0, 0, level + 0.01), (0, 0, column + 0.1)))
+    workshop.cut("base", bore(_SPRING, clearance, (0, 0, level + 0.01), (0, 0, column + 0.1), segments=_SIDES))
     boss, hole, rotor = stub((0, 0, top + 0.022), (0, 0, 1), 0.032, clearance, length=0.022)
-    workshop.body("lift", cylinder(_SPRING, (0, 0, level + 0.014), (0, 0, top + 0.001)), boss, material="steel")
+    rod = cylinder(_SPRING, (0, 0, level + 0.014), (0, 0, top + 0.001), segments=_SIDES)
+    workshop.body("lift", rod, boss, material="steel")
     workshop.cut("lift", hole)
     workshop.slides("lift", "base", (0, 0, 1), (0, 0, column), (0.0, travel), rest=values.number("open"))
     workshop.body("seat", rotor)

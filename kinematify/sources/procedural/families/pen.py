@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.family import Family, Parameter
 from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.solids import box, cylinder, ring, turned, union
+from kinematify.sources.procedural.solids import bore, box, cylinder, ring, turned, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 _CAP = 0.0012  # wall of a cap [m]
 _CONE = 0.012  # length of the tip's cone [m]
 _STROKE = 0.005  # of a button [m]
+_SIDES = 6  # of the barrel under a cap
 _TIGHT = 5e-4  # a pen has no wider gaps [m]
 
 
@@ -49,32 +50,39 @@ def _barrel(values: Values, length: float, radius: float) -> Manifold:
 
 
 def _click(values: Values, workshop: Workshop) -> None:
-    """A button behind the barrel that pushes the tip out in front."""
+    """A button behind the barrel that pushes the tip out in front; two splines keep it from turning."""
     length, radius, gap = values.number("length"), 0.5 * values.number("width"), min(values.number("clearance"), _TIGHT)
     end, ledge = length - 0.006, _CONE + _STROKE + 0.001
     tip, rod, collar, button = 7e-4, 0.4 * radius, 0.6 * radius, 0.42 * radius
     hole = [(tip + gap, -1.0), (tip + gap, _CONE), (collar + gap, _CONE)]
     hole += [(collar + gap, end), (button + gap, end), (button + gap, 1.0)]
+    spline = 0.14 * radius, 0.76 * radius
     inner = turned([(0.0, -1.0), *hole, (0.0, 1.0)])
+    inner += box((-spline[0] - gap, -spline[1] - gap, _CONE), (spline[0] + gap, spline[1] + gap, end))
     workshop.body(
         "barrel", _lie(values, _barrel(values, length, radius) - inner, _clip(values, length - 0.045, length))
     )
     top = length + _STROKE + 0.004
     refill = [(tip, 0.002), (tip, ledge), (rod, ledge), (rod, end - 0.004), (collar, end - 0.004)]
     refill += [(collar, end - gap), (button, end - gap), (button, top)]
-    workshop.body("button", _lie(values, turned([(0.0, 0.002), *refill, (0.0, top)])), material="metal")
+    splines = box((-spline[0], -spline[1], end - 0.02), (spline[0], spline[1], end - gap))
+    workshop.body("button", _lie(values, turned([(0.0, 0.002), *refill, (0.0, top)]), splines), material="metal")
     limits, rest = (0.0, _STROKE), values.number("open")
     workshop.slides("button", "barrel", (0, -1, 0), (0, length, radius), limits, rest=rest)
 
 
 def _cap(values: Values, workshop: Workshop) -> None:
-    """A cap over the front that is drawn off."""
+    """A cap that is drawn off the front; both have six sides there, so that it does not turn."""
     length, radius, gap = values.number("length"), 0.5 * values.number("width"), min(values.number("clearance"), _TIGHT)
     covered = 0.42 * length
     rear = cylinder(radius, (0, 0, covered), (0, 0, length))
-    workshop.body("barrel", _lie(values, _barrel(values, length, radius - _CAP - gap), rear))
+    inner = radius - _CAP - gap
+    front_half = _barrel(values, covered + 1e-3, inner) ^ cylinder(inner, (0, 0, -1.0), (0, 0, 1.0), segments=_SIDES)
+    workshop.body("barrel", _lie(values, front_half, rear))
     front, end = -0.006, covered - gap
-    shell = cylinder(radius, (0, 0, front), (0, 0, end)) - cylinder(radius - _CAP, (0, 0, -0.002), (0, 0, 1.0))
+    shell = cylinder(radius, (0, 0, front), (0, 0, end)) - bore(
+        inner, gap, (0, 0, -0.002), (0, 0, 1.0), segments=_SIDES
+    )
     inside = cylinder(radius - 0.5 * _CAP, (0, 0, -0.002), (0, 0, end - 0.001))
     clip = _clip(values, covered - 0.006, front) - inside
     workshop.body("cap", _lie(values, shell, clip))

@@ -77,7 +77,11 @@ def _add_runner(values: Values, workshop: Workshop, top: float) -> None:
     sleeve = cylinder(0.012, (0, 0, start), (0, 0, start + tall)) + cylinder(
         0.015, (0, 0, start + tall - 0.006), (0, 0, start + tall)
     )
-    workshop.body("runner", sleeve - bore(_SHAFT, clearance, (0, 0, 0), (0, 0, 2.0 * top)), material="plastic")
+    # A rib of the shaft in a groove of the sleeve: the slats would keep it from turning, were they strung.
+    gap, rib = min(clearance, 0.002), box((-0.0015, 0, start - 0.01), (0.0015, _SHAFT + 0.003, top - 0.01))
+    groove = box((-0.0015 - gap, 0, 0), (0.0015 + gap, _SHAFT + 0.003 + gap, 2.0 * top))
+    workshop.add("shaft", rib)
+    workshop.body("runner", sleeve - bore(_SHAFT, gap, (0, 0, 0), (0, 0, 2.0 * top)) - groove, material="plastic")
     way = 0.9 * (top - 0.02 - start - tall)
     workshop.slides("runner", "shaft", (0, 0, 1), (0, 0, start), (0.0, way), rest=values.number("open"))
 

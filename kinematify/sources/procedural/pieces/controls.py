@@ -118,14 +118,27 @@ def add_button(
     bottom, top = -mount.depth + travel + clearance, 1.5 * travel
     x, y = 0.5 * size[0], 0.5 * size[1]
     if is_round:
-        pocket = bore(x, clearance, (0, 0, -mount.depth), (0, 0, mount.depth))
-        cap = cylinder(x, (0, 0, bottom), (0, 0, top))
+        pocket, cap = _round_button(x, clearance, mount.depth, travel, top)
     else:
         pocket = box((-x - clearance, -y - clearance, -mount.depth), (x + clearance, y + clearance, mount.depth))
         cap = box((-x, -y, bottom), (x, y, top))
     workshop.cut(mount.parent, mount.placed(pocket))
     workshop.body(name, mount.placed(cap))
     workshop.slides(name, mount.parent, -mount.outward, mount.place, (0.0, travel), rest=rest)
+
+
+def _round_button(
+    radius: float, clearance: float, depth: float, travel: float, top: float
+) -> tuple[Manifold, Manifold]:
+    """Pocket and button of a round cap on a square foot, which keeps it from turning and from falling out."""
+    bottom = -depth + travel + clearance
+    half, ledge, gap = 0.8 * radius, 0.7 * bottom, min(clearance, -0.1 * bottom)
+    room = half + clearance
+    mouth = bore(radius, clearance, (0, 0, ledge - 1e-4), (0, 0, depth))
+    foot = box((-half, -half, bottom), (half, half, ledge - gap))
+    neck = cylinder(0.6 * radius, (0, 0, ledge - 2.0 * gap - 1e-4), (0, 0, top))
+    cap = cylinder(radius, (0, 0, ledge + travel + gap), (0, 0, top))
+    return mouth + box((-room, -room, -depth), (room, room, ledge)), foot + neck + cap
 
 
 def grid(count: int, columns: int, size: tuple[float, float]) -> list[tuple[float, float]]:
