@@ -32,7 +32,7 @@ from kinematify.validation.task.copies import with_absolute_meshes, write_scaled
 from kinematify.validation.task.execute import Hold, load
 from kinematify.validation.task.kinematics import Arm
 from kinematify.validation.task.place import object_box
-from kinematify.validation.task.planning import Failure, PullPlan, plan_pull
+from kinematify.validation.task.planning import Failure, PullPlan, depend, plan_pull
 from kinematify.validation.task.request import PULL, TaskRequest
 from kinematify.validation.task.robot import builtin_robot
 from kinematify.validation.task.sizes import sizing
@@ -65,6 +65,8 @@ class Opened:
     fraction: float
     failure: str | None
     words: str
+    first: list[str]
+    """Joints that are opened before."""
     holds: int
     """Grasps that were found."""
     tried: int
@@ -111,7 +113,7 @@ def main() -> None:
     arguments.output.mkdir(parents=True, exist_ok=True)
     values = {"schema": 1, "joints": [asdict(j) for j in opened], "wrong": [asdict(n) for n in noticed]}
     (arguments.output / "task.json").write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-    (arguments.output / "task.md").write_text(_markdown(opened, noticed), encoding="utf-8")
+    (arguments.output / "task.md").write_text(_markdown(opened, noticed, _command(arguments)), encoding="utf-8")
 
 
 def _arguments() -> argparse.Namespace:
@@ -128,8 +130,8 @@ def _arguments() -> argparse.Namespace:
 def _opened(name: str, urdf: Path, folder: Path, settings: ValidationSettings, *, execute: bool) -> Iterator[Opened]:
     arm = Arm(builtin_robot(folder), settings.task.plan, seed=settings.seed)
     scene = _sized(urdf, folder, settings)
-    for travel in scene.travels:
-        plan = plan_pull(arm, scene, travel.joint, settings.task, seed=settings.seed)
+    plans = depend([plan_pull(arm, scene, travel.joint, settings.task, seed=settings.seed) for travel in scene.travels])
+    for travel, plan in zip(scene.travels, plans, strict=True):
         start = time.perf_counter()
         executed = _executed(plan, arm, folder, settings) if execute else {}
         yield Opened(
@@ -140,6 +142,7 @@ def _opened(name: str, urdf: Path, folder: Path, settings: ValidationSettings, *
             fraction=plan.fraction,
             failure=None if plan.failure is None else plan.failure.value,
             words=plan.words,
+            first=list(plan.first),
             holds=0 if plan.grasps is None else len(plan.grasps.grasps),
             tried=plan.tried,
             seconds=plan.seconds,
@@ -223,18 +226,27 @@ def _swap_type(joint: _Element) -> None:
         limit.set("upper", f"{max(0.0, far):.6g}")
 
 
-def _markdown(opened: list[Opened], noticed: list[Noticed]) -> str:
+def _command(arguments: argparse.Namespace) -> str:
+    words = [f"--only {' '.join(arguments.only)}"] if arguments.only else []
+    words += [f"--most {arguments.most}"] if arguments.most else []
+    words += ["--execute"] if arguments.execute else []
+    words += [f"--wrong {arguments.wrong}"] if arguments.wrong else []
+    return " ".join(["python benchmarks/task.py ../shared/bench", *words])
+
+
+def _markdown(opened: list[Opened], noticed: list[Noticed], command: str) -> str:
     counted = [joint for joint in opened if joint.counts]
     done = [joint for joint in counted if joint.failure is None]
     lines = [
         "# The built-in arm opens the benchmark's doors and drawers",
         "",
-        _summary(opened, counted, done),
+        f"`{command}`: {_summary(opened, counted, done)}",
         "",
-        "| model | joint | kind | opened | failure | cause | s |",
-        "| --- | --- | --- | --- | --- | --- | --- |",
+        "| model | joint | kind | after | opened | failure | cause | s |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- |",
         *(
-            f"| {j.model} | {j.joint} | {j.kind} | {j.fraction:.0%} | {j.failure or ''} | {j.words} | {j.seconds:.1f} |"
+            f"| {j.model} | {j.joint} | {j.kind} | {', '.join(j.first)} | {j.fraction:.0%} | {j.failure or ''} | "
+            f"{j.words} | {j.seconds:.1f} |"
             for j in opened
             if j.failure != Failure.NO_WAY.value
         ),
@@ -244,6 +256,12 @@ def _markdown(opened: list[Opened], noticed: list[Noticed]) -> str:
     )
     for way in sorted({way for way, _ in executed}):
         lines += ["", f"{way}: {executed[way, True]} of {executed[way, True] + executed[way, False]} plans succeed."]
+    seconds = [joint.executed_seconds / len(joint.executed) for joint in opened if joint.executed]
+    if seconds:
+        lines += [
+            "",
+            f"Median time of an execution: {np.median(seconds):.1f} s, decomposition into convex pieces included.",
+        ]
     for fault in _FAULTS:
         cases = [case for case in noticed if case.fault == fault]
         if cases:

@@ -14,13 +14,13 @@ import numpy as np
 from kinematify.validation.geometry.overlap import Overlap
 from kinematify.validation.geometry.rest import Allowance
 from kinematify.validation.geometry.sweep import Sweeper
-from kinematify.validation.task.grasp import moved_bodies, opening_sign
+from kinematify.validation.task.grasp import opening_sign
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.validation.engines.mechanism import Travel
-    from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.validation.geometry.scene import Scene
     from kinematify.validation.task.plan_settings import PlanSettings
 
 
@@ -100,16 +100,5 @@ def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> Freedom:
     return Freedom(
         share=float(np.clip((meeting.first - travel.rest) / (end - travel.rest), 0.0, 1.0)),
         pair=scene.name(meeting.pair),
-        helpers=_helpers(scene, leader, meeting.pair),
+        helpers=tuple(sorted(scene.between(meeting.pair) - {leader})),
     )
-
-
-def _helpers(scene: Scene, leader: int, pair: Pair) -> tuple[int, ...]:
-    """Other leaders that move one of a pair away and leave alone what the joint itself moves."""
-    own = {body for bodies in moved_bodies(scene, scene.travels[leader].joint) for body in bodies}
-    found = []
-    for helper in sorted(scene.between(pair) - {leader}):
-        moved = {body for bodies in moved_bodies(scene, scene.travels[helper].joint) for body in bodies}
-        if not moved & own:
-            found.append(helper)
-    return tuple(found)
