@@ -23,6 +23,7 @@ from kinematify.config.joints import (
     SweepConfig,
 )
 from kinematify.config.output import ModelConfig, PreviewConfig
+from kinematify.config.refinement import FeedbackConfig, RefineConfig
 from kinematify.config.shapes import AssemblyConfig, ContactConfig, SdfConfig, SurfaceConfig
 from kinematify.config.trees import BaseConfig, RewardWeights, TopologyConfig
 
@@ -37,6 +38,7 @@ __all__ = [
     "CavlConfig",
     "Config",
     "ContactConfig",
+    "FeedbackConfig",
     "FramesConfig",
     "GateConfig",
     "JointsConfig",
@@ -48,6 +50,7 @@ __all__ = [
     "QualityConfig",
     "RailConfig",
     "RailsConfig",
+    "RefineConfig",
     "RewardWeights",
     "SdfConfig",
     "SlidesConfig",
@@ -77,6 +80,7 @@ class Config(StageConfig):
     topology: TopologyConfig
     sdf: SdfConfig
     cavl: CavlConfig
+    refine: RefineConfig
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:
