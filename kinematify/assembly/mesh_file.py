@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
-from trimesh.scene import Scene
 
 from kinematify.assembly.gltf_file import read_gltf
 from kinematify.assembly.mesh_paths import MESH_SUFFIXES
@@ -20,6 +18,9 @@ from kinematify.errors import AssemblyError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
+
+    from trimesh import Trimesh
+    from trimesh.scene import Scene
 
     from kinematify.assembly.part import FloatArray, IntArray
 
@@ -130,10 +131,12 @@ def _read_gltf(path: Path) -> tuple[RawMesh, ...]:
 
 
 def _read_scene(path: Path) -> tuple[RawMesh, ...]:
+    import trimesh  # noqa: PLC0415  # takes longer than reading an OBJ or a glTF, which need none of it
+
     suffix = path.suffix.lower()
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
     scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True)
-    meshes = tuple(_scene_meshes(scene, path))
+    meshes = tuple(_scene_meshes(scene, path, trimesh.Trimesh))
     if suffix == ".stl" and not meshes and not _is_empty_stl(path):
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
     return meshes
@@ -145,13 +148,13 @@ def _is_empty_stl(path: Path) -> bool:
     return content == content[:80] + bytes(4) or (content.startswith(b"solid") and b"facet" not in content)
 
 
-def _scene_meshes(scene: Scene, path: Path) -> Iterator[RawMesh]:
+def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh]) -> Iterator[RawMesh]:
     suffix = path.suffix.lower()
     unit = _collada_unit(path) if suffix == ".dae" else 1.0
     for node in scene.graph.nodes_geometry:
         transform, key = scene.graph[node]
         geometry = scene.geometry[key]
-        if not isinstance(geometry, trimesh.Trimesh):
+        if not isinstance(geometry, kind):
             continue
         vertices = np.asarray(geometry.vertices, dtype=np.float64)
         faces = np.asarray(geometry.faces, dtype=np.int64)

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
 
 from kinematify.assembly.mesh_file import RawMesh, merged, read_meshes
 from kinematify.assembly.mesh_paths import find_mesh
@@ -86,29 +85,29 @@ def geometry_source(document: Path, package_dirs: Sequence[Path]) -> GeometrySou
 
 
 def _primitive(shape: _Element, where: str) -> RawMesh:
+    from trimesh import creation  # noqa: PLC0415  # takes longer than reading an OBJ, which needs none of it
+
     if shape.tag == "box":
         size = vector(shape, "size", None, where)
         _positive(where, "box", *size)
-        mesh = trimesh.creation.box(extents=size)
+        mesh = creation.box(extents=size)
     elif shape.tag == "sphere":
         radius = number(shape, "radius", None, where)
         _positive(where, "sphere", radius)
-        mesh = trimesh.creation.icosphere(subdivisions=_SUBDIVISIONS, radius=radius)
+        mesh = creation.icosphere(subdivisions=_SUBDIVISIONS, radius=radius)
     elif shape.tag in ("cylinder", "capsule"):
         radius, length = number(shape, "radius", None, where), number(shape, "length", None, where)
         _positive(where, str(shape.tag), radius, length)
-        create = trimesh.creation.cylinder if shape.tag == "cylinder" else _capsule
-        mesh = create(radius=radius, height=length, sections=_SECTIONS)
+        if shape.tag == "cylinder":
+            mesh = creation.cylinder(radius=radius, height=length, sections=_SECTIONS)
+        else:
+            mesh = creation.capsule(radius=radius, height=length, count=(_SECTIONS // 2, _SECTIONS))
     else:
         raise DescriptionError(
             f"The geometry of {where} is a <{shape.tag}>, which URDF does not have. Use a mesh, box, cylinder or "
             "sphere."
         )
     return RawMesh(name="", vertices=np.asarray(mesh.vertices), faces=np.asarray(mesh.faces, dtype=np.int64))
-
-
-def _capsule(radius: float, height: float, sections: int) -> trimesh.Trimesh:
-    return trimesh.creation.capsule(radius=radius, height=height, count=(sections // 2, sections))
 
 
 def _positive(where: str, shape: str, *sizes: float) -> None:
