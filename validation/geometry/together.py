@@ -8,9 +8,9 @@ from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import qmc
 
 from kinematify.validation.geometry.scene import relative
+from kinematify.validation.geometry.sobol import sobol
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -53,8 +53,7 @@ def random_rows(scene: Scene, seed: int) -> FloatArray:
     """Sobol points in the box of all ranges, shape (n, leaders)."""
     travels = scene.travels
     low, high = np.array([t.lower for t in travels]), np.array([t.upper for t in travels])
-    points = qmc.Sobol(len(travels), rng=seed).random(scene.settings.random_rows)
-    return np.asarray(low + points * (high - low))
+    return np.asarray(low + sobol(scene.settings.random_rows, len(travels), seed) * (high - low))
 
 
 def looked_at(scene: Scene, overlap: Overlap, allowance: Allowance, rows: FloatArray) -> Configurations:
