@@ -1,7 +1,4 @@
-"""KV6xx: what the engines left behind, compared with each other and with the analytical model.
-
-It runs in the main process, so it uses numpy only and opens no mesh.
-"""
+"""The stage `agreement`: what the engines left behind, compared with each other and the analytical model (KV6xx)."""
 
 from __future__ import annotations
 
@@ -27,6 +24,11 @@ if TYPE_CHECKING:
 REFERENCE = "pinocchio"
 """Masses and torques are held against it: it computes them in closed form."""
 _TINY = 1e-12
+
+
+def run(request: StageRequest, recorder: Recorder) -> None:
+    """Compare the engines that were asked for; see `kinematify.validation.stage`."""
+    compare(request, recorder, request.engines, request.failures)
 
 
 def compare(request: StageRequest, recorder: Recorder, chosen: Sequence[str], failures: Mapping[str, str]) -> None:

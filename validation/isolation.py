@@ -33,8 +33,19 @@ if TYPE_CHECKING:
 
 _SHOWN = 200
 """Characters of a failed stage's last words."""
-_THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-_PRELOADED = ("kinematify.validation.asset.stage", "kinematify.geometry.surface")
+_VARIABLES = {
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
+    "MUJOCO_GL": "disable",
+}
+"""Of the workers: one thread per library, as there are as many workers as cores, and no search for a display."""
+_PRELOADED = (
+    "kinematify.validation.asset.stage",
+    "kinematify.validation.prepare.stage",
+    "kinematify.validation.geometry.stage",
+    "kinematify.validation.evidence.stage",
+    "kinematify.validation.agreement",
+)
+"""Imported once for all of them; the libraries of engines are not, each stage needs another one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,20 +86,17 @@ def start_server() -> None:
     """Start the server that workers are forked from; returns at once, the imports go on beside the caller's work."""
     multiprocessing.get_context("forkserver").set_forkserver_preload(list(_PRELOADED))
     resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
-    with _one_thread(), _without_main(), _deaf():
+    with _variables(), _without_main(), _deaf():
         forkserver.ensure_running()
 
 
-def run_stages(
-    stages: list[Stage], request: StageRequest, *, workers: int, meanwhile: Callable[[], object] | None = None
-) -> Iterator[StageEnd]:
+def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> Iterator[StageEnd]:
     """Run stages, each as soon as those before it have ended; yield each end. Closing the iterator stops all.
 
     Args:
         stages: In an order in which each stands behind those that it comes after.
         request: What each of them is given.
         workers: Processes at a time.
-        meanwhile: Called once, as soon as the first ones run.
     """
     start_server()
     waiting, ended = list(stages), dict[str, str | None]()
@@ -108,9 +116,6 @@ def run_stages(
                 else:
                     receiver, running = _start(stage, request)
                     active[receiver] = running
-            if meanwhile is not None:
-                meanwhile()
-                meanwhile = None
             for end in _listen(active, request):
                 ended[end.stage.name] = end.failure
                 yield end
@@ -217,10 +222,10 @@ def _stop(receiver: Connection, process: BaseProcess) -> None:
 
 
 @contextmanager
-def _one_thread() -> Iterator[None]:
-    """One thread per library in the workers: there are as many of them as cores."""
-    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
-    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
+def _variables() -> Iterator[None]:
+    """Start the server with the environment of the workers, and keep it from the caller's."""
+    before = {name: os.environ.get(name) for name in _VARIABLES}
+    os.environ.update(_VARIABLES)
     try:
         yield
     finally:

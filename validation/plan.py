@@ -40,6 +40,12 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
     return stages
 
 
+def agreement_stage() -> Stage:
+    """Compares what the engines left; it comes after all of them, whether they ended well or not."""
+    checks = tuple(key for key in keys(agreement.CHECKS) if key[1] is None)
+    return Stage(name="agreement", function="kinematify.validation.agreement:run", checks=checks)
+
+
 def task_stage(seconds: float) -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
     return Stage(

@@ -5,12 +5,10 @@ Every check of the catalogue ends up in the report: passed, failed, skipped or b
 
 from __future__ import annotations
 
-import importlib
 import os
 import tempfile
 import time
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +16,15 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.isolation import run_stages, start_server
-from kinematify.validation.plan import ENGINES, asset_stage, keys, later_stages, needed, task_stage
+from kinematify.validation.plan import (
+    ENGINES,
+    agreement_stage,
+    asset_stage,
+    keys,
+    later_stages,
+    needed,
+    task_stage,
+)
 from kinematify.validation.precheck.document import precheck
 from kinematify.validation.report import JointSummary, ValidationReport
 from kinematify.validation.settings import load_settings
@@ -100,16 +106,12 @@ _LAST_GUARD = "KV152"
 _DOUBTS = frozenset(("KV310", "KV320", "KV341", "KV342", "KV343", "KV344", "KV345", "KV346"))
 """What the stage of a task wants to know of the joints: whether parent, axis, place, type and direction are right."""
 _LEEWAY = 20.0
-"""Seconds in which the stage of a task may still finish what it is at."""
+"""Seconds in which the comparison of engines, and what the stage of a task is at, may end after the budget."""
 
 
 def _checks(task: TaskRequest | None) -> dict[str, Check]:
     """Checks of the report."""
     return {name: check for name, check in CATALOGUE.items() if task is not None or not name.startswith("KV7")}
-
-
-_AGREEMENT = "kinematify.validation.agreement"
-"""Importing it takes a second, which is spent while the first stage runs in another process."""
 
 
 class _Run:
@@ -138,8 +140,7 @@ class _Run:
         if not usable:
             self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
             return
-        meanwhile = partial(importlib.import_module, _AGREEMENT)
-        for end in run_stages([asset_stage()], asset_request, workers=1, meanwhile=meanwhile):
+        for end in run_stages([asset_stage()], asset_request, workers=1):
             self._take_end(end)
         self._progress("meshes and declared physics", 0.15)
         fault = self._fault_of_meshes()
@@ -158,10 +159,16 @@ class _Run:
             "the engine was not asked for",
         )
         chosen = [engine for engine in ENGINES if engine in engines]
-        compare = importlib.import_module(_AGREEMENT).compare
-        compare(request, Recorder(self._take, request.selected), chosen, self._failures)
+        self._compare(request, chosen)
         if self.task is not None:
             self._use(request, chosen)
+
+    def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
+        """Hold the engines against each other; it is quick, and runs even where no time is left."""
+        late = max(request.deadline, time.time() + _LEEWAY)
+        request = replace(request, deadline=late, engines=tuple(engines), failures=self._failures)
+        for end in run_stages(needed([agreement_stage()], request.selected), request, workers=1):
+            self._take_end(end)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Let a robot use the object; it has time of its own."""

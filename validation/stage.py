@@ -38,6 +38,10 @@ class StageRequest:
     """Ids of the checks that the user wants."""
     deadline: float
     """`time.time()` at which the run should be over; a stage that is late says what it left out."""
+    engines: tuple[str, ...] = ()
+    """Engines that were asked for, for the stage that compares them."""
+    failures: Mapping[str, str] = field(default_factory=dict)
+    """Why stages before it did not end by themselves, keyed by stage."""
     task: TaskRequest | None = None
     """What a robot is to do with the object."""
     task_engines: tuple[str, ...] = ()

@@ -126,6 +126,9 @@ def command(
     Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used.
     Ctrl-C ends with 130 and leaves valid reports of what is known by then.
     """
+    from kinematify.validation.isolation import start_server
+
+    start_server()  # its imports go on beside those that follow
     from kinematify.cli.task_options import TaskOptions
     from kinematify.cli.validation_run import ValidationRun
     from kinematify.validation.models import find_models
