@@ -12,6 +12,8 @@ from kinematify.errors import ConfigError
 
 CONFIG_FOLDER = Path(__file__).resolve().parent.parent / "configs"
 
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, where PyYAML was built with it
+
 
 class StageConfig(BaseModel):
     """Base of all stages: strict types, unknown keys and non-finite numbers refused, frozen."""
@@ -61,7 +63,7 @@ def _read_layers(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     if path in seen:
         raise ConfigError(f"The configuration {path} extends itself through {', '.join(map(str, seen))}.")
     try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+        values = yaml.load(path.read_text(encoding="utf-8"), Loader=_LOADER)
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise ConfigError(f"The configuration {path} cannot be read as YAML: {error}.") from error
     if not isinstance(values, dict):

@@ -233,9 +233,9 @@ def lost_contact(case: MotionCase) -> Iterator[Remark]:
     scene = case.scene
     limit = scene.settings.lost * scene.size
     gaps = [item for side in case.sweep.sides for item in side.gaps]
-    for pair in sorted(case.sweep.own):
+    for pair in sorted({pair for pair, _, _ in gaps}):
         gap, value = max((gap, value) for other, gap, value in gaps if other == pair)
-        rest = case.allowance.pairs[pair].gap
+        rest = case.allowance.gap(pair)
         if gap - rest <= limit:
             continue
         connection = scene.connection_of[pair]

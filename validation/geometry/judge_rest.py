@@ -77,17 +77,17 @@ def hovering(scene: Scene, allowance: Allowance) -> Iterator[Remark]:
     """KV303: a part that does not touch what carries it."""
     limit = scene.settings.hover * scene.size
     for connection in scene.connections:
-        rest = allowance.pairs[connection.pair]
-        if rest.gap > limit:
+        if allowance.hovers(connection.pair, limit):
+            gap = allowance.gap(connection.pair)
             parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
             yield Remark(
-                message=f"{child} is {length(rest.gap)} away from {parent}, on which the joint {connection.joints[-1]} "
+                message=f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "
                 "hangs it: nothing is seen to carry it.",
                 remedy="Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
                 joint=connection.joints[-1],
                 pair=in_document_order(scene, connection.pair),
                 q=configuration(scene, {}),
-                value=rest.gap,
+                value=gap,
                 limit=limit,
                 unit="m",
             )

@@ -8,6 +8,7 @@ import fcl
 import numpy as np
 
 from kinematify.validation.geometry.scene import inverse, transformed
+from kinematify.validation.geometry.solid import all_three
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 _POINTS = 100_000  # asked about at a time: 10 MB
+_SOME = 16  # every so many of a body's points are asked about first: of what is near, most are
 _FEW = 0.03  # of the points: trims of sheets that stick in one another at rest count for nothing
 _SHRINK = 0.01  # surfaces that slide on one another must not count as crossed by a rounding error
 
@@ -83,6 +85,16 @@ class Overlap:
             return np.zeros(len(T))
         return np.maximum(_passed(first, second, T, hit, grace), _passed(second, first, inverse(T), hit, grace))
 
+    def near(self, pair: Pair, T: FloatArray, limit: float) -> bool:
+        """Whether a point of the second body is at most `limit` from the first [m] in one pose (4, 4).
+
+        Then so is their gap, which takes far longer to find; where it is False, the gap may still be smaller.
+        """
+        first, second = self.solids(pair)
+        points = transformed(second.points, T)
+        points = points[all_three((points >= first.low - limit) & (points <= first.high + limit))]
+        return any(bool((first.distance(some) <= limit).any()) for some in (points[::_SOME], points))
+
     def gap(self, pair: Pair, T: FloatArray) -> float:
         """Distance of the two bodies [m] in one pose (4, 4); 0 where they cross or one is in the solid of the other."""
         one = T[None]
@@ -111,14 +123,14 @@ def boxes_meet(first: Solid, second: Solid, T: FloatArray) -> BoolArray:
     along_first = np.abs(offset) <= half[0] + absolute @ half[1]
     back = np.einsum("nij,ni->nj", rotations, offset)
     along_second = np.abs(back) <= half[1] + np.einsum("nij,i->nj", absolute, half[0])
-    return np.asarray((along_first & along_second).all(axis=1))
+    return all_three(along_first & along_second)
 
 
 def _box_in_box(inner: Solid, outer: Solid, T: FloatArray) -> BoolArray:
     """Whether the box of `inner`, posed in the frame of `outer`, lies in the box of the latter."""
     reach = np.abs(T[:, :3, :3]) @ (0.5 * (inner.high - inner.low))
     middle = T[:, :3, :3] @ inner.middle + T[:, :3, 3]
-    return np.asarray(((middle - reach >= outer.low) & (middle + reach <= outer.high)).all(axis=1))
+    return all_three((middle - reach >= outer.low) & (middle + reach <= outer.high))
 
 
 def _reach_into(body: Solid, other: Solid, T: FloatArray) -> FloatArray:

@@ -36,8 +36,6 @@ class AtRest:
     """Deepest point in a closed shell [m]."""
     contained: bool
     """One body is inside the other one, and their surfaces do not meet."""
-    gap: float
-    """Distance of neighbours [m]; 0 where they collide or are no neighbours."""
 
 
 class Allowance:
@@ -60,6 +58,15 @@ class Allowance:
             T = relative(self._scene.at_rest[None], pair)
             self._depth[pair] = float(self._overlap.depth(pair, T)[0])
         return self._depth[pair]
+
+    def gap(self, pair: Pair) -> float:
+        """Distance of a pair at rest [m]; 0 where they collide or one is in the solid of the other."""
+        return self._overlap.gap(pair, relative(self._scene.at_rest[None], pair)[0])
+
+    def hovers(self, pair: Pair, limit: float) -> bool:
+        """Whether a pair is farther apart than `limit` at rest [m]."""
+        T = relative(self._scene.at_rest[None], pair)[0]
+        return not self._overlap.near(pair, T, limit) and self._overlap.gap(pair, T) > limit
 
     def joined(self, pair: Pair) -> bool:
         """True if only joints stand between the two bodies."""
@@ -85,5 +92,4 @@ class Allowance:
             collide=collide,
             depth=depth,
             contained=not collide and depth > 0.0,
-            gap=self._overlap.gap(pair, T[0]) if joined and depth == 0.0 else 0.0,
         )

@@ -99,6 +99,8 @@ def _turned(points: FloatArray, given: IntArray) -> tuple[IntArray, IntArray]:
 def _enclosed(corners: FloatArray, patch: IntArray, volume: FloatArray) -> BoolArray:
     """Which patches of negative volume lie in the box of one of positive and larger volume, shape (patches,)."""
     count = len(volume)
+    if not (volume < 0.0).any():
+        return np.zeros(count, dtype=bool)
     low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
     np.minimum.at(low, patch, corners.min(axis=1))
     np.maximum.at(high, patch, corners.max(axis=1))

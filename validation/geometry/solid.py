@@ -92,7 +92,7 @@ class Solid:
         depth = np.zeros(len(points))
         if not len(self.shells.closed):
             return depth
-        near = np.flatnonzero(((points > self.low) & (points < self.high)).all(axis=1))
+        near = np.flatnonzero(all_three((points > self.low) & (points < self.high)))
         near = near[self._is_inside(self._local(points[near]))]
         if len(near):
             depth[near] = self._closed.nearest(self._local(points[near]))[0]
@@ -131,7 +131,7 @@ class Solid:
         if not len(self.shells.sheets if sheets else self.shells.closed):
             return met
         ends = starts + steps
-        near = (np.minimum(starts, ends) <= self.high).all(axis=1) & (np.maximum(starts, ends) >= self.low).all(axis=1)
+        near = all_three((np.minimum(starts, ends) <= self.high) & (np.maximum(starts, ends) >= self.low))
         length = np.linalg.norm(steps, axis=1)
         rows = np.flatnonzero(near & (length > 0.0))
         if len(rows):
@@ -143,6 +143,15 @@ class Solid:
     def beside_closed(self, points: FloatArray) -> FloatArray:
         """Distance of points from the closed shells [m], body frame (n, 3) -> (n,)."""
         return self._closed.nearest(self._local(points))[0]
+
+    def distance(self, points: FloatArray) -> FloatArray:
+        """Distance of points from the surface [m], body frame (n, 3) -> (n,); infinite where there is none."""
+        local, found = self._local(points), np.full(len(points), np.inf)
+        if len(self.shells.closed):
+            found = np.minimum(found, self._closed.nearest(local)[0])
+        if len(self.shells.sheets):
+            found = np.minimum(found, self._sheets.nearest(local)[0])
+        return found
 
     def _local(self, points: FloatArray) -> FloatArray:
         return np.ascontiguousarray(points - self.middle)
@@ -197,6 +206,11 @@ class _Nearest:
         """Distance (n,), face (n,) and place on it (n, 3)."""
         squares, face, foot = self.tree.squared_distance(self.vertices, self.faces, points)
         return np.sqrt(np.maximum(squares, 0.0)), face, foot
+
+
+def all_three(flags: BoolArray) -> BoolArray:
+    """True where all of x, y and z are, (n, 3) -> (n,); several times as fast as `all` along so short an axis."""
+    return np.asarray(flags[:, 0] & flags[:, 1] & flags[:, 2])
 
 
 def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:

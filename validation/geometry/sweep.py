@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.validation.geometry.scene import box_corners, relative
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -55,7 +55,8 @@ class Side:
     meetings: tuple[Meeting, ...]
     """The first to begin comes first."""
     gaps: tuple[tuple[Pair, float, float], ...] = ()
-    """Neighbours with the largest gap that they have within the declared range [m] and the value at which."""
+    """Neighbours that may get farther apart than `lost` allows within the declared range, with their largest gap there
+    [m] and the value at which."""
 
     def free(self, pairs: frozenset[Pair] | None = None) -> float:
         """Value up to which nothing, or none of some pairs, meets [rad or m]."""
@@ -123,7 +124,7 @@ class Sweeper:
             declared=float(values[-1]),
             reached=float(beyond[-1]),
             meetings=tuple(meetings),
-            gaps=tuple(self._widest(pair, values, relative(poses, pair)) for pair in sorted(own)),
+            gaps=tuple(gap for pair in sorted(own) for gap in self._widest(pair, values, relative(poses, pair))),
         )
 
     def _far_end(self, travel: Travel, sign: float) -> float:
@@ -221,14 +222,15 @@ class Sweeper:
             return float(np.radians(settings.fine_angle))
         return min(settings.fine_length, 1e-4 * self._scene.size)
 
-    def _widest(self, pair: Pair, values: FloatArray, T: FloatArray) -> tuple[Pair, float, float]:
-        """Largest gap of a pair over some of the poses."""
-        chosen: IntArray = np.unique(
-            np.linspace(0, len(values) - 1, self._scene.settings.gap_samples + 1).astype(np.int64)
-        )
-        gaps = [self._overlap.gap(pair, T[row]) for row in chosen]
-        widest = int(np.argmax(gaps))
-        return pair, gaps[widest], float(values[chosen[widest]])
+    def _widest(self, pair: Pair, values: FloatArray, T: FloatArray) -> Iterator[tuple[Pair, float, float]]:
+        """Largest gap of a pair over some of the poses; nothing where it is certainly lost in none of them."""
+        settings, overlap = self._scene.settings, self._overlap
+        chosen: IntArray = np.unique(np.linspace(0, len(values) - 1, settings.gap_samples + 1).astype(np.int64))
+        apart = [row for row in chosen if not overlap.near(pair, T[row], settings.lost * self._scene.size)]
+        if apart:
+            gaps = [overlap.gap(pair, T[row]) for row in apart]
+            widest = int(np.argmax(gaps))
+            yield pair, gaps[widest], float(values[apart[widest]])
 
 
 def _meeting(
