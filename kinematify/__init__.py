@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from kinematify.config import load_config
     from kinematify.contact.graph import ContactGraph
     from kinematify.errors import KinematifyError
+    from kinematify.formats.export import export
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.infer import Inference, infer
@@ -37,6 +38,7 @@ __all__ = [
     "Part",
     "ValidationReport",
     "__version__",
+    "export",
     "infer",
     "load_assembly",
     "load_config",
@@ -55,6 +57,7 @@ _HOMES = {
     "KinematifyError": "kinematify.errors",
     "Part": "kinematify.assembly.part",
     "ValidationReport": "kinematify.validation.report",
+    "export": "kinematify.formats.export",
     "infer": "kinematify.pipeline",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",

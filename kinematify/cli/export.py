@@ -11,16 +11,25 @@ from kinematify.cli.help import examples
 
 @click.command(
     "export",
-    short_help="URDF -> SRDF for MoveIt.",
+    short_help="URDF -> MJCF, USD, SDF, GLB, SRDF.",
     epilog=examples(
-        "kinematify export robot.urdf --to srdf -o robot.srdf",
+        "kinematify export model.urdf --to mjcf -o model.xml",
+        "kinematify export model.urdf --to usd -o model.usda",
+        "kinematify export dog/model.urdf --to sdf -o dog.sdf --free",
         "kinematify export fetch/model.urdf --to srdf -o fetch.srdf --tool gripper_link",
         "kinematify export robot.urdf --to srdf -o robot.srdf --tool hand --gripper left_finger,right_finger",
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
-@click.option("--to", "form", required=True, type=click.Choice(["srdf"]), help="Format to write.")
+@click.option(
+    "--to",
+    "form",
+    required=True,
+    type=click.Choice(["mjcf", "usd", "sdf", "glb", "srdf"]),
+    help="Format to write.",
+)
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="FILE", help="File to write.")
+@click.option("--free", is_flag=True, help="The root link floats; it is fixed to the world if not given.")
 @click.option("--tool", metavar="LINK", help="Link at the end of the arm; found by its fingers if not given.")
 @click.option(
     "--gripper", metavar="JOINTS", help="Joints of the fingers, separated by commas; found on the tool if not given."
@@ -39,6 +48,7 @@ def command(
     model: Path,
     form: str,
     out: Path,
+    free: bool,
     tool: str | None,
     gripper: str | None,
     package_dirs: tuple[Path, ...],
@@ -46,19 +56,25 @@ def command(
 ) -> None:
     """Write the URDF MODEL in another format.
 
+    mjcf, usd, sdf: links, joints, limits, masses and colours for MuJoCo, Isaac Sim and Gazebo. Concave collision
+    geometry becomes convex pieces, as `kinematify validate` simulates it; neighbours do not collide. mjcf and sdf have
+    their meshes in a folder beside the file.
+
+    glb: what is seen, in a tree of nodes that stand where the joints are, for viewers and game engines.
+
     srdf: planning groups, end effector and named poses for MoveIt, and the pairs of links that it need not check, each
     with its reason: neighbours, in contact at rest, always or never in contact in sampled configurations.
     """
-    from kinematify.errors import OutputError
+    from kinematify.formats.export import export
     from kinematify.validation.settings import load_settings
-    from kinematify.validation.task.srdf import write_srdf
 
-    del form  # there is one so far, and click has checked it
-    settings = load_settings() if seed is None else load_settings(seed=seed)
+    if form != "srdf" and (tool or gripper):
+        raise click.UsageError("--tool and --gripper belong to --to srdf. Leave them out.")
+    if free and form in ("srdf", "glb"):
+        raise click.UsageError("--free belongs to --to mjcf, usd or sdf. Leave it out.")
     joints = tuple(word.strip() for word in (gripper or "").split(",") if word.strip())
-    try:
-        counts = write_srdf(model, out, settings, tool=tool, gripper=joints, package_dirs=package_dirs)
-    except OSError as error:
-        raise OutputError(f"{out} cannot be written: {error.strerror}. Give a file in a folder that exists.") from error
-    told = ", ".join(f"{counts[reason]} {reason.lower()}" for reason in ("Adjacent", "Default", "Always", "Never"))
-    click.echo(f"{out}: {told}; {counts['checked']} pairs of links are left to check.")
+    settings = load_settings() if seed is None else load_settings(seed=seed)
+    done = export(model, form, out, free=free, tool=tool, gripper=joints, package_dirs=package_dirs, settings=settings)
+    click.echo(f"Wrote {done.path}")
+    for sentence in (*done.notes, *done.lost):
+        click.echo(f"  {sentence}")

@@ -1,0 +1,96 @@
+"""A URDF in another format: the one place that knows which formats there are."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from kinematify.errors import InputError, OutputError
+from kinematify.formats.content import read_content
+from kinematify.validation.settings import load_settings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.validation.settings import ValidationSettings
+
+_WRITERS = {
+    "mjcf": ("kinematify.formats.mjcf", "write_mjcf"),
+    "usd": ("kinematify.formats.usd", "write_usd"),
+    "sdf": ("kinematify.formats.sdf_format", "write_sdf"),
+    "glb": ("kinematify.formats.glb", "write_glb"),
+    "srdf": ("kinematify.validation.task.srdf", "write_srdf"),
+}
+FORMATS = tuple(_WRITERS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exported:
+    """What was written."""
+
+    path: Path
+    notes: tuple[str, ...]
+    """What was made up or changed, one sentence each."""
+    lost: tuple[str, ...]
+    """What the format cannot hold, one sentence each."""
+
+
+def export(
+    model: str | Path,
+    to: str,
+    out: str | Path,
+    *,
+    free: bool = False,
+    tool: str | None = None,
+    gripper: Sequence[str] = (),
+    package_dirs: Sequence[Path] = (),
+    settings: ValidationSettings | None = None,
+) -> Exported:
+    """Write a URDF in another format.
+
+    Args:
+        model: The URDF file.
+        to: One of `FORMATS`.
+        out: File to write; meshes go into a folder beside it where the format names files.
+        free: The root link floats instead of being fixed to the world (mjcf, usd, sdf).
+        tool: Link at the end of the arm (srdf); found by its fingers if not given.
+        gripper: Joints of the fingers (srdf); found on the tool if not given.
+        package_dirs: Where packages lie (``package://``).
+        settings: Of decomposition, masses and pairs; the shipped ones if None.
+
+    Raises:
+        InputError: The model cannot be used, or there is no such format.
+        OutputError: The file cannot be written.
+    """
+    if to not in FORMATS:
+        raise InputError(f"There is no format {to!r} to export to. Give one of {', '.join(FORMATS)}.")
+    urdf, path = Path(model), Path(out)
+    chosen = load_settings() if settings is None else settings
+    try:
+        if to == "srdf":
+            return _srdf(urdf, path, chosen, tool=tool, gripper=gripper, package_dirs=package_dirs)
+        content = read_content(urdf, chosen, package_dirs=package_dirs)
+        lost = _writer(to)(content, path, free=free)
+        return Exported(path=path, notes=content.notes if to != "glb" else (), lost=lost)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise OutputError(f"{path} cannot be written: {reason}. Give a file in a folder that exists.") from error
+
+
+def _srdf(
+    urdf: Path, path: Path, settings: ValidationSettings, *, tool: str | None, gripper: Sequence[str],
+    package_dirs: Sequence[Path],
+) -> Exported:  # fmt: skip
+    write_srdf = _writer("srdf")
+    counts = write_srdf(urdf, path, settings, tool=tool, gripper=gripper, package_dirs=package_dirs)
+    told = ", ".join(f"{counts[reason]} {reason.lower()}" for reason in ("Adjacent", "Default", "Always", "Never"))
+    note = f"Pairs of links without checks: {told}; {counts['checked']} are left to check."
+    return Exported(path=path, notes=(note,), lost=())
+
+
+def _writer(to: str) -> Any:
+    """The function that writes a format; its package is imported only when it is asked for."""
+    module, function = _WRITERS[to]
+    return getattr(importlib.import_module(module), function)

@@ -1,0 +1,174 @@
+"""MJCF, the language of MuJoCo: nested bodies, motors for joints with an effort, pairs that do not collide."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from lxml import etree
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.formats.content import body_name, told_renaming
+from kinematify.formats.mesh_files import MeshFiles
+from kinematify.formats.rotation import quaternion
+from kinematify.validation.prepare.document import numbers
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lxml.etree import _Element
+
+    from kinematify.formats.content import Body, Content, Shape
+    from kinematify.validation.declared import DeclaredJoint
+
+_SEEN, _COLLIDES = "2", "3"  # MuJoCo's viewer shows groups 0 to 2
+
+
+def write_mjcf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
+    """Write an MJCF file and a folder with its meshes.
+
+    Args:
+        content: What to write.
+        out: File to write.
+        free: The root link floats, otherwise it is fixed to the world.
+
+    Returns:
+        What this format cannot hold of the model, one sentence each.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
+    meshes = MeshFiles(out)
+    document = etree.Element("mujoco", model=content.name)
+    etree.SubElement(document, "compiler", angle="radian", meshdir=meshes.folder.name, autolimits="true")
+    assets = etree.SubElement(document, "asset")
+    world = etree.SubElement(document, "worldbody")
+    writer = _Writer(content, meshes, assets)
+    writer.add_tree(world, free=free)
+    _add_contact(document, content)
+    _add_followers(document, content)
+    _add_motors(document, content)
+    etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    fast = [joint.name for joint in content.joints if joint.velocity is not None and _moves(joint)]
+    lost = told_renaming(content)
+    if fast:
+        lost.append(f"Speed limits of {len(fast)} joints are left out: MJCF has none.")
+    return tuple(lost)
+
+
+class _Writer:
+    """The tree of bodies and the meshes that it needs."""
+
+    def __init__(self, content: Content, meshes: MeshFiles, assets: _Element) -> None:
+        self._content, self._meshes, self._assets = content, meshes, assets
+        self._below: dict[str, list[DeclaredJoint]] = {}
+        for joint in content.joints:
+            self._below.setdefault(joint.joint.parent, []).append(joint)
+        self._body_of = {body.name: body for body in content.bodies}
+
+    def add_tree(self, world: _Element, *, free: bool) -> None:
+        root = etree.SubElement(world, "body", name=body_name(self._content.root))
+        if free:
+            etree.SubElement(root, "freejoint", name="root")
+        waiting = [(root, self._content.root)]
+        while waiting:  # a loop: chains may be longer than Python's stack
+            element, name = waiting.pop()
+            self._fill(element, self._body_of[name])
+            for joint in self._below.get(name, ()):
+                waiting.append((self._add_child(element, joint), joint.joint.child))
+
+    def _add_child(self, parent: _Element, declared: DeclaredJoint) -> _Element:
+        joint = declared.joint
+        T = joint.T_parent_child
+        child = etree.SubElement(
+            parent, "body", name=body_name(joint.child), pos=numbers(T[:3, 3]), quat=numbers(quaternion(T[:3, :3]))
+        )
+        if joint.kind is JointType.FIXED:
+            return child
+        element = etree.SubElement(
+            child, "joint", name=joint.name, type="hinge" if joint.kind.turns else "slide", axis=numbers(joint.axis)
+        )
+        if np.isfinite([joint.lower, joint.upper]).all():
+            element.set("range", numbers([joint.lower, joint.upper]))
+        for key, value in (("damping", declared.damping), ("frictionloss", declared.friction)):
+            if value:
+                element.set(key, numbers([value]))
+        return child
+
+    def _fill(self, element: _Element, body: Body) -> None:
+        inertial = body.inertial
+        if inertial.mass > 0.0:
+            m = inertial.tensor
+            etree.SubElement(
+                element, "inertial", pos=numbers(inertial.center_of_mass), mass=numbers([inertial.mass]),
+                fullinertia=numbers([m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]]),
+            )  # fmt: skip
+        for shape in body.visuals:
+            geom = self._geom(element, body, shape)
+            geom.set("rgba", numbers(shape.color))
+            geom.set("group", _SEEN)
+            geom.set("contype", "0")
+            geom.set("conaffinity", "0")
+        for shape in body.collisions:
+            self._geom(element, body, shape).set("group", _COLLIDES)
+
+    def _geom(self, element: _Element, body: Body, shape: Shape) -> _Element:
+        geom = etree.SubElement(element, "geom", type=shape.kind, mass="0")
+        if shape.kind == "mesh":
+            file = self._meshes.write(shape, body.name)
+            name = file.removesuffix(".obj")
+            # Only what is seen may be open or flat, for which a volume makes no sense.
+            etree.SubElement(self._assets, "mesh", name=name, file=file, inertia="shell")
+            geom.set("mesh", name)
+            return geom
+        T = shape.T_link_shape
+        geom.set("pos", numbers(T[:3, 3]))
+        geom.set("quat", numbers(quaternion(T[:3, :3])))
+        geom.set("size", numbers(_half(shape)))
+        return geom
+
+
+def _half(shape: Shape) -> list[float]:
+    """MuJoCo's sizes of a primitive: half lengths."""
+    if shape.kind == "box":
+        return [0.5 * side for side in shape.size]
+    return [shape.size[0], *(0.5 * length for length in shape.size[1:])]
+
+
+def _moves(joint: DeclaredJoint) -> bool:
+    return joint.joint.kind is not JointType.FIXED
+
+
+def _add_contact(document: _Element, content: Content) -> None:
+    if content.apart:
+        contact = etree.SubElement(document, "contact")
+        for first, second in content.apart:
+            etree.SubElement(contact, "exclude", body1=body_name(first), body2=body_name(second))
+
+
+def _add_followers(document: _Element, content: Content) -> None:
+    followers = [joint for joint in content.joints if joint.joint.mimic is not None and _moves(joint)]
+    if not followers:
+        return
+    equality = etree.SubElement(document, "equality")
+    for declared in followers:
+        mimic = declared.joint.mimic
+        assert mimic is not None
+        etree.SubElement(
+            equality, "joint", name=f"{declared.name} follows", joint1=declared.name, joint2=mimic.joint,
+            polycoef=numbers([mimic.offset, mimic.multiplier, 0.0, 0.0, 0.0]),
+        )  # fmt: skip
+
+
+def _add_motors(document: _Element, content: Content) -> None:
+    driven = [
+        joint for joint in content.joints if _moves(joint) and joint.joint.mimic is None and (joint.effort or 0) > 0
+    ]
+    if not driven:
+        return
+    actuators = etree.SubElement(document, "actuator")
+    for joint in driven:
+        assert joint.effort is not None
+        etree.SubElement(
+            actuators, "motor", name=joint.name, joint=joint.name, ctrlrange=numbers([-joint.effort, joint.effort])
+        )

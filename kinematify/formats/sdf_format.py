@@ -1,0 +1,128 @@
+"""SDFormat, the language of Gazebo: links in the frame of the model, joints in the frame of their child."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from lxml import etree
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.formats.content import WORLD, body_name, told_renaming
+from kinematify.formats.mesh_files import MeshFiles
+from kinematify.validation.prepare.document import numbers, roll_pitch_yaw
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lxml.etree import _Element
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.formats.content import Body, Content, Shape
+    from kinematify.validation.declared import DeclaredJoint
+
+_VERSION = "1.11"  # the first that knows followers
+_ENDLESS = 1e16  # the value that SDFormat takes for no limit
+
+
+def write_sdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
+    """Write an SDF file and a folder with its meshes; arguments, result and errors as for `write_mjcf`."""
+    meshes = MeshFiles(out)
+    document = etree.Element("sdf", version=_VERSION)
+    model = etree.SubElement(document, "model", name=content.name)
+    poses = _at_zero(content)
+    if not free:
+        fixed = etree.SubElement(model, "joint", name="world_joint", type="fixed")
+        etree.SubElement(fixed, "parent").text = WORLD
+        etree.SubElement(fixed, "child").text = body_name(content.root)
+    for body in content.bodies:
+        _add_link(model, body, poses[body.name], meshes)
+    for joint in content.joints:
+        _add_joint(model, joint)
+    etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    return tuple(told_renaming(content))
+
+
+def _at_zero(content: Content) -> dict[str, FloatArray]:
+    """Where links stand with all joints at zero, followers too: SDFormat counts from there."""
+    poses = {content.root: np.eye(4)}
+    for joint in content.model.kinematics.joints_downward:
+        poses[joint.child] = poses[joint.parent] @ joint.T_parent_child
+    return poses
+
+
+def _pose(parent: _Element, T: FloatArray) -> None:
+    etree.SubElement(parent, "pose").text = f"{numbers(T[:3, 3])} {numbers(roll_pitch_yaw(T[:3, :3]))}"
+
+
+def _add_link(model: _Element, body: Body, T_model_link: FloatArray, meshes: MeshFiles) -> None:
+    link = etree.SubElement(model, "link", name=body_name(body.name))
+    _pose(link, T_model_link)
+    if body.inertial.mass > 0.0:
+        inertial = etree.SubElement(link, "inertial")
+        T = np.eye(4)
+        T[:3, 3] = body.inertial.center_of_mass
+        _pose(inertial, T)
+        etree.SubElement(inertial, "mass").text = numbers([body.inertial.mass])
+        inertia, names = etree.SubElement(inertial, "inertia"), "xyz"
+        for row, column in zip(*np.triu_indices(3), strict=True):
+            etree.SubElement(inertia, f"i{names[row]}{names[column]}").text = numbers(
+                [body.inertial.tensor[row, column]]
+            )
+    for kind, shapes in (("visual", body.visuals), ("collision", body.collisions)):
+        for number, shape in enumerate(shapes):
+            element = etree.SubElement(link, kind, name=f"{kind}_{number}")
+            _add_shape(element, shape, body.name, meshes)
+            if kind == "visual":
+                material = etree.SubElement(element, "material")
+                for name in ("ambient", "diffuse"):
+                    etree.SubElement(material, name).text = numbers(shape.color)
+
+
+def _add_shape(element: _Element, shape: Shape, link: str, meshes: MeshFiles) -> None:
+    _pose(element, shape.T_link_shape)
+    kind = etree.SubElement(etree.SubElement(element, "geometry"), shape.kind)
+    if shape.kind == "mesh":
+        etree.SubElement(kind, "uri").text = f"{meshes.folder.name}/{meshes.write(shape, link)}"
+    elif shape.kind == "box":
+        etree.SubElement(kind, "size").text = numbers(shape.size)
+    else:
+        for name, value in zip(("radius", "length"), shape.size, strict=False):
+            etree.SubElement(kind, name).text = numbers([value])
+
+
+def _add_joint(model: _Element, declared: DeclaredJoint) -> None:
+    joint = declared.joint
+    element = etree.SubElement(model, "joint", name=joint.name, type=_TYPES[joint.kind])
+    etree.SubElement(element, "parent").text = body_name(joint.parent)
+    etree.SubElement(element, "child").text = body_name(joint.child)
+    if joint.kind is JointType.FIXED:
+        return
+    axis = etree.SubElement(element, "axis")
+    etree.SubElement(axis, "xyz").text = numbers(joint.axis)
+    if joint.mimic is not None:
+        mimic = etree.SubElement(axis, "mimic", joint=joint.mimic.joint)
+        for name, value in (("multiplier", joint.mimic.multiplier), ("offset", joint.mimic.offset), ("reference", 0.0)):
+            etree.SubElement(mimic, name).text = numbers([value])
+    limit = etree.SubElement(axis, "limit")
+    limited = bool(np.isfinite([joint.lower, joint.upper]).all())
+    for name, value in (
+        ("lower", joint.lower if limited else -_ENDLESS),
+        ("upper", joint.upper if limited else _ENDLESS),
+    ):
+        etree.SubElement(limit, name).text = numbers([value])
+    for name, stated in (("effort", declared.effort), ("velocity", declared.velocity)):
+        if stated is not None:
+            etree.SubElement(limit, name).text = numbers([stated])
+    if declared.damping or declared.friction:
+        dynamics = etree.SubElement(axis, "dynamics")
+        for name, stated in (("damping", declared.damping), ("friction", declared.friction)):
+            etree.SubElement(dynamics, name).text = numbers([stated or 0.0])
+
+
+_TYPES = {
+    JointType.FIXED: "fixed",
+    JointType.REVOLUTE: "revolute",
+    JointType.CONTINUOUS: "continuous",
+    JointType.PRISMATIC: "prismatic",
+}

@@ -1,0 +1,211 @@
+"""USD with the physics schema: rigid bodies side by side, joints between them, everything in one file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.errors import OutputError
+from kinematify.formats.rotation import from_x, quaternion
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from pathlib import Path
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.formats.content import Body, Content, Shape
+    from kinematify.validation.declared import DeclaredJoint
+
+SUFFIXES = (".usd", ".usda", ".usdc")
+
+
+def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
+    """Write a USD file, text (``.usda``) or binary (``.usd``, ``.usdc``).
+
+    Arguments, result and errors as for `write_mjcf`; another suffix is an `OutputError`.
+    """
+    if out.suffix.lower() not in SUFFIXES:
+        raise OutputError(f"USD cannot be written to {out}: its name has to end with {', '.join(SUFFIXES)}.")
+    writer = _Writer(content)
+    writer.add_all(free=free)
+    if not writer.stage.GetRootLayer().Export(str(out)):
+        raise OSError(f"USD could not write {out}")
+    followers = [joint.name for joint in content.joints if joint.joint.mimic is not None]
+    fast = [joint.name for joint in content.joints if joint.velocity is not None]
+    lost = []
+    if followers:
+        lost.append(f"The physics schema has no followers: {', '.join(followers)} move freely, and tell in customData "
+                    "whom they should follow.")  # fmt: skip
+    if fast:
+        lost.append(f"Speed limits of {len(fast)} joints are left out: the physics schema has none.")
+    return tuple(lost)
+
+
+class _Writer:
+    """One stage in memory."""
+
+    def __init__(self, content: Content) -> None:
+        self._content = content
+        self.stage = Usd.Stage.CreateInMemory()
+        UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)
+        UsdGeom.SetStageMetersPerUnit(self.stage, 1.0)
+        UsdPhysics.SetStageKilogramsPerUnit(self.stage, 1.0)
+        self._top = Sdf.Path.absoluteRootPath.AppendChild(_identifier(content.name, set()))
+        taken: set[str] = {"joints"}
+        self._paths = {body.name: self._top.AppendChild(_identifier(body.name, taken)) for body in content.bodies}
+
+    def add_all(self, *, free: bool) -> None:
+        """Everything below one prim, which is the file's default."""
+        top = UsdGeom.Xform.Define(self.stage, self._top)
+        self.stage.SetDefaultPrim(top.GetPrim())
+        UsdPhysics.Scene.Define(self.stage, self._top.AppendChild("physics_scene"))
+        UsdPhysics.ArticulationRootAPI.Apply(top.GetPrim())
+        poses = forward_kinematics(self._content.model.kinematics, {})
+        for body in self._content.bodies:
+            self._add_body(body, poses[body.name])
+        taken: set[str] = set()
+        joints = self._top.AppendChild("joints")
+        UsdGeom.Scope.Define(self.stage, joints)
+        if not free:
+            path = joints.AppendChild(_identifier("root_joint", taken))
+            joint = UsdPhysics.FixedJoint.Define(self.stage, path)
+            joint.CreateBody1Rel().SetTargets([self._paths[self._content.root]])
+        for declared in self._content.joints:
+            self._add_joint(declared, joints.AppendChild(_identifier(declared.name, taken)))
+        self._keep_apart()
+
+    def _add_body(self, body: Body, T_world_link: FloatArray) -> None:
+        path = self._paths[body.name]
+        xform = UsdGeom.Xform.Define(self.stage, path)
+        xform.GetPrim().SetDisplayName(body.name)
+        _place(xform, T_world_link)
+        UsdPhysics.RigidBodyAPI.Apply(xform.GetPrim())
+        self._add_mass(xform.GetPrim(), body)
+        for folder, shapes in (("visuals", body.visuals), ("collisions", body.collisions)):
+            above = path.AppendChild(folder)
+            scope = UsdGeom.Xform.Define(self.stage, above)
+            if folder == "collisions":
+                UsdGeom.Imageable(scope).CreatePurposeAttr(UsdGeom.Tokens.guide)
+            for number, shape in enumerate(shapes):
+                prim = self._add_shape(above.AppendChild(f"{shape.kind}_{number}"), shape)
+                if folder == "collisions":
+                    UsdPhysics.CollisionAPI.Apply(prim)
+                    if shape.kind == "mesh":
+                        UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
+
+    def _add_mass(self, prim: Any, body: Body) -> None:
+        if body.inertial.mass <= 0.0:
+            return
+        moments, axes = np.linalg.eigh(body.inertial.tensor)
+        axes[:, 2] *= np.sign(np.linalg.det(axes))
+        mass = UsdPhysics.MassAPI.Apply(prim)
+        mass.CreateMassAttr(body.inertial.mass)
+        mass.CreateCenterOfMassAttr(_vector(body.inertial.center_of_mass))
+        mass.CreateDiagonalInertiaAttr(_vector(moments))
+        mass.CreatePrincipalAxesAttr(_turn(axes))
+
+    def _add_shape(self, path: Any, shape: Shape) -> Any:
+        if shape.kind == "mesh":
+            found = UsdGeom.Mesh.Define(self.stage, path)
+            found.CreatePointsAttr([_vector(point) for point in shape.vertices])
+            found.CreateFaceVertexCountsAttr([3] * len(shape.faces))
+            found.CreateFaceVertexIndicesAttr(shape.faces.ravel().tolist())
+            found.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        else:
+            found = _primitive(self.stage, path, shape)
+        found.CreateDisplayColorAttr([_vector(shape.color[:3])])
+        if shape.color[3] < 1.0:
+            found.CreateDisplayOpacityAttr([float(shape.color[3])])
+        return found.GetPrim()
+
+    def _add_joint(self, declared: DeclaredJoint, path: Any) -> None:
+        joint = declared.joint
+        kind = {JointType.FIXED: UsdPhysics.FixedJoint, JointType.PRISMATIC: UsdPhysics.PrismaticJoint}
+        found = kind.get(joint.kind, UsdPhysics.RevoluteJoint).Define(self.stage, path)
+        found.GetPrim().SetDisplayName(joint.name)
+        found.CreateBody0Rel().SetTargets([self._paths[joint.parent]])
+        found.CreateBody1Rel().SetTargets([self._paths[joint.child]])
+        turn = np.eye(3) if joint.kind is JointType.FIXED else from_x(joint.axis)
+        T = joint.T_parent_child
+        found.CreateLocalPos0Attr(_vector(T[:3, 3]))
+        found.CreateLocalRot0Attr(_turn(T[:3, :3] @ turn))
+        found.CreateLocalPos1Attr(_vector(np.zeros(3)))
+        found.CreateLocalRot1Attr(_turn(turn))
+        if joint.kind is JointType.FIXED:
+            return
+        found.CreateAxisAttr(UsdGeom.Tokens.x)
+        if np.isfinite([joint.lower, joint.upper]).all():
+            unit = np.degrees if joint.kind.turns else np.asarray
+            found.CreateLowerLimitAttr(float(unit(joint.lower)))
+            found.CreateUpperLimitAttr(float(unit(joint.upper)))
+        self._add_drive(found.GetPrim(), declared)
+        if joint.mimic is not None:
+            found.GetPrim().SetCustomDataByKey("kinematify", {
+                "follows": joint.mimic.joint, "multiplier": joint.mimic.multiplier, "offset": joint.mimic.offset,
+            })  # fmt: skip
+
+    def _add_drive(self, prim: Any, declared: DeclaredJoint) -> None:
+        """Damping and the largest effort; an importer adds the gains that it wants."""
+        turns = declared.joint.kind.turns
+        drive = UsdPhysics.DriveAPI.Apply(prim, "angular" if turns else "linear")
+        per_degree = np.pi / 180.0 if turns else 1.0
+        drive.CreateStiffnessAttr(0.0)
+        drive.CreateDampingAttr(float((declared.damping or 0.0) * per_degree))
+        if declared.effort:
+            drive.CreateMaxForceAttr(float(declared.effort))
+
+    def _keep_apart(self) -> None:
+        """Pairs that no joint connects; those that one connects do not collide anyway."""
+        joined = {frozenset((joint.joint.parent, joint.joint.child)) for joint in self._content.joints}
+        for first, second in self._content.apart:
+            if frozenset((first, second)) not in joined:
+                prim = self.stage.GetPrimAtPath(self._paths[first])
+                UsdPhysics.FilteredPairsAPI.Apply(prim).CreateFilteredPairsRel().AddTarget(self._paths[second])
+
+
+def _identifier(name: str, taken: set[str]) -> str:
+    """A name that USD allows, and that no sibling has."""
+    stem = chosen = Tf.MakeValidIdentifier(name)
+    number = 1
+    while chosen in taken:
+        number += 1
+        chosen = f"{stem}_{number}"
+    taken.add(chosen)
+    return str(chosen)
+
+
+def _primitive(stage: Any, path: Any, shape: Shape) -> Any:
+    if shape.kind == "box":
+        found = UsdGeom.Cube.Define(stage, path)
+        found.CreateSizeAttr(1.0)
+        _place(found, shape.T_link_shape, shape.size)
+        return found
+    found = {"sphere": UsdGeom.Sphere, "cylinder": UsdGeom.Cylinder, "capsule": UsdGeom.Capsule}[shape.kind].Define(
+        stage, path
+    )
+    found.CreateRadiusAttr(float(shape.size[0]))
+    if shape.kind != "sphere":
+        found.CreateHeightAttr(float(shape.size[1]))
+        found.CreateAxisAttr(UsdGeom.Tokens.z)
+    _place(found, shape.T_link_shape)
+    return found
+
+
+def _place(xform: Any, T: FloatArray, scale: Iterable[float] = ()) -> None:
+    xform.AddTranslateOp().Set(Gf.Vec3d(*map(float, T[:3, 3])))
+    xform.AddOrientOp().Set(_turn(T[:3, :3]))
+    sides = tuple(scale)
+    if sides:
+        xform.AddScaleOp().Set(_vector(sides))
+
+
+def _vector(values: Iterable[float]) -> Any:
+    return Gf.Vec3f(*map(float, values))
+
+
+def _turn(rotation: FloatArray) -> Any:
+    return Gf.Quatf(*map(float, quaternion(np.asarray(rotation))))
