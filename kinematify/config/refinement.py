@@ -68,8 +68,10 @@ class RefineConfig(StageConfig):
     widest_tolerance: float
     """And at most this, fraction of the diagonal."""
     seam_share: float
-    """Share of the open rim of a part that coincides with that of another one, from which they are one part cut in
-    two."""
+    """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, from which the
+    two are one part."""
+    seam_smooth: float
+    """Share of the common rim over which the surface goes on, from which the same holds."""
     seam_tolerance: float
     """Distance at which two rims coincide, fraction of the diagonal."""
     twin_lead: float

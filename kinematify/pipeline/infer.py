@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
@@ -57,6 +57,8 @@ class Inference:
     """Peak resident memory of the process so far [MB]."""
     warnings: tuple[str, ...] = field(default=())
     """What the user should know, one sentence each; those of the assembly included."""
+    refinement: Mapping[str, Any] | None = None
+    """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
 
     @cached_property
     def model(self) -> KinematicModel:
@@ -67,7 +69,12 @@ class Inference:
 
 
 def infer(
-    assembly: Assembly, *, config: Config | None = None, base: str | None = None, progress: Progress | None = None
+    assembly: Assembly,
+    *,
+    config: Config | None = None,
+    base: str | None = None,
+    graph: ContactGraph | None = None,
+    progress: Progress | None = None,
 ) -> Inference:
     """Infer the kinematic tree and all joints of an assembly (paper, Algorithm 1).
 
@@ -75,6 +82,7 @@ def infer(
         assembly: Rigid parts in one configuration, world frame, z up, metres.
         config: All stages, the default ones if absent; `config.seed` makes the answer reproducible.
         base: Name of the part that is the base link, where it is known.
+        graph: The contacts, where they are known already.
         progress: Called with the name of each stage and the share of the work done before it, in [0, 1].
 
     Raises:
@@ -85,7 +93,8 @@ def infer(
     root = _base_index(assembly, base)
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
-        graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
+        if graph is None:
+            graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
     bearings: dict[Pair, EdgeBearing] = {}
     if config.joints.method == "geometry":
         with clock.stage("bearings", 0.2):

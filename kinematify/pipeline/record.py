@@ -84,6 +84,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "contacts": [_contact(inference, edge) for edge in inference.graph.edges],
         "trees": [_tree(tree, assembly.names) for tree in inference.trees],
         "joints": [_joint(joint, assembly.names) for joint in inference.joints],
+        "refinement": inference.refinement,
         "seconds": dict(inference.timings),
         "peak_mb": inference.peak_mb,
         "configuration": inference.config.model_dump(mode="json"),

@@ -28,6 +28,21 @@ _MAD_TO_SIGMA = 1.4826
 """Median absolute deviation to standard deviation of a normal distribution."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class SimulatedEdges:
+    """What became of edges in simulation (our R_sim; not in the paper)."""
+
+    survival: Mapping[tuple[int, int], float]
+    """Of edges (parent, child) that were simulated, in [0, 1]; 1 for those that nothing speaks against."""
+    weight: float
+    """Of R_sim in the reward."""
+
+    def of_pair(self, pair: Pair) -> float:
+        """Survival of the better direction of an edge (a, b)."""
+        a, b = pair
+        return max(self.survival.get((a, b), 1.0), self.survival.get((b, a), 1.0))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TreeLayout:
     """A rooted tree as arrays; node i has parent ``parents[i]``, the root has -1."""
@@ -156,6 +171,7 @@ class TreeReward:
         stats: Sequence[PartStats],
         evidence: Mapping[Pair, EdgeEvidence],
         config: TopologyConfig,
+        simulated: SimulatedEdges | None = None,
     ) -> None:
         """Measure what all trees share.
 
@@ -164,8 +180,10 @@ class TreeReward:
             stats: Size and place of every part.
             evidence: Best joint of each contact edge; not used by the paper's reward.
             config: `reward` chooses the terms, `weights` their weights.
+            simulated: What a simulation had against edges, if there was one.
         """
         self.graph = graph
+        self.simulated = simulated
         self.config = config
         self.centroids = np.array([item.centroid for item in stats])
         self.volumes = np.array([item.volume for item in stats])
@@ -175,6 +193,8 @@ class TreeReward:
         self.diagonal = float(np.linalg.norm(corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)))
         self.is_paper = config.reward == "paper"
         self.quality = contact_strength(graph) if self.is_paper else effective_quality(graph, evidence, config)
+        if simulated is not None:
+            self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
         self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
         for (a, b), value in self.quality.items():
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
@@ -194,7 +214,7 @@ class TreeReward:
         else:
             sym = corresponding_symmetry(tree, clusters, self.graph.cluster_of)
             hier = log_hierarchy(tree, self.hulls)
-        return {
+        found = {
             "struct": structure(tree, self.config.preferred_degree),
             "static": static_support(tree, self.centroids, self.volumes, self.scale),
             "contact": mean_over_edges(tree, self.edge_weights),
@@ -202,12 +222,21 @@ class TreeReward:
             "hier": hier,
             "base": base_score,
         }
+        return found if self.simulated is None else {**found, "sim": self._survived(tree)}
+
+    def _survived(self, tree: TreeLayout) -> float:
+        """``R_sim``: mean survival of the edges in simulation, in [0, 1]."""
+        known = {} if self.simulated is None else self.simulated.survival
+        children = tree.children.tolist()
+        return float(np.mean([known.get((int(tree.parents[child]), child), 1.0) for child in children]))
 
     def total(self, terms: Mapping[str, float]) -> float:
         """Weighted mean of the terms, in [0, 1]."""
         weights = self.config.weights.model_dump()
         if self.is_paper:
             weights["sym"] *= 2
+        if self.simulated is not None:
+            weights["sim"] = self.simulated.weight
         return float(sum(weights[name] * value for name, value in terms.items()) / sum(weights.values()))
 
     def gain(self, parent: int, child: int) -> float:

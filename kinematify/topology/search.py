@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.topology.evidence import EdgeEvidence, Pair
     from kinematify.topology.mcts import Parents
+    from kinematify.topology.reward import SimulatedEdges
     from kinematify.topology.stats import PartStats
 
 
@@ -34,6 +35,8 @@ def search_trees(
     *,
     seed: int,
     base: int | None = None,
+    simulated: SimulatedEdges | None = None,
+    warm: Sequence[KinematicTree] = (),
 ) -> tuple[KinematicTree, ...]:
     """Find the best kinematic trees of an assembly.
 
@@ -44,6 +47,8 @@ def search_trees(
         config: Mode, reward, base rule and budget.
         seed: Seed of the search; it only breaks ties.
         base: Index of the base link where it is known.
+        simulated: What a simulation had against edges; adds R_sim to the reward and weakens these edges.
+        warm: Trees to begin with, beside the spanning tree of each base; the search never returns less.
 
     Returns:
         At most `config.keep` distinct trees, highest reward first.
@@ -52,12 +57,13 @@ def search_trees(
         InputError: There are fewer than two parts, `base` is no part, or the lengths do not match.
     """
     _check_input(graph, stats, base)
-    reward = TreeReward(graph, stats, evidence, config)
+    reward = TreeReward(graph, stats, evidence, config, simulated)
     edges = spanning_edges(reward.quality, reward.centroids)
     bases = plausible_bases(graph, stats, evidence, config, edges=edges, base=base)
     found: dict[Parents, tuple[float, dict[str, float]]] = {}
     for candidate in bases:
-        seen = _trees_of_base(reward, edges, candidate, len(bases), seed)
+        known = [tree.parents for tree in warm if tree.root == candidate.part]
+        seen = _trees_of_base(reward, edges, candidate, len(bases), seed=seed, known=known)
         best = sorted(seen, key=lambda parents: -seen[parents])[: config.keep]
         found |= {parents: (seen[parents], reward.terms(parents, candidate.score)) for parents in best}
     ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[: config.keep]
@@ -118,7 +124,13 @@ def open_edges(weights: Mapping[Pair, float], tree: Sequence[Pair], n: int, conf
 
 
 def _trees_of_base(
-    reward: TreeReward, edges: Sequence[Pair], candidate: BaseCandidate, n_bases: int, seed: int
+    reward: TreeReward,
+    edges: Sequence[Pair],
+    candidate: BaseCandidate,
+    n_bases: int,
+    *,
+    seed: int,
+    known: Sequence[Parents],
 ) -> dict[Parents, float]:
     """Reward of every complete tree seen for one base link under the configured mode."""
     config, graph = reward.config, reward.graph
@@ -137,7 +149,7 @@ def _trees_of_base(
     if reward.is_paper or problem.forbidden:
         warm = breadth_first_tree(graph, candidate.part, reward.centroids, problem.forbidden)
     search = TreeSearch(
-        problem, exploration=config.exploration, normalise=config.normalise_returns, seed=seed, warm=[warm]
+        problem, exploration=config.exploration, normalise=config.normalise_returns, seed=seed, warm=[warm, *known]
     )
     search.run(max(config.iterations // n_bases, 1))
     return search.rewards

@@ -1,0 +1,95 @@
+"""Every near-best joint of a tree edge as a joint of its own: with opening direction, limits and evidence.
+
+The inference keeps its candidates as lines with scores; to be simulated, a candidate needs the range that it would
+have been given had it been chosen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.limits import find_range
+from kinematify.joints.scene import joint_scene, part_frames
+from kinematify.joints.workspace import PartCache
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.candidate import JointCandidate
+    from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.scene import JointScene
+    from kinematify.topology.evidence import Pair
+    from kinematify.topology.tree import KinematicTree
+
+_SAME = np.cos(np.radians(1.0))  # directions that no check tells apart
+
+
+class CandidateJoints:
+    """Makes joints of candidates, for any tree over the same parts."""
+
+    def __init__(
+        self, assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+    ) -> None:
+        """Keep what the inference had; samples and ray scenes are made when first asked for."""
+        self._bearings = bearings
+        self._config = config.joints
+        self._cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
+        self._frames: dict[tuple[int, ...], dict[int, BoxFrame]] = {}
+        self._scenes: dict[tuple[tuple[int, ...], int], JointScene] = {}
+
+    def realise(self, tree: KinematicTree, joint: JointEstimate, candidate: JointCandidate) -> JointEstimate:
+        """The joint that a candidate of an edge would be.
+
+        Args:
+            tree: The tree that the edge belongs to.
+            joint: What was chosen for the edge; it is returned where the candidate is that same joint.
+            candidate: One of its alternatives.
+        """
+        if is_same(joint, candidate):
+            return joint
+        scene = self.scene(tree, (joint.parent, joint.child))
+        found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot, self._config)
+        return replace(
+            joint,
+            kind=found.kind,
+            axis=found.sign * candidate.axis,
+            pivot=candidate.pivot,
+            lower=found.lower,
+            upper=found.upper,
+            evidence={
+                **joint.evidence,
+                "free_forward": found.free_forward,
+                "free_backward": found.free_backward,
+            },
+        )
+
+    def scene(self, tree: KinematicTree, edge: tuple[int, int]) -> JointScene:
+        """All that is known of one tree edge before a joint is proposed."""
+        key = (tree.parents, edge[1])
+        if key not in self._scenes:
+            if tree.parents not in self._frames:
+                self._frames[tree.parents] = part_frames(self._cache, tree, self._config)
+            bearing = self._bearings.get((min(edge), max(edge)))
+            frames = self._frames[tree.parents]
+            self._scenes[key] = joint_scene(self._cache, tree, frames, edge, bearing, config=self._config)
+        return self._scenes[key]
+
+
+def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
+    """Whether a candidate is the joint that was chosen: type, direction, and place for what turns."""
+    if joint.kind is JointType.FIXED or joint.kind.turns != candidate.kind.turns:
+        return False
+    if abs(float(joint.axis @ candidate.axis)) < _SAME:
+        return False
+    if not joint.kind.turns:
+        return True
+    apart = float(np.linalg.norm(np.cross(candidate.pivot - joint.pivot, joint.axis)))
+    return apart < 1e-9 + 1e-6 * float(np.linalg.norm(candidate.pivot))

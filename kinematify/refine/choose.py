@@ -1,0 +1,201 @@
+"""Choosing joints again under feedback: every near-best candidate is simulated, and the evidence is added up.
+
+The score of a candidate is that of the inference, in log odds, less what the simulation has against it. A candidate
+that was never simulated has nothing against it, so none may replace another before it was.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.candidate import JointType
+from kinematify.refine.candidates import is_same
+from kinematify.refine.history import Change
+from kinematify.refine.words import described, ranged
+from kinematify.validation.feedback import feedback_from
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kinematify.config import RefineConfig
+    from kinematify.joints.candidate import JointCandidate, JointEstimate
+    from kinematify.refine.candidates import CandidateJoints
+    from kinematify.refine.plan import Plan
+    from kinematify.refine.simulate import Simulator, Verdict
+    from kinematify.validation.feedback import Feedback, RangeSignal
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trial:
+    """A candidate after its simulation."""
+
+    joint: JointEstimate
+    score: float
+    """Of the inference, 0 for its best candidate [log odds]."""
+    against: float
+    """What the simulation has against it [log odds]."""
+    blocked: bool
+    """It can move to neither side."""
+
+    @property
+    def total(self) -> float:
+        """Evidence for it, all in all [log odds]."""
+        return self.score - self.against
+
+
+@dataclass(kw_only=True, eq=False)
+class Chooser:
+    """Simulates candidates and chooses among them; remembers what it has simulated."""
+
+    candidates: CandidateJoints
+    simulator: Simulator
+    config: RefineConfig
+    in_time: Callable[[], bool]
+    simulated: int = 0
+    refused: list[str] = field(default_factory=list)
+    """Choices that would have hidden a failure, with the reason."""
+
+    def choose_again(self, plan: Plan, feedback: Feedback, verdict: Verdict) -> tuple[Plan, list[Change]]:
+        """Take the blamed decisions about joints again, one part after the other.
+
+        Args:
+            plan: What was simulated.
+            feedback: What its failures blame.
+            verdict: With the free travel of its joints.
+        """
+        changes: list[Change] = []
+        doubted = sorted({item.child for item in feedback.lines} | {item.child for item in feedback.types})
+        doubted.sort(key=feedback.against)
+        for child in reversed(doubted):
+            plan, change = self._again(plan, child, feedback.against(child))
+            changes += [change] if change is not None else []
+        moved = {change.part for change in changes}
+        for signal in feedback.ranges:
+            if signal.child not in moved:
+                plan, cut = self._cut(plan, signal, verdict)
+                changes += [cut] if cut is not None else []
+        return plan, changes
+
+    def trials(self, plan: Plan, joint: JointEstimate, against: float | None = None) -> list[Trial]:
+        """The chosen joint and every near-best candidate of an edge, simulated, as many as there is time for.
+
+        Args:
+            plan: Where the other joints are as they are.
+            joint: The chosen one.
+            against: What the simulation has against it, if that is known already.
+        """
+        best = max((candidate.score for candidate in joint.alternatives), default=0.0)
+        own = next((item.score - best for item in joint.alternatives if is_same(joint, item)), 0.0)
+        found = [self.trial(plan, joint, own) if against is None else _known(joint, own, against)]
+        for candidate in self._near_best(joint, best):
+            if not self.in_time():
+                break
+            realised = self.candidates.realise(plan.tree, joint, candidate)
+            found.append(self.trial(plan, realised, candidate.score - best))
+        return found
+
+    def _near_best(self, joint: JointEstimate, best: float) -> list[JointCandidate]:
+        """Candidates within the margin that are not the chosen one, the best of either type at least."""
+        others = [item for item in joint.alternatives if not is_same(joint, item)]
+        near = [item for item in others if item.score >= best - self.config.margin]
+        kinds = {item.kind.turns: item for item in reversed(near)}
+        firsts = sorted(kinds.values(), key=lambda item: -item.score)
+        rest = [item for item in near if all(item is not first for first in firsts)]
+        return sorted((firsts + rest)[: self.config.near_best], key=lambda item: -item.score)
+
+    def trial(self, plan: Plan, joint: JointEstimate, score: float) -> Trial:
+        """Simulate one joint for a part of a plan, whose inference scored it so."""
+        self.simulated += 1
+        tried = plan.with_joint(joint)
+        child = plan.assembly.names[joint.child]
+        name = tried.joint_of[child]
+        verdict = self.simulator.judge_joint(tried.model, name)
+        feedback = feedback_from(verdict.findings, verdict.joints, tried.declared, self.config.feedback)
+        blocked = any(signal.check == "KV310" for signal in feedback.lines)
+        return Trial(joint=joint, score=score, against=feedback.against(child), blocked=blocked)
+
+    def _again(self, plan: Plan, child: str, against: float) -> tuple[Plan, Change | None]:
+        """The joint of one part, chosen again."""
+        old = plan.joints[plan.index(child)]
+        trials = self.trials(plan, old, against)
+        first = trials[0]
+        if len(trials) > 1 and self._can_never_move(trials):
+            return self._fixed(plan, child, old, trials)
+        best = max(trials[1:], key=lambda trial: trial.total, default=first)
+        if best.total <= first.total + self.config.lead or best.joint.kind is JointType.FIXED:
+            return plan, None
+        what = "type" if best.joint.kind.turns != old.kind.turns else "axis"
+        why = (
+            f"evidence {best.score:+.1f} of the geometry and {-best.against:+.1f} of the simulation, against "
+            f"{first.score:+.1f} and {-first.against:+.1f}"
+        )
+        change = Change(part=child, what=what, before=described(old), after=described(best.joint), why=why)
+        return plan.with_joint(best.joint), change
+
+    def _can_never_move(self, trials: list[Trial]) -> bool:
+        """Everything that is near-best, turns and slides both, is blocked to both sides: evidence that it is fixed."""
+        kinds = {trial.joint.kind.turns for trial in trials}
+        return len(kinds) > 1 and self.in_time() and all(trial.blocked for trial in trials)
+
+    def _fixed(self, plan: Plan, child: str, old: JointEstimate, trials: list[Trial]) -> tuple[Plan, Change]:
+        joint = replace(old, kind=JointType.FIXED, lower=0.0, upper=0.0)
+        why = f"all {len(trials)} near-best joints, turning and sliding, are blocked to both sides at once"
+        change = Change(part=child, what="fixed", before=described(old), after="fixed", why=why)
+        return plan.with_joint(joint), change
+
+    def _cut(self, plan: Plan, signal: RangeSignal, verdict: Verdict) -> tuple[Plan, Change | None]:
+        """End a range where the way ends, unless that leaves less than the stated share of what is free."""
+        old = plan.joints[plan.index(signal.child)]
+        travel = {item.joint: item.free_travel for item in verdict.joints}.get(plan.joint_of[signal.child])
+        new = shortened(old, signal)
+        if new is None:
+            return plan, None
+        if not _open_enough(new, travel, old, self.config.least_travel, certain=signal.certain):
+            self.refused.append(
+                f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}, too "
+                "little of it to be told from hiding the failure"
+            )
+            return plan, None
+        change = Change(
+            part=signal.child,
+            what="range",
+            before=ranged(old),
+            after=ranged(new),
+            why=f"{signal.check}: {signal.reason}",
+        )
+        return plan.with_joint(new), change
+
+
+def shortened(joint: JointEstimate, signal: RangeSignal) -> JointEstimate | None:
+    """A joint with the range that a signal asks for, its axis turned so that the larger side opens.
+
+    None if nothing changes or nothing is left.
+    """
+    lower = min(joint.lower if signal.lower is None else signal.lower, 0.0)
+    upper = max(joint.upper if signal.upper is None else signal.upper, 0.0)
+    if not np.isfinite([lower, upper]).all() or upper - lower <= 0.0 or (lower, upper) == (joint.lower, joint.upper):
+        return None
+    sign = 1.0 if upper >= -lower else -1.0
+    low, high = (lower, upper) if sign > 0 else (-upper, -lower)
+    kind = JointType.REVOLUTE if joint.kind.turns else joint.kind
+    return replace(joint, kind=kind, axis=sign * joint.axis, lower=low, upper=high)
+
+
+def _open_enough(
+    new: JointEstimate, travel: tuple[float, float] | None, old: JointEstimate, share: float, *, certain: bool
+) -> bool:
+    """Whether a range keeps the stated share of what there is.
+
+    What a certain failure (an error) leaves free is all there is of it; a warning may be a button in a housing without
+    a hole, and then the share is that of the range as it was.
+    """
+    length = old.upper - old.lower
+    free = length if travel is None else min(travel[1] - travel[0], length)
+    return new.upper - new.lower >= share * (free if certain else length) and new.upper - new.lower > 0.0
+
+
+def _known(joint: JointEstimate, score: float, against: float) -> Trial:
+    return Trial(joint=joint, score=score, against=against, blocked=against > 0.0)

@@ -1,0 +1,92 @@
+"""What happened in each round, as plain data for `inference.json`, for tables and for people."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """One decision that was taken again."""
+
+    part: str
+    """Whose joint, or whose parent, it is."""
+    what: str
+    """``parent``, ``type``, ``axis``, ``range``, ``fixed`` or ``contacts``."""
+    before: str
+    after: str
+    why: str
+    """The evidence, one sentence."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Round:
+    """One plan with what the simulation said of it."""
+
+    number: int
+    """0 is the inference as it was."""
+    tier: str
+    """``geometry``, ``engines`` or ``task``: how far it was simulated."""
+    changes: tuple[Change, ...]
+    """What was chosen anew before it was simulated."""
+    errors: int
+    warnings: int
+    failed: tuple[str, ...]
+    """``CHECK joint`` of every error and warning about motion."""
+    blamed: tuple[str, ...]
+    """What the feedback blames, one phrase each."""
+    score: float
+    """Sum of the scores of the chosen candidates below the best ones, and of all log odds against them; 0 at best."""
+    seconds: float
+    refused: tuple[str, ...] = ()
+    """Changes that would have hidden a failure rather than mended it, with the reason."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class History:
+    """All rounds, which one was kept, and why the loop ended."""
+
+    rounds: tuple[Round, ...]
+    kept: int
+    """Number of the round that was written."""
+    ended: str
+    """Why there was no further round."""
+    tier: str
+    seconds: float
+    candidates: int
+    """Joints that were simulated beside the chosen ones."""
+
+    @property
+    def changed(self) -> tuple[Change, ...]:
+        """Everything that differs between the inference and the round that was kept."""
+        return tuple(change for item in self.rounds[: self.kept + 1] for change in item.changes)
+
+    def as_json(self) -> dict[str, Any]:
+        """JSON values."""
+        return asdict(self)
+
+
+HISTORY_HEADINGS = ("round", "simulated by", "chosen anew", "failed", "blamed", "score", "time [s]")
+"""Of `history_rows`; the round that was kept has a star."""
+
+
+def history_rows(record: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """The rounds of a history, as `inference.json` has it, as rows of a table."""
+    return [_row(item, kept=item["number"] == record["kept"]) for item in record["rounds"]]
+
+
+def _row(item: Mapping[str, Any], *, kept: bool) -> tuple[str, ...]:
+    changes = [f"{it['part']}: {it['what']} {it['before']} -> {it['after']}" for it in item["changes"]]
+    return (
+        f"{item['number']}{' *' if kept else ''}",
+        item["tier"],
+        "; ".join(changes) or ("as inferred" if item["number"] == 0 else "-"),
+        "; ".join(item["failed"]) or "nothing",
+        "; ".join(item["blamed"]) or "-",
+        f"{item['score']:.2f}",
+        f"{item['seconds']:.1f}",
+    )

@@ -1,0 +1,313 @@
+"""The loop: simulate, feed back, choose again, and keep the best round (design section 5).
+
+It ends when nothing is left to act on, when a plan repeats, when the rounds or the time are used up. Each round is a
+plan of its own; the one with the fewest errors, then warnings, then the most evidence is kept, and the inference wins
+every tie, so that refining never makes a model worse by its own standards.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from kinematify.geometry.surface import part_surfaces
+from kinematify.refine.candidates import CandidateJoints
+from kinematify.refine.choose import Chooser
+from kinematify.refine.contacts import audit_contacts, rebuilt
+from kinematify.refine.history import Change, History, Round
+from kinematify.refine.plan import Plan
+from kinematify.refine.seams import find_seams
+from kinematify.refine.simulate import Simulator
+from kinematify.refine.split import infer_joined
+from kinematify.refine.tiers import GEOMETRY, TIERS, dear_verdict
+from kinematify.refine.topology import Contacts, EdgeMemory, replanned, search_again
+from kinematify.refine.twins import vote
+from kinematify.validation.feedback import feedback_from
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.settings import load_settings
+
+if TYPE_CHECKING:
+    from kinematify.pipeline.infer import Inference, Progress
+    from kinematify.refine.simulate import Verdict
+    from kinematify.validation.feedback import Feedback
+    from kinematify.validation.settings import ValidationSettings
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Refinement:
+    """What the loop leaves: the best answer, with the history of how it was found."""
+
+    inference: Inference
+    """The kept round as an inference; its `refinement` holds the history as plain data."""
+    history: History
+
+
+def refine(
+    inference: Inference,
+    *,
+    rounds: int | None = None,
+    tier: str = GEOMETRY,
+    seconds: float | None = None,
+    base: str | None = None,
+    settings: ValidationSettings | None = None,
+    progress: Progress | None = None,
+) -> Refinement:
+    """Simulate what was inferred, and choose again what the failures blame.
+
+    Args:
+        inference: What `infer` returned.
+        rounds: Rounds at most after the first; those of the configuration if absent.
+        tier: How far plans are simulated: ``geometry`` (exact sweeps), ``engines`` (MuJoCo and PyBullet too) or
+            ``task`` (and an arm that pulls).
+        seconds: Time at most [s]; a multiple of the time of the inference if absent, for dear tiers no limit.
+        base: Name of the part that is the base link, where it is known.
+        settings: Of the validation; the shipped ones if absent.
+        progress: Told what is being done and the share done.
+
+    Returns:
+        The best round. Ctrl-C ends the loop, and the best round so far is returned.
+
+    Raises:
+        ValueError: The tier is unknown.
+    """
+    if tier not in TIERS:
+        raise ValueError(f"There is no tier {tier}. Give one of {', '.join(TIERS)}.")
+    config = inference.config.refine
+    usual = max(config.seconds_factor * sum(inference.timings.values()), config.seconds_least)
+    loop = _Loop(
+        _Request(
+            given=inference,
+            rounds=config.rounds if rounds is None else rounds,
+            tier=tier,
+            seconds=seconds or (usual if tier == GEOMETRY else float("inf")),
+            base=None if base is None else inference.assembly.names.index(base),
+            settings=settings or load_settings(),
+            progress=progress or (lambda stage, share: None),
+        )
+    )
+    try:
+        loop.run()
+    except KeyboardInterrupt:
+        loop.ended = "it was interrupted"
+    return loop.result()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Done:
+    """A round that was simulated."""
+
+    plan: Plan
+    contacts: Contacts
+    verdict: Verdict
+    feedback: Feedback
+    round: Round
+
+    @property
+    def rank(self) -> tuple[float, ...]:
+        """Smaller is better: errors about motion, then warnings, then evidence; earlier rounds win ties."""
+        return (*_severities(self.verdict), -self.round.score, self.round.number)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Request:
+    """What `refine` was asked for."""
+
+    given: Inference
+    rounds: int
+    tier: str
+    seconds: float
+    base: int | None
+    settings: ValidationSettings
+    progress: Progress
+
+
+class _Loop:
+    """One run of the loop."""
+
+    def __init__(self, request: _Request) -> None:
+        self.request, self.given, self.tier = request, request.given, request.tier
+        self.config, self.base, self.rounds = request.given.config.refine, request.base, request.rounds
+        self.started = time.perf_counter()
+        self.memory = EdgeMemory()
+        self.done: list[_Done] = []
+        self.ended = "all rounds were used"
+        self.simulated = 0
+
+    def in_time(self) -> bool:
+        """Whether there is time for one thing more."""
+        return time.perf_counter() - self.started < self.request.seconds
+
+    def run(self) -> None:
+        """All rounds."""
+        assembly = self.given.assembly
+        contacts = Contacts(graph=self.given.graph, bearings=self.given.bearings)
+        plan = Plan(assembly=assembly, config=self.given.config, tree=self.given.trees[0], joints=self.given.joints)
+        self.simulator = Simulator(plan.model, self.request.settings.geometry)
+        seen = set()
+        changes: list[Change] = []
+        refused: list[str] = []
+        for number in range(self.rounds + 1):
+            seen.add(plan.signature)
+            done = self._simulate(number, plan, contacts, changes, refused)
+            self.done.append(done)
+            if number == self.rounds:
+                return
+            plan, contacts, changes, refused = self._choose(done)
+            if not changes:
+                self.ended = "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
+                return
+            if plan.signature in seen:
+                self.ended = "the next plan had been simulated before"
+                return
+            if not self.in_time():
+                self.ended = "the time was used up"
+                return
+
+    def result(self) -> Refinement:
+        """The best round as an inference."""
+        if not self.done:
+            history = self._history(0)
+            return Refinement(inference=replace(self.given, refinement=history.as_json()), history=history)
+        best = min(self.done, key=lambda done: done.rank)
+        history = self._history(best.round.number)
+        inference = self.given
+        if best.round.number > 0:
+            trees = (best.plan.tree, *(tree for tree in inference.trees if tree.parents != best.plan.tree.parents))
+            inference = replace(
+                inference,
+                trees=trees,
+                joints=best.plan.joints,
+                graph=best.contacts.graph,
+                bearings=best.contacts.bearings,
+            )
+        timings = {**inference.timings, "refinement": time.perf_counter() - self.started}
+        return Refinement(inference=replace(inference, timings=timings, refinement=history.as_json()), history=history)
+
+    def _simulate(
+        self, number: int, plan: Plan, contacts: Contacts, changes: list[Change], refused: list[str]
+    ) -> _Done:
+        """One round: the plan by geometry, and by the dear tiers where they were asked for."""
+        self.request.progress(f"round {number}: simulating", number / (self.rounds + 1))
+        start = time.perf_counter()
+        verdict = self.simulator.judge(plan.model, in_time=lambda: number == 0 or self.in_time())
+        if self.tier != GEOMETRY:
+            verdict = dear_verdict(plan, verdict, tier=self.tier, settings=self.request.settings)
+        feedback = feedback_from(verdict.findings, verdict.joints, plan.declared, self.config.feedback)
+        self.memory.add(plan.assembly, feedback.edges)
+        errors, warnings = _severities(verdict)
+        return _Done(
+            plan=plan,
+            contacts=contacts,
+            verdict=verdict,
+            feedback=feedback,
+            round=Round(
+                number=number,
+                tier=self.tier,
+                changes=tuple(changes),
+                errors=errors,
+                warnings=warnings,
+                failed=tuple(_failed(verdict)),
+                blamed=tuple(_blamed(feedback)),
+                score=_score(plan, feedback),
+                seconds=time.perf_counter() - start,
+                refused=tuple(refused),
+            ),
+        )
+
+    def _choose(self, done: _Done) -> tuple[Plan, Contacts, list[Change], list[str]]:
+        """The next plan: first what the parts are and what they hang on, then how they move."""
+        self.request.progress(
+            f"round {done.round.number}: choosing again", (done.round.number + 0.5) / (self.rounds + 1)
+        )
+        if done.round.number == 0:
+            rebuilt_plan = self._rebuilt(done)
+            if rebuilt_plan is not None:
+                return (*rebuilt_plan, [])
+        plan = done.plan
+        changes: list[Change] = []
+        if done.feedback.edges:
+            plan, changes = self._repaired(done)
+        if changes:
+            return plan, done.contacts, changes, []
+        candidates = CandidateJoints(plan.assembly, done.contacts.graph, done.contacts.bearings, plan.config)
+        chooser = Chooser(candidates=candidates, simulator=self.simulator, config=self.config, in_time=self.in_time)
+        plan, changes = chooser.choose_again(plan, done.feedback, done.verdict)
+        plan, votes = vote(plan, done.contacts.graph, chooser)
+        self.simulated += chooser.simulated
+        return plan, done.contacts, [*changes, *votes], chooser.refused
+
+    def _rebuilt(self, done: _Done) -> tuple[Plan, Contacts, list[Change]] | None:
+        """Parts that were one, and contacts that the graph has wrong; None where both are right."""
+        assembly, config = self.given.assembly, self.given.config
+        seams = find_seams(assembly, done.plan.tree.root, self.config)
+        if seams:
+            joined = infer_joined(done.plan, done.contacts, seams, base=self.base)
+            if joined[2]:
+                return joined
+        surfaces = part_surfaces(assembly, config=config.surface)
+        audit = audit_contacts(assembly, surfaces, self.given.graph, config)
+        if not audit:
+            return None
+        graph, bearings = rebuilt(assembly, surfaces, audit, config)
+        contacts = Contacts(graph=graph, bearings=bearings)
+        trees = search_again(assembly, contacts, self.memory, self.given.trees, config, base=self.base)
+        plan, changes = replanned(done.plan, contacts, trees[0])
+        why = f"{len(audit.missing)} contacts were missing and {len(audit.spurious)} are none"
+        told = Change(
+            part=assembly.names[trees[0].root], what="contacts", before=f"{len(self.given.graph.edges)}",
+            after=f"{len(graph.edges)}", why=why,
+        )  # fmt: skip
+        return plan, contacts, [told, *changes]
+
+    def _repaired(self, done: _Done) -> tuple[Plan, list[Change]]:
+        """Another tree, if the search finds a better one with what the simulation had against edges."""
+        trees = search_again(
+            done.plan.assembly, done.contacts, self.memory, self.given.trees, self.given.config, base=self.base
+        )
+        if trees[0].parents == done.plan.tree.parents:
+            return done.plan, []
+        return replanned(done.plan, done.contacts, trees[0])
+
+    def _history(self, kept: int) -> History:
+        return History(
+            rounds=tuple(done.round for done in self.done),
+            kept=kept,
+            ended=self.ended,
+            tier=self.tier,
+            seconds=time.perf_counter() - self.started,
+            candidates=self.simulated,
+        )
+
+
+_BLAMED = (Blame.KINEMATICS, Blame.TASK)
+
+
+def _severities(verdict: Verdict) -> tuple[int, int]:
+    """Errors and warnings that blame the kinematics or that a task failed on."""
+    found = [finding.severity for finding in verdict.findings if finding.blame in _BLAMED]
+    return found.count(Severity.ERROR), found.count(Severity.WARNING)
+
+
+def _failed(verdict: Verdict) -> list[str]:
+    return [
+        f"{finding.check} {finding.joint or ''}".strip()
+        for finding in verdict.findings
+        if finding.blame in _BLAMED and finding.severity is not Severity.NOTE
+    ]
+
+
+def _blamed(feedback: Feedback) -> list[str]:
+    """What is blamed, one phrase per part and decision."""
+    edges = [f"{signal.child}: parent" for signal in feedback.edges]
+    lines = [f"{signal.child}: axis" for signal in feedback.lines]
+    types = [f"{signal.child}: type" for signal in feedback.types]
+    ranges = [f"{signal.child}: range" for signal in feedback.ranges]
+    return list(dict.fromkeys([*edges, *lines, *types, *ranges]))
+
+
+def _score(plan: Plan, feedback: Feedback) -> float:
+    """Evidence for the chosen joints, less what speaks against them [log odds]."""
+    scores = [joint.evidence.get("chosen_score", 0.0) for joint in plan.joints]
+    against = [feedback.against(plan.assembly.names[joint.child]) for joint in plan.joints]
+    return sum(scores) - sum(against) - sum(signal.weight for signal in feedback.edges)

@@ -1,0 +1,178 @@
+"""The cheap tier: what the exact geometry says of a plan, in this process and without a file.
+
+The judges are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here passes there. Sweeps
+of joints that did not change since an earlier plan are not repeated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.refine.world import World
+from kinematify.validation.finding import Severity
+from kinematify.validation.geometry import judge_motion
+from kinematify.validation.geometry.judge_motion import MotionCase
+from kinematify.validation.geometry.judge_rest import hovering, neighbours, strangers
+from kinematify.validation.geometry.overlap import Overlap
+from kinematify.validation.geometry.rest import Allowance
+from kinematify.validation.geometry.scene import box_corners, relative, transformed
+from kinematify.validation.geometry.sweep import Sweeper
+from kinematify.validation.report import JointSummary
+from kinematify.validation.stage import OpenCheck
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.model.kinematic_model import Joint, KinematicModel
+    from kinematify.refine.world import WorldScene
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.geometry.remark import Remark
+    from kinematify.validation.geometry.sweep import JointSweep
+    from kinematify.validation.settings import GeometrySettings
+
+_MOTION: dict[str, Callable[[MotionCase], Iterator[Remark]]] = {
+    "KV310": judge_motion.through_parent,
+    "KV311": judge_motion.into_others,
+    "KV312": judge_motion.beyond_free_travel,
+    "KV320": judge_motion.lost_contact,
+    "KV321": judge_motion.out_of_guide,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What a tier says of one plan."""
+
+    findings: tuple[Finding, ...]
+    joints: tuple[JointSummary, ...]
+    """With the free travel of each joint that moves."""
+    complete: bool = True
+    """False where time ran out before all joints were moved."""
+
+    def counted(self, severity: Severity) -> int:
+        """Number of findings of a severity."""
+        return sum(finding.severity is severity for finding in self.findings)
+
+    @property
+    def passes(self) -> bool:
+        """No error."""
+        return self.complete and not self.counted(Severity.ERROR)
+
+
+class Simulator:
+    """Judges plans of one assembly by exact geometry."""
+
+    def __init__(self, model: KinematicModel, settings: GeometrySettings) -> None:
+        """Keep the parts.
+
+        Args:
+            model: Any plan of the assembly.
+            settings: Of the checks by geometry.
+        """
+        self._world = World(model, settings)
+        self._sweeps: dict[tuple[object, ...], JointSweep] = {}
+
+    def judge(self, model: KinematicModel, *, in_time: Callable[[], bool] = lambda: True) -> Verdict:
+        """Judge a whole plan.
+
+        Args:
+            model: The plan.
+            in_time: Asked before each joint; what is left out makes the verdict incomplete.
+        """
+        look = _Look(self._world.scene(model))
+        found = list(_findings("KV301", strangers(look.scene, look.allowance, None)))
+        found += _findings("KV302", neighbours(look.scene, look.overlap, look.allowance, None))
+        found += _findings("KV303", hovering(look.scene, look.allowance))
+        summaries: list[JointSummary] = []
+        for leader, travel in enumerate(look.scene.travels):
+            if not in_time():
+                return Verdict(findings=tuple(found), joints=tuple(summaries), complete=False)
+            told, summary = self._joint(look, model, leader, travel.joint)
+            found += told
+            summaries.append(summary)
+        return Verdict(findings=tuple(found), joints=tuple(summaries))
+
+    def judge_joint(self, model: KinematicModel, joint: str) -> Verdict:
+        """Judge one joint of a plan by its motion alone; a fixed joint has nothing to say."""
+        look = _Look(self._world.scene(model))
+        names = [travel.joint for travel in look.scene.travels]
+        if joint not in names:
+            return Verdict(findings=(), joints=())
+        found, summary = self._joint(look, model, names.index(joint), joint)
+        return Verdict(findings=tuple(found), joints=(summary,))
+
+    def _joint(self, look: _Look, model: KinematicModel, leader: int, name: str) -> tuple[list[Finding], JointSummary]:
+        key = _key(model, name)
+        if key not in self._sweeps:
+            self._sweeps[key] = look.sweeper.sweep(leader)
+        sweep = self._sweeps[key]
+        if sweep.leader != leader:  # another joint became fixed or free: the same motion under another number
+            sweep = self._sweeps[key] = look.sweeper.sweep(leader)
+        case = MotionCase(scene=look.scene, overlap=look.overlap, allowance=look.allowance, sweep=sweep, visible=None)
+        found = [finding for check, judge in _MOTION.items() for finding in _findings(check, judge(case))]
+        joint = next(item for item in model.joints if item.name == name)
+        summary = JointSummary(
+            joint=name, kind=joint.kind.value, declared_limits=(joint.lower, joint.upper), free_travel=sweep.free
+        )
+        return found, summary
+
+    def gaps(self, model: KinematicModel, joint: str, shares: FloatArray) -> FloatArray:
+        """How much farther from its parent a part is at shares of its range than at rest.
+
+        Args:
+            model: The plan.
+            joint: A joint that moves.
+            shares: Of the way from rest to the upper end, or to the lower one where negative, shape (n,).
+
+        Returns:
+            Growth of the gap as a fraction of how far the part's fastest corner has moved, shape (n,); 0 where the
+            two still touch, 1 where the whole motion leads away.
+        """
+        look = _Look(self._world.scene(model))
+        leader = [travel.joint for travel in look.scene.travels].index(joint)
+        travel = look.scene.travels[leader]
+        values = np.where(shares >= 0.0, shares * travel.upper, -shares * travel.lower)
+        poses = look.scene.poses(look.sweeper.rows(leader, values))
+        child = next(item.child for item in model.joints if item.name == joint)
+        body = next(index for index, item in enumerate(look.scene.bodies) if child in item.links)
+        pair = next(item.pair for item in look.scene.connections if item.child == body)
+        rest = look.overlap.gap(pair, relative(look.scene.at_rest[None], pair)[0])
+        corners = box_corners(look.scene.bodies[body].solid)
+        moved = [np.linalg.norm(transformed(corners, T) - corners, axis=1).max() for T in poses[:, body]]
+        grown = [look.overlap.gap(pair, T) - rest for T in relative(poses, pair)]
+        return np.maximum(grown, 0.0) / np.maximum(moved, 1e-12)
+
+
+class _Look:
+    """A scene with what asks it."""
+
+    def __init__(self, scene: WorldScene) -> None:
+        self.scene = scene
+        self.overlap = Overlap(scene)
+        self.allowance = Allowance(scene, self.overlap)
+        self.sweeper = Sweeper(scene, self.overlap, self.allowance)
+
+
+def _findings(check: str, remarks: Iterator[Remark]) -> Iterator[Finding]:
+    opened = OpenCheck(id=check, engine=None)
+    for remark in remarks:
+        remark.add_to(opened)
+    yield from opened.findings
+
+
+def _key(model: KinematicModel, name: str) -> tuple[object, ...]:
+    """What the sweep of a joint depends on: its line and range, and which bodies the tree moves against which."""
+    joint = next(item for item in model.joints if item.name == name)
+    tree = tuple(sorted((item.child, item.parent, item.kind.value == "fixed") for item in model.joints))
+    return (*_line(model, joint), tree)
+
+
+def _line(model: KinematicModel, joint: Joint) -> tuple[object, ...]:
+    origin = model.link_by_name[joint.child].T_world_link[:3, 3]
+    return (
+        joint.child, joint.kind.value, joint.lower, joint.upper, joint.axis.tobytes(), origin.tobytes()
+    )  # fmt: skip

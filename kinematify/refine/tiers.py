@@ -1,0 +1,41 @@
+"""The dear tiers: finalists are written, validated in engines, and pulled by an arm."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinematify.model.urdf import write_urdf
+from kinematify.refine.simulate import Verdict
+from kinematify.validation.run import validate
+from kinematify.validation.task.request import PULL, TaskRequest
+
+if TYPE_CHECKING:
+    from kinematify.refine.plan import Plan
+    from kinematify.validation.settings import ValidationSettings
+
+GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"
+TIERS = (GEOMETRY, ENGINES, TASK)
+"""From cheap to dear; each includes those before it."""
+
+_OWN = ("KV30", "KV31", "KV32")
+"""Checks that the cheap tier has told already."""
+
+
+def dear_verdict(plan: Plan, cheap: Verdict, *, tier: str, settings: ValidationSettings) -> Verdict:
+    """Validate a plan in engines, and with a task if the tier asks for it.
+
+    Args:
+        plan: The finalist.
+        cheap: What the exact geometry says of it.
+        tier: ``engines`` or ``task``.
+        settings: Of the validation.
+    """
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        urdf = write_urdf(plan.model, Path(folder))
+        report = validate(urdf, settings=settings, task=TaskRequest(kind=PULL) if tier == TASK else None)
+    told = tuple(finding for finding in report.counted if not finding.check.startswith(_OWN))
+    if report.environment.get("interrupted"):
+        raise KeyboardInterrupt
+    return Verdict(findings=(*cheap.findings, *told), joints=cheap.joints, complete=cheap.complete)

@@ -1,0 +1,107 @@
+"""Repairing the tree: parts that hang on what they do not touch, or run into what should carry them.
+
+The contacts are measured again, the feedback weakens edges, and the search restarts warm from the trees it had, with
+R_sim among its terms. Joints of edges that are new are chosen as the inference would.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.pipeline.infer import choose_joints, gather_evidence
+from kinematify.refine.history import Change
+from kinematify.refine.plan import Plan
+from kinematify.topology.reward import SimulatedEdges
+from kinematify.topology.search import search_trees
+from kinematify.topology.stats import assembly_stats
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.topology.tree import KinematicTree
+    from kinematify.validation.feedback import EdgeSignal
+
+Pair = tuple[int, int]
+Edge = tuple[int, int]
+"""Parent and child."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Contacts:
+    """The graph that trees are searched on, with its bearings."""
+
+    graph: ContactGraph
+    bearings: Mapping[Pair, EdgeBearing]
+
+
+class EdgeMemory:
+    """What all rounds so far have had against edges of the tree."""
+
+    def __init__(self) -> None:
+        self.against: dict[Edge, float] = {}
+
+    def add(self, assembly: Assembly, signals: tuple[EdgeSignal, ...]) -> None:
+        """Keep the worst that was said of each edge."""
+        for signal in signals:
+            edge = assembly.names.index(signal.parent), assembly.names.index(signal.child)
+            self.against[edge] = max(self.against.get(edge, 0.0), signal.weight)
+
+    def survival(self, edge: Edge) -> float:
+        """In (0, 1]; 1 for what nothing speaks against."""
+        return float(np.exp(-self.against.get(edge, 0.0)))
+
+
+def search_again(
+    assembly: Assembly,
+    contacts: Contacts,
+    memory: EdgeMemory,
+    warm: tuple[KinematicTree, ...],
+    config: Config,
+    *,
+    base: int | None,
+) -> tuple[KinematicTree, ...]:
+    """Search the trees again, warm, with what the simulation had against edges."""
+    evidence = gather_evidence(contacts.graph, contacts.bearings, config)
+    simulated = SimulatedEdges(
+        survival={edge: memory.survival(edge) for edge in memory.against}, weight=config.refine.survival_weight
+    )
+    return search_trees(
+        contacts.graph,
+        assembly_stats(assembly),
+        evidence,
+        config.topology,
+        seed=config.seed,
+        base=base,
+        simulated=simulated,
+        warm=warm,
+    )
+
+
+def replanned(plan: Plan, contacts: Contacts, tree: KinematicTree) -> tuple[Plan, list[Change]]:
+    """The plan on another tree: joints of edges that stay are kept where nothing about them changed.
+
+    A joint depends on what hangs on both of its parts, so that all joints are chosen as the inference would, and those
+    of equal edges with equal surroundings come out equal.
+    """
+    joints = choose_joints(plan.assembly, contacts.graph, tree, contacts.bearings, plan.config)
+    names = plan.assembly.names
+    new = Plan(assembly=plan.assembly, config=plan.config, tree=tree, joints=joints)
+    changes = [
+        Change(
+            part=names[child],
+            what="parent",
+            before=names[before] if before >= 0 else "(base)",
+            after=names[after] if after >= 0 else "(base)",
+            why="the contacts as measured again, and what the simulation had against edges",
+        )
+        for child, (before, after) in enumerate(zip(plan.tree.parents, tree.parents, strict=True))
+        if before != after
+    ]
+    return new, changes

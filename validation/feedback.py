@@ -1,0 +1,428 @@
+"""From findings to feedback: which decision each failure blames, as plain data (design section 5).
+
+A failure seldom proves anything. Each signal carries a weight in log odds, the unit in which the inference adds up its
+own evidence, and the search decides. Failures that are not the search's to mend are listed with the reason, so that
+nothing is dropped in silence; above all, no collision is ever switched off.
+
+==============================================================  ====================================================
+failure                                                         signal
+==============================================================  ====================================================
+into its parent at once, to both sides (KV310)                  against this line and, weaker, against this type
+into its parent to one side only (KV310, KV312)                 range ends there; the free side is the opening one
+into a body that is not its parent (KV311)                      against this parent, for that body where they touch
+contact with the parent lost (KV320, KV303, KV341)              against line and type, or against the parent
+out of its guide (KV321)                                        range ends before
+another line or type fits better (KV342 to KV346)               against the line, or against the type
+hulls meet where the meshes do not (KV332, KV403)               none: collision geometry
+overlap at rest (KV301, KV302)                                  allowance with its reason
+engines or tools disagree (KV401, KV402, KV501, KV502, KV6xx)   none: files, frames, inertia
+driven, an end is not reached (KV405, KV505)                    against the line, unless hulls explain it
+limits escaped, unstable, gains energy (KV407 to KV409, ...)    none at first; weak once masses and overlaps are fine
+sinks under gravity (KV404, KV504, KV411, KV511)                weak, against the direction
+handle found, but no way to pull it (KV703 to KV706)            weak, and only if several placements were tried
+==============================================================  ====================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from kinematify.validation.finding import Blame, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from kinematify.config import FeedbackConfig
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.report import JointSummary
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeclaredJoint:
+    """What the mapping must know of a joint of the model that was judged."""
+
+    parent: str
+    child: str
+    kind: str
+    lower: float
+    """[rad or m]; -inf for continuous."""
+    upper: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class EdgeSignal:
+    """Against one part as the parent of another, and for a third one if it is known."""
+
+    parent: str
+    child: str
+    weight: float
+    """Log odds against this edge, positive."""
+    better: str | None
+    """Part that the child should hang on instead."""
+    check: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class LineSignal:
+    """Against the line, axis and place, that the joint of a part has."""
+
+    child: str
+    weight: float
+    check: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TypeSignal:
+    """Against the type that the joint of a part has: sliding where it turns, turning where it slides."""
+
+    child: str
+    kind: str
+    """The type that is doubted."""
+    weight: float
+    check: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeSignal:
+    """Where the range of a joint has to end; None leaves an end as it is."""
+
+    child: str
+    lower: float | None
+    """[rad or m], about the declared axis."""
+    upper: float | None
+    certain: bool
+    """The failure is an error, which geometry proves."""
+    check: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Allowance:
+    """An overlap at rest that later motion is not blamed for."""
+
+    pair: tuple[str, str]
+    depth: float
+    """[m]."""
+    check: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class NotOurs:
+    """A failure that no choice of the search can mend, and who can."""
+
+    check: str
+    joint: str | None
+    blame: str
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Feedback:
+    """What the failures of one model say about the decisions behind it."""
+
+    edges: tuple[EdgeSignal, ...] = ()
+    lines: tuple[LineSignal, ...] = ()
+    types: tuple[TypeSignal, ...] = ()
+    ranges: tuple[RangeSignal, ...] = ()
+    allowances: tuple[Allowance, ...] = ()
+    left: tuple[NotOurs, ...] = ()
+
+    def __bool__(self) -> bool:
+        """Whether the search has something to act on."""
+        return bool(self.edges or self.lines or self.types or self.ranges)
+
+    @property
+    def blamed(self) -> frozenset[str]:
+        """Parts whose joint is doubted in any way."""
+        return frozenset(signal.child for signal in (*self.edges, *self.lines, *self.types, *self.ranges))
+
+    def against(self, child: str) -> float:
+        """Sum of the log odds against the joint of a part, parent left out."""
+        return sum(signal.weight for signal in (*self.lines, *self.types) if signal.child == child)
+
+    def as_json(self) -> dict[str, Any]:
+        """JSON values."""
+        return asdict(self)
+
+
+def feedback_from(
+    findings: Sequence[Finding],
+    summaries: Iterable[JointSummary],
+    joints: Mapping[str, DeclaredJoint],
+    config: FeedbackConfig,
+) -> Feedback:
+    """Turn the findings about one model into feedback.
+
+    Args:
+        findings: All of them, in any order; suppressed ones do not count.
+        summaries: Free travel of the joints, where it was measured.
+        joints: The joints of the model by name.
+        config: Weight of each kind of failure.
+    """
+    travel = {item.joint: item.free_travel for item in summaries if item.free_travel is not None}
+    case = _Case(findings=findings, travel=travel, joints=joints, config=config)
+    for finding in findings:
+        if finding.suppressed is None:
+            _route(case, finding)
+    return Feedback(
+        edges=tuple(case.edges),
+        lines=tuple(case.lines),
+        types=tuple(case.types),
+        ranges=tuple(case.ranges),
+        allowances=tuple(case.allowances),
+        left=tuple(case.left),
+    )
+
+
+@dataclass(kw_only=True)
+class _Case:
+    """Findings of one model with what is known of its joints, and the signals so far."""
+
+    findings: Sequence[Finding]
+    travel: Mapping[str, tuple[float, float]]
+    joints: Mapping[str, DeclaredJoint]
+    config: FeedbackConfig
+    edges: list[EdgeSignal] = field(default_factory=list)
+    lines: list[LineSignal] = field(default_factory=list)
+    types: list[TypeSignal] = field(default_factory=list)
+    ranges: list[RangeSignal] = field(default_factory=list)
+    allowances: list[Allowance] = field(default_factory=list)
+    left: list[NotOurs] = field(default_factory=list)
+
+    def has(self, *checks: str, joint: str | None = None) -> bool:
+        """Whether one of the checks found something that counts, of one joint if it is given."""
+        return any(
+            item.check in checks and item.severity is not Severity.NOTE and (joint is None or item.joint == joint)
+            for item in self.findings
+        )
+
+    def strength(self, finding: Finding) -> float:
+        """Warnings say less than errors."""
+        return 1.0 if finding.severity is Severity.ERROR else self.config.warning_share
+
+    def against_line(self, finding: Finding, child: str, weight: float, reason: str) -> None:
+        """Add a signal against the line of a joint."""
+        self.lines.append(
+            LineSignal(child=child, weight=self.strength(finding) * weight, check=finding.check, reason=reason)
+        )
+
+    def against_type(self, finding: Finding, joint: DeclaredJoint, weight: float, reason: str) -> None:
+        """Add a signal against the type of a joint."""
+        weight = self.strength(finding) * weight
+        self.types.append(
+            TypeSignal(child=joint.child, kind=joint.kind, weight=weight, check=finding.check, reason=reason)
+        )
+
+    def end(self, finding: Finding, joint: DeclaredJoint, ends: tuple[float | None, float | None], reason: str) -> None:
+        """Add a signal about where the range of a joint ends."""
+        lower, upper = ends
+        self.ranges.append(
+            RangeSignal(
+                child=joint.child,
+                lower=lower,
+                upper=upper,
+                certain=finding.severity is Severity.ERROR,
+                check=finding.check,
+                reason=reason,
+            )
+        )
+
+    def leave(self, finding: Finding, reason: str, blame: Blame | None = None) -> None:
+        """Note that the search does nothing about a finding, and why."""
+        known = blame or finding.blame
+        self.left.append(NotOurs(check=finding.check, joint=finding.joint, blame=known.value, reason=reason))
+
+
+def _route(case: _Case, finding: Finding) -> None:
+    """Hand a finding to the row of the table that it belongs to."""
+    if finding.check in _AT_REST:
+        _at_rest(case, finding)
+    elif finding.severity is Severity.NOTE:
+        return
+    elif finding.check in _HULLS or (finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")):
+        case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
+    elif finding.check in _FILES or finding.check.startswith(("KV1", "KV2", "KV6")):
+        case.leave(finding, "frames, masses or files disagree; that is the exporter's to mend")
+    elif finding.check in _ROWS and finding.joint in case.joints:
+        _ROWS[finding.check](case, finding, case.joints[finding.joint])
+    else:
+        case.leave(finding, "it names no joint that could be chosen again")
+
+
+# ---- the rows of the table -----------------------------------------------------------------------------------------
+
+
+def _at_rest(case: _Case, finding: Finding) -> None:
+    if finding.pair is None or finding.severity is Severity.NOTE:
+        return
+    case.allowances.append(
+        Allowance(
+            pair=finding.pair,
+            depth=finding.value or 0.0,
+            check=finding.check,
+            reason="they overlap as given; the cut of the parts is to blame, no axis is",
+        )
+    )
+
+
+def _into_parent(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV310: to both sides the line is wrong, to one side only the direction."""
+    low, high = _free(case, finding)
+    way = joint.upper - joint.lower
+    if joint.kind in _TURNING:
+        way = min(way, case.config.full_turn)
+    if max(-low, high) >= case.config.open_share * way:
+        ends = max(low, -way), min(high, way)
+        case.end(finding, joint, ends, "to the other side it is free: it opens there")
+        return
+    reason = "blocked to both sides at once"
+    case.against_line(finding, joint.child, case.config.blocked_line, reason)
+    case.against_type(finding, joint, case.config.blocked_type, reason)
+
+
+def _end_there(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV312: to one side, the range ends where the way does."""
+    low, high = _free(case, finding)
+    ends = low if joint.lower < low else None, high if high < joint.upper else None
+    case.end(finding, joint, ends, "its way is blocked there")
+
+
+def _into_others(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV311: what a part meets besides its parent may be what carries it."""
+    other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
+    if other is None or finding.pair is None or joint.child not in finding.pair:
+        case.leave(finding, "what the joint carries meets others, not the part itself")
+        return
+    case.edges.append(
+        EdgeSignal(
+            parent=joint.parent,
+            child=joint.child,
+            weight=case.strength(finding) * case.config.sibling_edge,
+            better=other,
+            check=finding.check,
+            reason=f"it runs into {other}, never into its parent"
+            if not case.has("KV310", "KV312", joint=finding.joint)
+            else f"it runs into {other}",
+        )
+    )
+
+
+def _not_carried(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV303 and KV341: nothing is seen to carry the part there."""
+    other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
+    case.edges.append(
+        EdgeSignal(
+            parent=joint.parent,
+            child=joint.child,
+            weight=case.strength(finding) * case.config.hovering_edge,
+            better=other,
+            check=finding.check,
+            reason="it does not touch what carries it",
+        )
+    )
+
+
+def _derailed(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV320: what leaves its parent runs along the wrong line or moves in the wrong way, or too far."""
+    if case.has("KV321", joint=finding.joint):
+        return  # a slide with a guide goes too far along the right line
+    reason = "it leaves its parent"
+    case.against_line(finding, joint.child, case.config.derailed_line, reason)
+    case.against_type(finding, joint, case.config.derailed_type, reason)
+    if joint.kind == "prismatic" and finding.value is not None and finding.limit is not None:
+        upwards, share = _upwards(finding), finding.limit / max(finding.value, finding.limit)
+        end = share * (joint.upper if upwards else joint.lower)
+        case.end(finding, joint, (None, end) if upwards else (end, None), "beyond it it has left its parent")
+
+
+def _out_of_guide(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV321: the range ends at the stated share of the guide; where the way back is free, the part stands open."""
+    end = finding.limit
+    if end is None:
+        return
+    low, high = _free(case, finding)
+    way = joint.upper - joint.lower
+    upwards = _upwards(finding)
+    back = low if upwards else high
+    stands_open = abs(back) >= case.config.open_share * way
+    reason = "beyond it the guide has ended" + ("; it stands open, and the way back is free" if stands_open else "")
+    other = min(abs(back), way) if stands_open else None
+    if upwards:
+        case.end(finding, joint, (None if other is None else -other, end), reason)
+    else:
+        case.end(finding, joint, (-end, other), reason)
+
+
+def _upwards(finding: Finding) -> bool:
+    """Whether the joint was above zero where the failure was seen."""
+    return (finding.q or {}).get(finding.joint or "", 0.0) >= 0.0
+
+
+def _line_doubted(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    case.against_line(finding, joint.child, case.config.evidence_line, "the parts show another line")
+
+
+def _type_doubted(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    case.against_type(finding, joint, case.config.evidence_type, "the parts look as if they moved otherwise")
+
+
+def _not_reached(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV405 and KV505: a drive that gets stuck, unless hulls or a known contact explain it."""
+    if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.blame is not Blame.KINEMATICS:
+        case.leave(finding, "only the hulls that engines collide are in the way", Blame.PHYSICS)
+    else:
+        case.against_line(finding, joint.child, case.config.stuck_line, f"{finding.engine} cannot drive it to its end")
+
+
+def _unstable(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """Escaped limits, explosions and energy: masses and overlaps first."""
+    if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
+        case.leave(finding, "mend masses and overlaps at rest first", Blame.PHYSICS)
+    else:
+        case.against_line(finding, joint.child, case.config.unstable_line, "unstable though masses and rest are fine")
+
+
+def _sinks(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    case.against_line(finding, joint.child, case.config.sinking_line, "it does not stay where it was given")
+
+
+def _no_way(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+    """KV703 to KV706: only what fails from several places of the robot speaks against the joint."""
+    if finding.check != "KV706" and (finding.value or 0.0) < case.config.placements:
+        case.leave(finding, "too few places of the robot were tried to blame the joint", Blame.TASK)
+    else:
+        case.against_line(finding, joint.child, case.config.task_line, "no way leads through its range")
+
+
+_TURNING = ("revolute", "continuous")
+_AT_REST = frozenset(("KV301", "KV302"))
+_HULLS = frozenset(("KV332", "KV403", "KV503", "KV406", "KV506"))
+_FILES = frozenset(("KV401", "KV402", "KV410", "KV412", "KV501", "KV502", "KV510", "KV512"))
+_ROWS: dict[str, Callable[[_Case, Finding, DeclaredJoint], None]] = {
+    "KV310": _into_parent,
+    "KV312": _end_there,
+    "KV311": _into_others,
+    "KV303": _not_carried,
+    "KV341": _not_carried,
+    "KV320": _derailed,
+    "KV321": _out_of_guide,
+    "KV342": _line_doubted,
+    "KV343": _line_doubted,
+    "KV344": _line_doubted,
+    "KV345": _type_doubted,
+    "KV405": _not_reached,
+    "KV505": _not_reached,
+    **dict.fromkeys(("KV407", "KV408", "KV409", "KV507", "KV508", "KV509"), _unstable),
+    **dict.fromkeys(("KV404", "KV504", "KV411", "KV511"), _sinks),
+    **dict.fromkeys(("KV703", "KV704", "KV705", "KV706"), _no_way),
+}
+
+
+def _free(case: _Case, finding: Finding) -> tuple[float, float]:
+    """Range around zero in which nothing meets [rad or m]; (0, 0) where it was not measured."""
+    return case.travel.get(finding.joint or "", (0.0, 0.0))
