@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.infer import Inference, infer
     from kinematify.pipeline.record import write_inference
+    from kinematify.refinement.loop import Refinement, refine
     from kinematify.topology.tree import KinematicTree
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport
@@ -36,12 +37,14 @@ __all__ = [
     "KinematicTree",
     "KinematifyError",
     "Part",
+    "Refinement",
     "ValidationReport",
     "__version__",
     "export",
     "infer",
     "load_assembly",
     "load_config",
+    "refine",
     "validate",
     "write_inference",
 ]
@@ -56,11 +59,13 @@ _HOMES = {
     "KinematicTree": "kinematify.topology.tree",
     "KinematifyError": "kinematify.errors",
     "Part": "kinematify.assembly.part",
+    "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.report",
     "export": "kinematify.formats.export",
     "infer": "kinematify.pipeline",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",
+    "refine": "kinematify.refinement",
     "validate": "kinematify.validation.run",
     "write_inference": "kinematify.pipeline",
 }

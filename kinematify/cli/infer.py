@@ -12,9 +12,12 @@ from kinematify.assembly.joint_type import JointType
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
+from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 from kinematify.cli.table import format_table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kinematify.config import Config
     from kinematify.model.kinematic_model import Joint
     from kinematify.pipeline import Inference
@@ -31,6 +34,7 @@ DOUBTFUL = 0.5
         "kinematify infer robot.glb -o out/robot --up z --base torso",
         "kinematify infer scan.ply --labels labels.npy -o out/scan --scale 0.001",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
+        "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
         "kinematify infer examples/cabinet -o out/cabinet --force --json - > answer.json",
     ),
 )
@@ -54,6 +58,20 @@ DOUBTFUL = 0.5
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
 @click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
+@click.option(
+    "--refine",
+    "rounds",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Simulate the result and choose again what its failures blame, up to N rounds (see kinematify refine).",
+)
+@click.option(
+    "--tier",
+    type=click.Choice(TIERS),
+    default="geometry",
+    show_default=True,
+    help="How far --refine simulates: exact sweeps; engines too; an arm that pulls as well.",
+)
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @json_option
@@ -67,10 +85,12 @@ def command(
     base: str | None,
     config: str,
     seed: int | None,
+    rounds: int | None,
+    tier: str,
     force: bool,
     no_preview: bool,
     json_to: str | None,
-) -> None:
+) -> int:
     """Infer the mechanism of ASSEMBLY and write it to OUT as a URDF with everything that belongs to it.
 
     ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF),
@@ -78,6 +98,8 @@ def command(
     of several pieces, or a URDF, whose joints are then not looked at.
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
+
+    With --refine it ends with 1 if the model that is kept still has an error about its motion.
     """
     from kinematify.assembly.load import load_assembly
     from kinematify.config import load_config
@@ -91,12 +113,27 @@ def command(
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
         inference = infer(given, config=settings, base=base, progress=progress)
+        status = 0
+        if rounds is not None:
+            inference, status = _refined(inference, rounds, tier, base, progress)
         progress("writing the model", 1.0)
         write_inference(inference, out, overwrite=force, preview=not no_preview)
     if json_to:
         write_answer(_as_answer(inference, out), json_to)
     if json_to != "-":
-        click.echo(describe(inference, out))
+        told = describe_refinement(inference)
+        click.echo(f"{told}\n\n{describe(inference, out)}" if told else describe(inference, out))
+    return status
+
+
+def _refined(
+    inference: Inference, rounds: int, tier: str, base: str | None, progress: Callable[[str, float], None]
+) -> tuple[Inference, int]:
+    """The best of some rounds of simulation, and the exit status that they ask for."""
+    from kinematify.refinement import refine
+
+    refinement = refine(inference, rounds=rounds, tier=tier, base=base, progress=progress)
+    return refinement.inference, exit_status(refinement)
 
 
 def use_one_thread(config: Config) -> None:
@@ -117,6 +154,7 @@ def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:
         "set_aside": [{"name": item.part.name, "reason": item.reason} for item in inference.assembly.set_aside],
         "warnings": list(inference.warnings),
         "seconds": dict(inference.timings),
+        "refinement": None if inference.refinement is None else dict(inference.refinement),
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import platform
@@ -9,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
-from kinematify.model.output import RECORD_FILE, write_model_folder
+from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.preview import render_preview
-from kinematify.model.urdf import write_urdf
+from kinematify.model.urdf import MESH_FOLDER, write_urdf
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
@@ -52,10 +53,21 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
         OSError: It cannot be written.
     """
     write_urdf(inference.model, folder)
-    text = json.dumps(inference_record(inference), indent=1, allow_nan=False)
+    record = {**inference_record(inference), "files": file_hashes(folder)}
+    text = json.dumps(record, indent=1, allow_nan=False)
     (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
     if preview:
         render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
+
+
+def file_hashes(folder: Path) -> dict[str, str]:
+    """SHA-256 of the URDF and the meshes of a model folder, by path: whether somebody has changed them since."""
+    files = [folder / MODEL_FILE, *sorted((folder / MESH_FOLDER).glob("*"))]
+    return {
+        file.relative_to(folder).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest()
+        for file in files
+        if file.is_file()
+    }
 
 
 def inference_record(inference: Inference) -> dict[str, Any]:
@@ -73,6 +85,8 @@ def inference_record(inference: Inference) -> dict[str, Any]:
                 "original_name": assembly.original_names.get(part.name, part.name),
                 "faces": len(part.faces),
                 "mesh_hash": part.mesh_hash,
+                "color": part.color,
+                "density": part.density,
             }
             for part in assembly.parts
         ],

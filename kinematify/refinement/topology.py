@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.pipeline.infer import choose_joints, gather_evidence
-from kinematify.refine.history import Change
-from kinematify.refine.plan import Plan
+from kinematify.refinement.history import Change
+from kinematify.refinement.plan import Plan
 from kinematify.topology.reward import SimulatedEdges
 from kinematify.topology.search import search_trees
 from kinematify.topology.stats import assembly_stats

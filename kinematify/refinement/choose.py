@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointType
-from kinematify.refine.candidates import is_same
-from kinematify.refine.history import Change
-from kinematify.refine.words import described, ranged
+from kinematify.refinement.candidates import is_same
+from kinematify.refinement.history import Change
+from kinematify.refinement.words import described, ranged
 from kinematify.validation.feedback import feedback_from
 
 if TYPE_CHECKING:
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from kinematify.config import RefineConfig
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.refine.candidates import CandidateJoints
-    from kinematify.refine.plan import Plan
-    from kinematify.refine.simulate import Simulator, Verdict
+    from kinematify.refinement.candidates import CandidateJoints
+    from kinematify.refinement.plan import Plan
+    from kinematify.refinement.simulate import Simulator, Verdict
     from kinematify.validation.feedback import Feedback, RangeSignal
 
 

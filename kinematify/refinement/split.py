@@ -9,10 +9,10 @@ import numpy as np
 
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.pipeline.infer import infer
-from kinematify.refine.history import Change
-from kinematify.refine.plan import Plan
-from kinematify.refine.seams import joined, largest_piece, rigid_pieces
-from kinematify.refine.topology import Contacts
+from kinematify.refinement.history import Change
+from kinematify.refinement.plan import Plan
+from kinematify.refinement.seams import joined, largest_piece, rigid_pieces
+from kinematify.refinement.topology import Contacts
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:

@@ -90,3 +90,19 @@ def _row(item: Mapping[str, Any], *, kept: bool) -> tuple[str, ...]:
         f"{item['score']:.2f}",
         f"{item['seconds']:.1f}",
     )
+
+
+def history_words(record: Mapping[str, Any]) -> list[str]:
+    """Which round was kept, why the loop ended, and what was refused, a sentence each."""
+    rounds, kept = record["rounds"], record["kept"]
+    if not rounds:
+        return ["Nothing was simulated."]
+    chosen = next(item for item in rounds if item["number"] == kept)
+    left = f"{chosen['errors']} errors and {chosen['warnings']} warnings about motion"
+    what = "the model as it was inferred" if kept == 0 else f"round {kept}"
+    refused = [phrase for item in rounds for phrase in item["refused"]]
+    ended = f"The loop ended because {record['ended']} ({record['seconds']:.1f} s, {record['candidates']} candidates)."
+    return [
+        f"Kept: {what}, with {left}. {ended}",
+        *(f"Refused, because it would have hidden a failure: {phrase}." for phrase in dict.fromkeys(refused)),
+    ]

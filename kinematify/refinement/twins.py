@@ -9,14 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.joints.candidate import JointType
-from kinematify.refine.history import Change
-from kinematify.refine.words import described
+from kinematify.refinement.history import Change
+from kinematify.refinement.words import described
 
 if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.refine.choose import Chooser
-    from kinematify.refine.plan import Plan
+    from kinematify.refinement.choose import Chooser
+    from kinematify.refinement.plan import Plan
 
 
 def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[Change]]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.refine.world import World
+from kinematify.refinement.world import World
 from kinematify.validation.finding import Severity
 from kinematify.validation.geometry import judge_motion
 from kinematify.validation.geometry.judge_motion import MotionCase
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
     from kinematify.model.kinematic_model import Joint, KinematicModel
-    from kinematify.refine.world import WorldScene
+    from kinematify.refinement.world import WorldScene
     from kinematify.validation.finding import Finding
     from kinematify.validation.geometry.remark import Remark
     from kinematify.validation.geometry.sweep import JointSweep

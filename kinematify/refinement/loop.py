@@ -9,27 +9,27 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify.geometry.surface import part_surfaces
-from kinematify.refine.candidates import CandidateJoints
-from kinematify.refine.choose import Chooser
-from kinematify.refine.contacts import audit_contacts, rebuilt
-from kinematify.refine.history import Change, History, Round
-from kinematify.refine.plan import Plan
-from kinematify.refine.seams import find_seams
-from kinematify.refine.simulate import Simulator
-from kinematify.refine.split import infer_joined
-from kinematify.refine.tiers import GEOMETRY, TIERS, dear_verdict
-from kinematify.refine.topology import Contacts, EdgeMemory, replanned, search_again
-from kinematify.refine.twins import vote
+from kinematify.refinement.candidates import CandidateJoints
+from kinematify.refinement.choose import Chooser
+from kinematify.refinement.contacts import audit_contacts, rebuilt
+from kinematify.refinement.history import Change, History, Round
+from kinematify.refinement.plan import Plan
+from kinematify.refinement.seams import find_seams
+from kinematify.refinement.simulate import Simulator
+from kinematify.refinement.split import infer_joined
+from kinematify.refinement.tiers import GEOMETRY, TIERS, dear_verdict
+from kinematify.refinement.topology import Contacts, EdgeMemory, replanned, search_again
+from kinematify.refinement.twins import vote
 from kinematify.validation.feedback import feedback_from
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from kinematify.pipeline.infer import Inference, Progress
-    from kinematify.refine.simulate import Verdict
+    from kinematify.refinement.simulate import Verdict
     from kinematify.validation.feedback import Feedback
     from kinematify.validation.settings import ValidationSettings
 
@@ -41,6 +41,8 @@ class Refinement:
     inference: Inference
     """The kept round as an inference; its `refinement` holds the history as plain data."""
     history: History
+    interrupted: bool = False
+    """Ctrl-C ended it."""
 
 
 def refine(
@@ -90,6 +92,7 @@ def refine(
         loop.run()
     except KeyboardInterrupt:
         loop.ended = "it was interrupted"
+        return replace(loop.result(), interrupted=True)
     return loop.result()
 
 
@@ -168,7 +171,7 @@ class _Loop:
         """The best round as an inference."""
         if not self.done:
             history = self._history(0)
-            return Refinement(inference=replace(self.given, refinement=history.as_json()), history=history)
+            return Refinement(inference=replace(self.given, refinement=self._record(history)), history=history)
         best = min(self.done, key=lambda done: done.rank)
         history = self._history(best.round.number)
         inference = self.given
@@ -182,7 +185,9 @@ class _Loop:
                 bearings=best.contacts.bearings,
             )
         timings = {**inference.timings, "refinement": time.perf_counter() - self.started}
-        return Refinement(inference=replace(inference, timings=timings, refinement=history.as_json()), history=history)
+        return Refinement(
+            inference=replace(inference, timings=timings, refinement=self._record(history)), history=history
+        )
 
     def _simulate(
         self, number: int, plan: Plan, contacts: Contacts, changes: list[Change], refused: list[str]
@@ -268,6 +273,11 @@ class _Loop:
         if trees[0].parents == done.plan.tree.parents:
             return done.plan, []
         return replanned(done.plan, done.contacts, trees[0])
+
+    def _record(self, history: History) -> dict[str, Any]:
+        """The history as JSON values, with that of an earlier refinement if there was one."""
+        earlier = self.given.refinement
+        return {**history.as_json(), **({} if earlier is None else {"earlier": dict(earlier)})}
 
     def _history(self, kept: int) -> History:
         return History(

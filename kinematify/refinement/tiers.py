@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.model.urdf import write_urdf
-from kinematify.refine.simulate import Verdict
+from kinematify.refinement.simulate import Verdict
 from kinematify.validation.run import validate
 from kinematify.validation.task.request import PULL, TaskRequest
 
 if TYPE_CHECKING:
-    from kinematify.refine.plan import Plan
+    from kinematify.refinement.plan import Plan
     from kinematify.validation.settings import ValidationSettings
 
 GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"

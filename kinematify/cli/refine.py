@@ -1,0 +1,184 @@
+"""`kinematify refine`: a model is simulated, and what its failures blame is chosen again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.progress import progress_reporter
+from kinematify.cli.table import format_table
+
+if TYPE_CHECKING:
+    from kinematify.pipeline.infer import Inference
+    from kinematify.refinement import Refinement
+
+TIERS = ("geometry", "engines", "task")
+_FOUND_FAILURES = 1
+_INTERRUPTED = 130
+
+
+@click.command(
+    "refine",
+    short_help="Simulate an inferred model and choose again what its failures blame.",
+    epilog=examples(
+        "kinematify infer parts/ -o out && kinematify refine out",
+        "kinematify infer parts/ -o out --refine 3",
+        "kinematify refine out --tier engines --rounds 5",
+        "kinematify refine out --budget 20 --html out/validation.html",
+        "kinematify refine out --json - > rounds.json",
+    ),
+)
+@click.argument("folder", metavar="OUT", type=click.Path(path_type=Path))
+@click.option("--rounds", type=click.IntRange(min=0), help="Rounds at most; 3 if not given. 0 only simulates.")
+@click.option(
+    "--tier",
+    type=click.Choice(TIERS),
+    default="geometry",
+    show_default=True,
+    help="How far plans are simulated: exact sweeps; MuJoCo and PyBullet too; an arm that pulls as well.",
+)
+@click.option(
+    "--budget",
+    type=float,
+    metavar="SECONDS",
+    help="Time for all rounds. If not given, twice that of the inference for geometry, and no limit for the others.",
+)
+@click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
+@click.option(
+    "--html", type=click.Path(path_type=Path), metavar="FILE", help="Validate the result and write its report."
+)
+@click.option("--no-preview", is_flag=True, help="Write no picture.")
+@json_option
+def command(
+    *,
+    folder: Path,
+    rounds: int | None,
+    tier: str,
+    budget: float | None,
+    base: str | None,
+    html: Path | None,
+    no_preview: bool,
+    json_to: str | None,
+) -> int:
+    """Simulate the model in OUT, feed its failures back into the search, and keep the best round.
+
+    OUT is a folder that `kinematify infer` or `generate` has made. Every joint is moved through its range by exact
+    geometry; what it runs into, leaves, or cannot reach speaks against its axis, its type, its range or its parent.
+    Near-best candidates of the blamed joints are simulated too, and the evidence of shape and simulation is added up.
+    No collision is ever switched off, no range is cut to hide a failure, and nothing is fixed without evidence.
+
+    The best round replaces the model in OUT: fewest errors, then fewest warnings, then most evidence; the model as it
+    was wins every tie. inference.json keeps all rounds.
+
+    Ends with 0 if the model that is kept has no error about its motion, with 1 if it has. Ctrl-C keeps the best round
+    so far and ends with 130.
+    """
+    from kinematify.pipeline import infer
+    from kinematify.refinement import refine
+    from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
+
+    files = _report_files(html)
+    _check_budget(budget)
+    with progress_reporter() as progress:
+        progress("reading the parts", 0.0)
+        assembly, config = open_model_folder(folder)
+        check_base(base, assembly.names)
+        inference = infer(assembly, config=config, base=base, progress=lambda stage, done: progress(stage, 0.4 * done))
+        refinement = refine(
+            as_left(inference, read_record(folder)),
+            rounds=rounds,
+            tier=tier,
+            seconds=budget,
+            base=base,
+            progress=lambda stage, done: progress(stage, 0.4 + 0.5 * done),
+        )
+        progress("writing the model", 0.9)
+        write_refined(refinement.inference, folder, preview=not no_preview)
+        if files is not None:
+            progress("validating the result", 0.95)
+            _write_report(files, folder)
+    if json_to:
+        write_answer(as_answer(refinement, folder), json_to)
+    if json_to != "-":
+        click.echo(f"{describe_refinement(refinement.inference)}\n\n{_describe_joints(refinement.inference, folder)}")
+    return exit_status(refinement)
+
+
+def exit_status(refinement: Refinement) -> int:
+    """130 after Ctrl-C, 1 if the kept round has an error about motion, else 0."""
+    if refinement.interrupted:
+        return _INTERRUPTED
+    history = refinement.history
+    return _FOUND_FAILURES if any(item.errors for item in history.rounds[history.kept : history.kept + 1]) else 0
+
+
+def describe_refinement(inference: Inference) -> str:
+    """The rounds as a table, which one was kept and why the loop ended."""
+    from kinematify.refinement.history import HISTORY_HEADINGS, history_rows, history_words
+
+    record = inference.refinement
+    if record is None:
+        return ""
+    table = format_table(HISTORY_HEADINGS, history_rows(record)) if record["rounds"] else ""
+    return "\n".join(line for line in (table, *history_words(record)) if line)
+
+
+def as_answer(refinement: Refinement, folder: Path) -> dict[str, Any]:
+    """Everything as JSON values."""
+    history = refinement.history
+    kept = next((item for item in history.rounds if item.number == history.kept), None)
+    return {
+        "schema": 1,
+        "out": str(folder),
+        "passes": kept is not None and kept.errors == 0,
+        "refinement": history.as_json(),
+    }
+
+
+def check_base(base: str | None, names: tuple[str, ...]) -> None:
+    """Refuse a base link that is no part.
+
+    Raises:
+        InputError: It is none.
+    """
+    from kinematify.errors import InputError
+
+    if base is not None and base not in names:
+        raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(names)}.")
+
+
+def _check_budget(budget: float | None) -> None:
+    from kinematify.errors import InputError
+
+    if budget is not None and not 0.0 < budget < float("inf"):
+        raise InputError(f"--budget is {budget}. Give a number of seconds above 0.")
+
+
+def _report_files(html: Path | None) -> Any:
+    from kinematify.cli.report_files import ReportFiles
+
+    if html is None:
+        return None
+    files = ReportFiles(json=None, junit=None, sarif=None, html=html)
+    files.check()
+    return files
+
+
+def _write_report(files: Any, folder: Path) -> None:
+    from kinematify.model.output import MODEL_FILE
+    from kinematify.pipeline.record import PREVIEW_FILE
+    from kinematify.validation.run import validate
+
+    report = validate(folder / MODEL_FILE)
+    picture = folder / PREVIEW_FILE
+    files.write([report], {report.model: picture.read_bytes()} if picture.is_file() else {})
+
+
+def _describe_joints(inference: Inference, folder: Path) -> str:
+    from kinematify.cli.infer import describe
+
+    return describe(inference, folder)

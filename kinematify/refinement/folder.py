@@ -1,0 +1,187 @@
+"""A model folder opened again: its parts as they were given, and the configuration that inferred it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.assembly.assemble import assemble
+from kinematify.assembly.description import read_description
+from kinematify.assembly.mesh_file import RawMesh
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.config import Config
+from kinematify.errors import InputError
+from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
+from kinematify.model.urdf import MESH_FOLDER
+from kinematify.pipeline.record import PREVIEW_FILE, SCHEMA, file_hashes, write_inference_files
+from kinematify.topology.tree import KinematicTree
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import Assembly, Part
+    from kinematify.pipeline.infer import Inference
+
+_OURS = {MODEL_FILE, RECORD_FILE, MESH_FOLDER, PREVIEW_FILE}
+_STALE = {"validation.html", "validation.json"}
+"""Reports about the model as it was."""
+
+
+def open_model_folder(folder: str | Path) -> tuple[Assembly, Config]:
+    """Read the parts of a model folder, world frame, with the configuration that its model was inferred with.
+
+    Args:
+        folder: What `kinematify infer` or `generate` has made.
+
+    Raises:
+        InputError: It is no model folder, its model was changed since, or another version of Kinematify made it.
+    """
+    folder = Path(folder)
+    record = read_record(folder)
+    _check_untouched(folder, record)
+    try:
+        config = Config.model_validate(record["configuration"])
+    except ValueError as error:
+        raise InputError(
+            f"The configuration in {folder / RECORD_FILE} is not one of this version of Kinematify "
+            f"({str(error).splitlines()[0]}). Infer the model again from its parts."
+        ) from error
+    meshes = _meshes(folder, record)
+    assembly = assemble(meshes, source=str(record.get("source", folder)), config=config.assembly)
+    return replace(assembly, parts=tuple(_dressed(part, record) for part in assembly.parts)), config
+
+
+def as_left(inference: Inference, record: dict[str, Any]) -> Inference:
+    """An inference made again, with the tree and the joints that a model folder holds in place of the best ones.
+
+    They differ where the model in the folder is a refined one.
+
+    Args:
+        inference: Of the same parts and configuration.
+        record: `inference.json` of the folder.
+    """
+    names = inference.assembly.names
+    known = {(joint.parent, joint.child): joint for joint in inference.joints}
+    above = record["trees"][0]["parents"]
+    tree = KinematicTree(parents=tuple(names.index(above[name]) if name in above else -1 for name in names))
+    left = {names.index(item["child"]): item for item in record["joints"]}
+    joints = tuple(_joint(edge, left[edge[1]], known.get(edge)) for edge in tree.edges())
+    same = tree.parents == inference.trees[0].parents
+    trees = inference.trees if same else (tree, *inference.trees)
+    return replace(inference, trees=trees, joints=joints, refinement=record.get("refinement"))
+
+
+def _joint(edge: tuple[int, int], item: dict[str, Any], known: JointEstimate | None) -> JointEstimate:
+    """A joint as it was written; the candidates are those found again, or else those that were written."""
+    alternatives = tuple(
+        JointCandidate(
+            kind=JointType(candidate["type"]),
+            axis=np.array(candidate["axis"]),
+            pivot=np.array(candidate["pivot"]),
+            score=candidate["score"],
+            source=candidate["source"],
+        )
+        for candidate in item["candidates"]
+    )
+    kind = JointType(item["type"])
+    ends = (-np.inf, np.inf) if kind is JointType.CONTINUOUS else (0.0, 0.0)
+    return JointEstimate(
+        parent=edge[0],
+        child=edge[1],
+        kind=kind,
+        axis=np.array(item["axis"]),
+        pivot=np.array(item["pivot"]),
+        lower=ends[0] if item["lower"] is None else item["lower"],
+        upper=ends[1] if item["upper"] is None else item["upper"],
+        confidence=item["confidence"],
+        alternatives=known.alternatives if known is not None else alternatives,
+        evidence={key: value for key, value in item["evidence"].items() if value is not None},
+    )
+
+
+def read_record(folder: Path) -> dict[str, Any]:
+    """`inference.json` of a model folder.
+
+    Raises:
+        InputError: There is none, or it cannot be read.
+    """
+    path = folder / RECORD_FILE
+    if not path.is_file():
+        raise InputError(
+            f"There is no {RECORD_FILE} in {folder}, so that nothing is known of how its model was chosen. Give a "
+            "folder that `kinematify infer PARTS -o FOLDER` has made; a URDF from elsewhere can be inferred anew with "
+            "`kinematify infer MODEL.urdf -o FOLDER --refine 3`."
+        )
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"The record {path} cannot be read as JSON: {error}. Infer the model again.") from error
+    if not isinstance(record, dict) or record.get("schema") != SCHEMA or "files" not in record:
+        raise InputError(
+            f"The record {path} was made by an older version of Kinematify, which did not note what it wrote. Infer "
+            "the model again from its parts."
+        )
+    return record
+
+
+def write_refined(inference: Inference, folder: Path, *, preview: bool) -> None:
+    """Put a refined model in the place of the one that it was made from; what else lies in the folder stays.
+
+    Reports about the earlier model go. The folder changes as a whole or not at all.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
+
+    def write(staging: Path) -> None:
+        for entry in folder.iterdir():
+            if entry.name not in _OURS | _STALE:
+                copy = shutil.copytree if entry.is_dir() else shutil.copy2
+                copy(entry, staging / entry.name)
+        write_inference_files(inference, staging, preview=preview)
+
+    write_model_folder(folder, write, overwrite=True)
+
+
+def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
+    """Refuse a model that was changed by hand: choosing again would lose the change in silence."""
+    now = file_hashes(folder)
+    changed = sorted(name for name, digest in record["files"].items() if now.get(name) != digest)
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        raise InputError(
+            f"The file {folder / changed[0]}{more} was changed or removed since the model was inferred, and refining "
+            f"would lose that. Infer the changed parts anew (`kinematify infer {folder / MODEL_FILE} -o NEW --refine "
+            "3`), or put the file back."
+        )
+
+
+def _meshes(folder: Path, record: dict[str, Any]) -> list[RawMesh]:
+    """One mesh per part, and those that had been set aside, in the world frame of the input."""
+    description = read_description(folder / MODEL_FILE)
+    poses = forward_kinematics(description, {})
+    aside: dict[str, list[str]] = defaultdict(list)
+    for item in record["set_aside"]:
+        aside[item["nearest"]].append(item["name"])
+    found = {}
+    for link in description.links:
+        T = poses[link.name]
+        names = [link.name, *aside[link.name]]
+        for name, mesh in zip(names, link.meshes, strict=False):
+            found[name] = RawMesh(
+                name=name, vertices=np.asarray(mesh.vertices @ T[:3, :3].T + T[:3, 3]), faces=mesh.faces
+            )
+    order = [part["name"] for part in record["parts"]]
+    return [found.pop(name) for name in order if name in found] + list(found.values())
+
+
+def _dressed(part: Part, record: dict[str, Any]) -> Part:
+    """Colour and density as the source knew them."""
+    facts: dict[str, Any] = next((item for item in record["parts"] if item["name"] == part.name), {})
+    color = facts.get("color")
+    return replace(part, color=None if color is None else tuple(color), density=facts.get("density"))
