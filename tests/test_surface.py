@@ -66,6 +66,15 @@ def test_normals_do_not_bend_over_sharp_edges() -> None:
     assert np.allclose(np.sort(np.abs(corners), axis=2), [0.0, 0.0, 1.0])
 
 
+def test_a_far_vertex_without_faces_changes_nothing() -> None:
+    box = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
+    for far in (1.0, 1e9):
+        vertices = np.concatenate([box.vertices, [[far, -far, 0.0]]])
+        welded, faces = PartSurface(Part(name="part", vertices=vertices, faces=box.faces), crease_angle=CREASE).welded
+        assert len(welded) == 9
+        assert np.array_equal(welded[faces], box.triangles)
+
+
 def test_seams_of_unwelded_meshes_are_smooth() -> None:
     welded = trimesh.creation.cylinder(radius=0.5, height=2.0, sections=24)
     loose = Part(

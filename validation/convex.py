@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.geometry.hull import convex_hull, thickened
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ class ConvexPiece:
     def area(self) -> float:
         """[m^2]."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+        return float(0.5 * lengths_of(crossed(b - a, c - a)).sum())
 
 
 def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> ConvexPiece:
@@ -69,6 +70,7 @@ def outermost(points: FloatArray, directions: int) -> FloatArray:
     return np.asarray(points[np.unique(np.argmax(_directions(directions) @ (points - points[0]).T, axis=1))])
 
 
+@cache
 def _directions(count: int) -> FloatArray:
     """Unit vectors, evenly spread (spherical Fibonacci), shape (count, 3)."""
     k = np.arange(count) + 0.5
@@ -80,7 +82,7 @@ def _directions(count: int) -> FloatArray:
 def signed_volume(vertices: FloatArray, faces: IntArray) -> float:
     """Enclosed volume [m^3], positive where faces look outward; meaningless for open meshes."""
     a, b, c = (vertices[faces[:, k]] - vertices.mean(axis=0) for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+    return float(np.einsum("ij,ij->", a, crossed(b, c)) / 6.0)
 
 
 def surface_points(vertices: FloatArray, faces: IntArray, count: int) -> FloatArray:
@@ -92,7 +94,7 @@ def surface_points(vertices: FloatArray, faces: IntArray, count: int) -> FloatAr
         count: How many.
     """
     corners = vertices[faces]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    areas = lengths_of(crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     ends = np.cumsum(areas)
     number = np.arange(count)
     face = np.minimum(np.searchsorted(ends, (number + 0.5) * (ends[-1] / count)), len(faces) - 1)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
+from kinematify.assembly.vectors import crossed, highest, lengths_of, lowest
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -65,7 +67,7 @@ class Part:
     def bounds(self) -> FloatArray:
         """Axis-aligned bounds in the world frame [m], shape (2, 3): lower corner, upper corner."""
         used = self.vertices[used_vertices(self.faces, len(self.vertices))]
-        return read_only(np.stack([used.min(0), used.max(0)]), np.float64)
+        return read_only(np.stack([lowest(used), highest(used)]), np.float64)
 
     @property
     def diagonal(self) -> float:
@@ -76,7 +78,7 @@ class Part:
     def face_areas(self) -> FloatArray:
         """Area of every triangle [m^2], shape (F,)."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        return read_only(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1), np.float64)
+        return read_only(0.5 * lengths_of(crossed(b - a, c - a)), np.float64)
 
     @property
     def area(self) -> float:

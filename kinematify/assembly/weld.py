@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from kinematify.assembly.part import used_vertices
+from kinematify.assembly.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
@@ -58,8 +59,8 @@ def _merged(points: FloatArray, distance: float) -> tuple[IntArray, IntArray]:
     links = coo_array((np.ones(len(pairs), dtype=np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(distinct),) * 2)
     count, group = connected_components(links, directed=False)
     groups = group[same]
-    earliest = np.full(count, len(points), dtype=np.int64)
-    np.minimum.at(earliest, groups, np.arange(len(points)))
+    earliest = np.empty(count, dtype=np.int64)
+    earliest[groups[::-1]] = np.arange(len(points))[::-1]  # of several, the one that is written last stays
     return earliest, groups.astype(np.int64)
 
 
@@ -88,7 +89,7 @@ def _has_area(points: FloatArray, triangles: IntArray) -> np.ndarray[tuple[int],
     a, b, c = (points[triangles[:, k]] for k in range(3))
     sides = np.stack([b - a, c - b, a - c])
     longest = np.einsum("kfi,kfi->kf", sides, sides).max(axis=0, initial=0.0)
-    double_area = np.linalg.norm(np.cross(sides[0], sides[1]), axis=1)
+    double_area = lengths_of(crossed(sides[0], sides[1]))
     answer: np.ndarray[tuple[int], np.dtype[np.bool_]] = double_area > _FLATTEST * longest
     return answer
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from kinematify.assembly.vectors import crossed
+
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
 
@@ -30,7 +32,7 @@ def convex_hull(points: FloatArray) -> tuple[FloatArray, IntArray]:
     faces = index[hull.simplices]
     vertices: FloatArray = points[hull.vertices]
     a, b, c = (vertices[faces[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
+    inward = np.einsum("ij,ij->i", crossed(b - a, c - a), hull.equations[:, :3]) < 0
     faces[inward] = faces[inward][:, ::-1]
     return vertices, faces.astype(np.int64)
 

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.geometry.sampling import curve_order, place_samples
 
 if TYPE_CHECKING:
@@ -95,9 +96,9 @@ class PartSurface:
     def welded(self) -> tuple[FloatArray, IntArray]:
         """Vertices merged by position and the faces over them that are not degenerate."""
         scale = max(self.part.diagonal, 1e-12) * 1e-6
-        keys = np.round(self.part.vertices / scale).astype(np.int64)
-        _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        faces = inverse.reshape(-1)[self.part.faces]
+        cells = np.round(self.part.vertices / scale).astype(np.int64)
+        first, inverse = _distinct_rows(cells)
+        faces = inverse[self.part.faces]
         distinct = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 0] != faces[:, 2])
         return self.part.vertices[first], faces[distinct]
 
@@ -106,16 +107,18 @@ class PartSurface:
         """Unit normals (F, 3) and areas (F,) of the welded faces; zero-area faces have a zero normal."""
         vertices, faces = self.welded
         a, b, c = (vertices[faces[:, k]] for k in range(3))
-        cross = np.cross(b - a, c - a)
-        length = np.linalg.norm(cross, axis=1)
+        cross = crossed(b - a, c - a)
+        length = lengths_of(cross)
         return cross / np.maximum(length, 1e-300)[:, None], 0.5 * length
 
     @cached_property
     def _edge_table(self) -> tuple[IntArray, IntArray, IntArray]:
         """Sorted vertex pairs of unique edges, and for each face side its edge and its face."""
         _, faces = self.welded
-        sides = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        edges, inverse = np.unique(sides, axis=0, return_inverse=True)
+        starts, ends = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
+        count = len(self.welded[0])
+        keys, inverse = np.unique(np.minimum(starts, ends) * count + np.maximum(starts, ends), return_inverse=True)
+        edges = np.stack(np.divmod(keys, max(count, 1)), axis=1)
         return edges, inverse.reshape(-1), np.repeat(np.arange(len(faces)), 3)
 
     @cached_property
@@ -149,7 +152,7 @@ class PartSurface:
         vertices, _ = self.welded
         ends = vertices[self.feature_edges]
         along = ends[:, 1] - ends[:, 0]
-        lengths = np.linalg.norm(along, axis=1)
+        lengths = lengths_of(along)
         tangents = along / np.maximum(lengths, 1e-300)[:, None]
         return FeaturePieces(middles=ends.mean(axis=1), tangents=tangents, lengths=lengths)
 
@@ -187,7 +190,7 @@ class PartSurface:
         sums = np.zeros((fan.max() + 1, 3))
         np.add.at(sums, fan, weights[:, None] * np.repeat(normals, 3, axis=0))
         smooth = sums[fan]
-        length = np.linalg.norm(smooth, axis=1)
+        length = lengths_of(smooth)
         good = length > 1e-9
         smooth = np.where(good[:, None], smooth / np.maximum(length, 1e-300)[:, None], np.repeat(normals, 3, axis=0))
         return smooth.reshape(-1, 3, 3)
@@ -232,7 +235,7 @@ class PartSurface:
         picked, barycentric = place_samples(vertices[triangles], areas, order, count, seed)
         points = np.einsum("nk,nkd->nd", barycentric, vertices[triangles[picked]])
         normals = np.einsum("nk,nkd->nd", barycentric, self.corner_normals[picked])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
+        normals /= np.maximum(lengths_of(normals), 1e-12)[:, None]
         return Samples(points=points, normals=normals, areas=np.full(count, total / count))
 
     def _walk(self, faces: IntArray | None) -> IntArray:
@@ -286,6 +289,16 @@ def part_surfaces(assembly: Assembly, *, config: SurfaceConfig) -> tuple[PartSur
     return tuple(PartSurface(part, crease_angle=crease, origin=middle, unit=unit) for part in assembly.parts)
 
 
+def _distinct_rows(rows: IntArray) -> tuple[IntArray, IntArray]:
+    """First of every set of equal rows (n, 3), in ascending order, and the set of every row (n,)."""
+    keys = rows
+    if len(rows) and np.ptp(rows, axis=0).max() < 1 << 21:  # vertices that no face uses may be anywhere
+        x, y, z = (rows - rows.min(axis=0)).T
+        keys = (x << 42) + (y << 21) + z  # one number for all three, in their order, sorts far quicker
+    _, first, inverse = np.unique(keys, axis=0 if keys is rows else None, return_index=True, return_inverse=True)
+    return first, inverse.reshape(-1)
+
+
 def _corner_angles(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Interior angle at each corner [rad], shape (F, 3)."""
     corners = vertices[faces]
@@ -293,7 +306,7 @@ def _corner_angles(vertices: FloatArray, faces: IntArray) -> FloatArray:
     for k in range(3):
         left = corners[:, (k + 1) % 3] - corners[:, k]
         right = corners[:, (k + 2) % 3] - corners[:, k]
-        cross = np.linalg.norm(np.cross(left, right), axis=1)
+        cross = lengths_of(crossed(left, right))
         angles[:, k] = np.arctan2(cross, np.einsum("ij,ij->i", left, right))
     return angles
 
@@ -331,12 +344,12 @@ def _circles_through(
     """Circumscribed circles: axes, centres, middle points and chord lengths; nearly straight triples are dropped."""
     a, b, c = vertices[first], vertices[middle], vertices[last]
     left, right = a - b, c - b
-    cross = np.cross(left, right)
-    area = np.linalg.norm(cross, axis=1)
-    lengths = np.linalg.norm(left, axis=1) + np.linalg.norm(right, axis=1)
+    cross = crossed(left, right)
+    area = lengths_of(cross)
+    lengths = lengths_of(left) + lengths_of(right)
     bent = area > 0.01 * (0.25 * lengths**2)  # below, the chain turns by less than about 0.6 deg
     left, right, cross, area, b = left[bent], right[bent], cross[bent], area[bent], b[bent]
     squared_left = np.einsum("ij,ij->i", left, left)[:, None]
     squared_right = np.einsum("ij,ij->i", right, right)[:, None]
-    to_centre = np.cross(squared_left * right - squared_right * left, cross) / (2 * area**2)[:, None]
+    to_centre = crossed(squared_left * right - squared_right * left, cross) / (2 * area**2)[:, None]
     return cross / area[:, None], b + to_centre, b, lengths[bent]

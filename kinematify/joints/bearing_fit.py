@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import dots
 from kinematify.joints.bearing_scores import OCTAGON
 from kinematify.joints.line import Line
 
@@ -91,10 +92,10 @@ def surface_rows(side: Side, line: Line, basis: FloatArray, *, spread: float, to
     """
     arm = side.points - line.point
     turned = arm @ _cross_matrix(line.axis).T
-    radius = np.sqrt((turned * turned).sum(axis=1)) + 1e-12
-    rest = (side.normals * turned).sum(axis=1) / radius
+    radius = np.sqrt(dots(turned, turned)) + 1e-12
+    rest = dots(side.normals, turned) / radius
     # n . (e x arm) for the tilts of the axis towards e, n . (e x u) for its shifts, both as products with e.
-    tilt = [(side.normals * (arm @ _cross_matrix(e).T)).sum(axis=1) / radius for e in basis]
+    tilt = [dots(side.normals, arm @ _cross_matrix(e).T) / radius for e in basis]
     shift = [side.normals @ (_cross_matrix(e) @ line.axis) / radius * spread for e in basis]
     across = 1 - (side.normals @ line.axis) ** 2
     total = max(float(side.weights.sum()), 1e-300)
@@ -115,9 +116,9 @@ def circle_rows(side: Side, line: Line, basis: FloatArray, *, spread: float, tol
     """
     arm = side.middles - line.point
     radial = arm - (arm @ line.axis)[:, None] * line.axis
-    radius = np.sqrt((radial * radial).sum(axis=1)) + 1e-12
+    radius = np.sqrt(dots(radial, radial)) + 1e-12
     level = side.tangents @ line.axis
-    outward = (side.tangents * radial).sum(axis=1) / radius
+    outward = dots(side.tangents, radial) / radius
     zeros = np.zeros((len(radius), 2))
     tilt = np.concatenate([side.tangents @ basis.T, zeros], axis=1)
     shift = np.concatenate([zeros, -(side.tangents @ basis.T) * (spread / radius)[:, None]], axis=1)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.joints.bearing_evidence import thin
 from kinematify.joints.bearing_scores import surface_support
 from kinematify.joints.line import NO_LINES, Lines, join
@@ -69,13 +70,13 @@ def normal_pair_lines(side: Side, count: int, rng: np.random.Generator) -> Lines
     chance = side.weights / side.weights.sum()
     first, second = rng.choice(len(chance), (2, count), p=chance)
     n1, n2 = side.normals[first], side.normals[second]
-    cross = np.cross(n1, n2)
-    sine = np.linalg.norm(cross, axis=1)
+    cross = crossed(n1, n2)
+    sine = lengths_of(cross)
     good = sine > _LEAST_SINE
     axes = cross[good] / sine[good, None]
     offset = side.points[second][good] - side.points[first][good]
     # Solve x1 + s n1 = x2 + t n2 in the plane across the axis.
-    along = np.einsum("ij,ij->i", np.cross(offset, n2[good]), axes) / sine[good]
+    along = np.einsum("ij,ij->i", crossed(offset, n2[good]), axes) / sine[good]
     return Lines(axes=axes, points=side.points[first][good] + along[:, None] * n1[good])
 
 

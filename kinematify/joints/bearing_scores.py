@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.joints.line import Lines
 
 if TYPE_CHECKING:
@@ -67,9 +68,9 @@ def _block_support(side: Side, lines: Lines, config: BearingConfig) -> FloatArra
 def _across(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit vectors across each axis, shapes (L, 3)."""
     helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
-    first = np.cross(axes, helper)
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    return first, np.cross(axes, first)
+    first = crossed(axes, helper)
+    first /= lengths_of(first)[:, None]
+    return first, crossed(axes, first)
 
 
 def circle_support(side: Side, line: Line, *, diagonal: float, config: BearingConfig) -> float:
@@ -86,7 +87,7 @@ def circle_support(side: Side, line: Line, *, diagonal: float, config: BearingCo
     offset = side.middles - line.point
     height = offset @ line.axis
     radial = offset - height[:, None] * line.axis
-    radius = np.linalg.norm(radial, axis=1)
+    radius = lengths_of(radial)
     sine = config.circle_tolerance_sine
     around = (
         (np.abs(side.tangents @ line.axis) < sine)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from kinematify.assembly.vectors import crossed, lengths_of
+
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
     from kinematify.contact.graph import ContactSamples
@@ -74,8 +76,8 @@ class ContactRegion:
     @cached_property
     def radius(self) -> float:
         """Mean distance of the region from its centroid [m]."""
-        return float(self.weights @ np.linalg.norm(self.points - self.centroid, axis=1))
+        return float(self.weights @ lengths_of(self.points - self.centroid))
 
     def lever(self, axis: FloatArray, pivot: FloatArray) -> float:
         """Mean distance of the region from a line [m]: how far the contact moves per radian."""
-        return float(self.weights @ np.linalg.norm(np.cross(axis, self.points - pivot), axis=1))
+        return float(self.weights @ lengths_of(crossed(axis, self.points - pivot)))

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import lengths_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -70,7 +72,7 @@ class Lines:
         for index, (axis, point) in enumerate(zip(self.axes, self.points, strict=True)):
             offset = self.points[kept] - point
             offset -= (offset @ axis)[:, None] * axis
-            same = (np.abs(self.axes[kept] @ axis) > cosine) & (np.linalg.norm(offset, axis=1) < distance)
+            same = (np.abs(self.axes[kept] @ axis) > cosine) & (lengths_of(offset) < distance)
             if not same.any():
                 kept.append(index)
             if len(kept) == count:

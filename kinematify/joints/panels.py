@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.joints.frames import UP
 from kinematify.joints.sweep import moving_points, sweep_turns
 
@@ -211,7 +212,7 @@ def contact_clusters(scene: JointScene, config: JointsConfig) -> FloatArray | No
     if min(shares) < 0.15:
         return None
     centres = np.array([np.average(contact.points[s], axis=0, weights=contact.weights[s]) for s in sides])
-    spreads = [np.linalg.norm(contact.points[s] - c, axis=1).max() for s, c in zip(sides, centres, strict=True)]
+    spreads = [lengths_of(contact.points[s] - c).max() for s, c in zip(sides, centres, strict=True)]
     return centres if max(spreads) < 0.5 * np.linalg.norm(centres[1] - centres[0]) else None
 
 
@@ -239,8 +240,8 @@ def _reach(scene: JointScene, lines: Lines) -> FloatArray:
 
 def _outwardness(scene: JointScene, lines: Lines) -> FloatArray:
     """Cosine between the first motion of the centre (turning about +) and the way out of the body, shape (c,)."""
-    velocity = np.cross(lines.axes, _arms(scene.centre, lines))
-    speed = np.linalg.norm(velocity, axis=1)
+    velocity = crossed(lines.axes, _arms(scene.centre, lines))
+    speed = lengths_of(velocity)
     away = scene.outward
     if not away.any():
         body = scene.body_box.mean(axis=0) @ scene.frame.axes
@@ -288,7 +289,7 @@ def _separation(scene: JointScene, lines: Lines, sign: FloatArray, config: Joint
         lines.pivots[:, None]
         + along
         + np.cos(angle)[:, None, None] * radial
-        + np.sin(angle)[:, None, None] * np.cross(lines.axes[:, None], radial)
+        + np.sin(angle)[:, None, None] * crossed(lines.axes[:, None], radial)
     )
     distances = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
     return np.asarray(np.maximum(distances.min(axis=1) - before, 0.0) / scene.diagonal)
@@ -330,7 +331,7 @@ def _handle_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[
     n = len(lines.axes)
     if scene.handle is None:
         return {"handle_distance": np.zeros(n), "handle_parallel": np.zeros(n)}
-    distance = np.linalg.norm(_arms(scene.handle.centre, lines), axis=1) / _reach(scene, lines)
+    distance = lengths_of(_arms(scene.handle.centre, lines)) / _reach(scene, lines)
     parallel = np.abs(lines.axes @ scene.handle.direction)
     tall = scene.upright and _tallness(scene) > config.panels.tall
     return {
@@ -383,13 +384,13 @@ def _gravity_cues(scene: JointScene, lines: Lines, with_parent: Sweep, outward: 
     """Doors turn about upright lines or drop down, lids rise, and a lid's hinge is where the body stands higher."""
     vertical = np.abs(lines.axes @ UP)
     arms = -_arms(scene.centre, lines)
-    length = np.linalg.norm(arms, axis=1)
+    length = lengths_of(arms)
     height = arms[:, 2] / np.maximum(length, 1e-9 * scene.diagonal)
     door = float(scene.panel and scene.upright)
     tallness = np.clip(np.log2(_tallness(scene)), -1.0, 1.0) if door else 0.0
     lid = float(scene.panel and scene.flat)
     free = with_parent.free(0.03)
-    velocity = np.cross(lines.axes, arms * -1.0)[:, 2] / _reach(scene, lines)
+    velocity = crossed(lines.axes, arms * -1.0)[:, 2] / _reach(scene, lines)
     rise = np.where(free[:, 0] >= free[:, 1], velocity, -velocity)
     return {
         "door_vertical": door * (vertical > 0.9),
@@ -410,7 +411,7 @@ def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
         return np.zeros(len(arms))
     level = arms.copy()
     level[:, 2] = 0.0
-    level /= np.maximum(np.linalg.norm(level, axis=1), 1e-9 * scene.diagonal)[:, None]
+    level /= np.maximum(lengths_of(level), 1e-9 * scene.diagonal)[:, None]
     side = np.sign((samples.points[above] - scene.centre) @ level.T)
     return np.asarray(side.mean(axis=0))
 
@@ -463,7 +464,7 @@ def _roundness(scene: JointScene, lines: Lines) -> FloatArray:
             continue
         offset = samples.points[lateral] - pivot
         radial = offset - (offset @ axis)[:, None] * axis
-        radial /= np.maximum(np.linalg.norm(radial, axis=1), 1e-12)[:, None]
-        miss = np.abs(np.einsum("ij,ij->i", np.cross(axis, radial), samples.normals[lateral]))
+        radial /= np.maximum(lengths_of(radial), 1e-12)[:, None]
+        miss = np.abs(np.einsum("ij,ij->i", crossed(axis, radial), samples.normals[lateral]))
         result[c] = np.clip(2.0 * float((miss < np.sin(np.radians(12.0))).mean()) - 1.0, 0.0, 1.0)
     return result

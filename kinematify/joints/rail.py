@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import read_only
+from kinematify.assembly.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
@@ -59,8 +60,8 @@ def _cross_directions(side: Side, count: int, rng: np.random.Generator) -> Float
     if len(side.weights) == 0:
         return np.empty((0, 3))
     first, second = rng.choice(len(side.weights), (2, count), p=side.weights / side.weights.sum())
-    cross = np.cross(side.normals[first], side.normals[second])
-    sine = np.linalg.norm(cross, axis=1)
+    cross = crossed(side.normals[first], side.normals[second])
+    sine = lengths_of(cross)
     good = sine > 0.3  # about 17 deg; nearly parallel normals leave the direction open
     return np.asarray(cross[good] / sine[good, None])
 

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, lengths_of
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -85,8 +87,8 @@ def sweep_turns(
     along = np.einsum("cnk,ck->cn", offset, axes)
     feet = pivots[:, None] + along[..., None] * axes[:, None]
     radial = points[None] - feet
-    radius = np.linalg.norm(radial, axis=2)
-    tangent = np.cross(axes[:, None], radial)
+    radius = lengths_of(radial)
+    tangent = crossed(axes[:, None], radial)
     reach = radius.max(axis=1, keepdims=True)
     counted = (radius > config.hinge_zone * reach).astype(np.float64)
     # Parts that overlap a little where they touch leave the overlap during the grace distance.
@@ -94,13 +96,10 @@ def sweep_turns(
     n_steps = max(1, int(np.ceil(limit / np.radians(config.step_deg))))
     grid = start[..., None] + (limit - start)[..., None] * (np.arange(n_steps + 1) / n_steps)
     hits = np.full((len(axes), 2, len(points)), np.inf)
+    straight = feet[:, :, None] + np.cos(grid)[..., None] * radial[:, :, None]
+    aside = np.sin(grid)[..., None] * tangent[:, :, None]
     for side, sign in enumerate((1.0, -1.0)):
-        path = (
-            feet[:, :, None]
-            + np.cos(grid)[..., None] * radial[:, :, None]
-            + sign * np.sin(grid)[..., None] * tangent[:, :, None]
-        )
-        hits[:, side] = _first_hits(cache, path, grid, counted, obstacles)
+        hits[:, side] = _first_hits(cache, straight + sign * aside, grid, counted, obstacles)
     return Sweep(hits=hits, counted=counted, limit=limit)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from kinematify.assembly.robot import forward_kinematics, rigid_groups
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.geometry.hull import thickened
 from kinematify.validation.convex import outermost, signed_volume
 
@@ -77,8 +78,8 @@ def room_of(shapes: Sequence[DeclaredShape]) -> Room | None:
 def closed_volume(mesh: LinkMesh) -> float | None:
     """Volume inside a surface [m^3]; None where it is open or encloses nothing."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-    areas = 0.5 * np.cross(b - a, c - a)
-    if np.linalg.norm(areas.sum(axis=0)) > _CLOSED * float(np.linalg.norm(areas, axis=1).sum()):
+    areas = 0.5 * crossed(b - a, c - a)
+    if np.linalg.norm(areas.sum(axis=0)) > _CLOSED * float(lengths_of(areas).sum()):
         return None
     volume = abs(signed_volume(mesh.vertices, mesh.faces))
     return volume or None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import crossed
 from kinematify.assembly.weld import welded
 
 if TYPE_CHECKING:
@@ -84,4 +85,4 @@ def _volume(vertices: FloatArray, faces: IntArray) -> float:
     if not len(faces):
         return 0.0
     a, b, c = (vertices[faces[:, k]] - vertices[0] for k in range(3))
-    return float(np.einsum("fi,fi->", a, np.cross(b, c)) / 6.0)
+    return float(np.einsum("fi,fi->", a, crossed(b, c)) / 6.0)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.joints.decide import weigh_joints
 from kinematify.joints.line import Line
 from kinematify.joints.panels import GIVEN
@@ -189,7 +190,7 @@ def _line_evidence(weighed: WeighedJoints, joint: TrueJoint, settings: EvidenceS
     angle = 0.0 if _is_ball(weighed) else float(_angles(joint.axis, _known_directions(weighed)).min())
     axes, pivots, scores, given = _candidates(weighed, turns)
     aligned = _angles(joint.axis, axes) < settings.same_deg
-    away = np.linalg.norm(np.cross(pivots - joint.pivot, joint.axis), axis=1) / weighed.scene.frame.diagonal
+    away = lengths_of(crossed(pivots - joint.pivot, joint.axis)) / weighed.scene.frame.diagonal
     away = away if turns else np.zeros(len(away))
     same = aligned & (away < settings.same_distance)
     own = max(float(scores[given].max()), float(scores[same].max(initial=-np.inf)))
@@ -228,7 +229,7 @@ def _known_directions(weighed: WeighedJoints) -> FloatArray:
 def _is_ball(weighed: WeighedJoints) -> bool:
     """The child has no direction at all."""
     points = weighed.scene.cache.samples(weighed.scene.child).points
-    radii = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    radii = lengths_of(points - points.mean(axis=0))
     return bool(radii.std() < _BALL * radii.mean())
 
 

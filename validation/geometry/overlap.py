@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
+from kinematify.assembly.vectors import lengths_of
 from kinematify.validation.geometry.scene import inverse, transformed
 from kinematify.validation.geometry.solid import all_three
 
@@ -147,7 +148,7 @@ def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: flo
     """`Overlap.passed` for the walls of `body` and the points of `other`."""
     path = _posed(other.points + _SHRINK * (other.middle - other.points), T)
     steps = np.diff(path, axis=0)
-    way = np.cumsum(np.linalg.norm(steps, axis=2), axis=0)
+    way = np.cumsum(lengths_of(steps), axis=0)
     last_free = np.maximum.accumulate(np.where(hit, 0, np.arange(len(T))))
     beyond = np.zeros(path.shape[:2])
     for sheets in (True, False):

@@ -15,6 +15,8 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from kinematify.assembly.vectors import crossed, lengths_of
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -89,7 +91,7 @@ def _turned(points: FloatArray, given: IntArray) -> tuple[IntArray, IntArray]:
     corners = points[faces]
     middle = _sums(patch, corners.mean(axis=1), count) / np.maximum(np.bincount(patch, minlength=count), 1)[:, None]
     local = corners - middle[patch][:, None]
-    volume = np.bincount(patch, np.einsum("fi,fi->f", local[:, 0], np.cross(local[:, 1], local[:, 2])), count)
+    volume = np.bincount(patch, np.einsum("fi,fi->f", local[:, 0], crossed(local[:, 1], local[:, 2])), count)
     kept = np.bincount(patch, np.where((faces == given).all(axis=1), 1.0, -1.0), count) >= 0.0
     asked = np.where(kept, volume, -volume)
     flip = np.where((asked < 0.0) & ~_enclosed(corners, patch, asked), kept, ~kept)
@@ -144,7 +146,7 @@ class _Edges:
         loop = loop.reshape(-1)
         start, end = points[sides[:, 0]], points[sides[:, 1]]
         origin = (_sums(loop, start, len(loops)) / np.bincount(loop)[:, None])[loop]
-        area = np.linalg.norm(_sums(loop, 0.5 * np.cross(start - origin, end - origin), len(loops)), axis=1)
+        area = lengths_of(_sums(loop, 0.5 * crossed(start - origin, end - origin), len(loops)))
         owner = np.zeros(len(loops), dtype=np.int64)
         owner[loop] = np.tile(shell, 3)[rim]
         return np.asarray(np.bincount(owner, area, count))
@@ -157,5 +159,5 @@ def _sums(index: IntArray, vectors: FloatArray, count: int) -> FloatArray:
 
 def _areas(points: FloatArray, faces: IntArray, shell: IntArray) -> FloatArray:
     corners = points[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.asarray(np.bincount(shell, 0.5 * np.linalg.norm(cross, axis=1)))
+    cross = crossed(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.bincount(shell, 0.5 * lengths_of(cross)))

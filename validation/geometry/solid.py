@@ -14,6 +14,7 @@ import fcl
 import igl
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, highest, lengths_of, lowest
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.validation.geometry.shells import shells_of
@@ -46,7 +47,7 @@ class Solid:
         self._mesh = vertices, faces
         self._unit, self._hole, self._count = unit, hole, points
         used = vertices[np.unique(faces)]
-        self.low, self.high = used.min(axis=0), used.max(axis=0)
+        self.low, self.high = lowest(used), highest(used)
 
     @property
     def size(self) -> float:
@@ -72,7 +73,7 @@ class Solid:
         share = self._count // 3
         edges = _sharp_edges(vertices, faces)
         corners = vertices[np.unique(edges)] if len(edges) else vertices
-        areas = 0.5 * np.linalg.norm(_crosses(vertices, faces), axis=1)
+        areas = 0.5 * lengths_of(_crosses(vertices, faces))
         picked, weights = place_samples(vertices[faces], areas, curve_order(vertices[faces], areas), share, 0)
         surface = np.einsum("nk,nkd->nd", weights, vertices[faces[picked]])
         return np.concatenate([_thinned(corners, share), _along(vertices[edges], share), surface])
@@ -132,7 +133,7 @@ class Solid:
             return met
         ends = starts + steps
         near = all_three((np.minimum(starts, ends) <= self.high) & (np.maximum(starts, ends) >= self.low))
-        length = np.linalg.norm(steps, axis=1)
+        length = lengths_of(steps)
         rows = np.flatnonzero(near & (length > 0.0))
         if len(rows):
             along = steps[rows] / length[rows, None]
@@ -226,13 +227,13 @@ def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:
 def _crosses(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Normals of faces, twice as long as the face is large, shape (F, 3)."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
-    return np.asarray(np.cross(b - a, c - a))
+    return np.asarray(crossed(b - a, c - a))
 
 
 def _sharp_edges(vertices: FloatArray, faces: IntArray) -> IntArray:
     """Vertex pairs of edges that two faces do not share smoothly, shape (E, 2)."""
     cross = _crosses(vertices, faces)
-    normals = cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)[:, None]
+    normals = cross / np.maximum(lengths_of(cross), 1e-300)[:, None]
     sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     owner = np.tile(np.arange(len(faces)), 3)
     order = np.argsort(sides[:, 0] * len(vertices) + sides[:, 1], kind="stable")
@@ -253,7 +254,7 @@ def _along(ends: FloatArray, count: int) -> FloatArray:
     """Places at equal steps along pieces of edges (E, 2, 3) laid end to end, shape (count, 3)."""
     if not len(ends):
         return np.empty((0, 3))
-    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    length = lengths_of(ends[:, 1] - ends[:, 0])
     total = np.cumsum(length)
     at = (np.arange(count) + 0.5) / count * total[-1]
     edge = np.minimum(np.searchsorted(total, at), len(ends) - 1)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.vectors import lengths_of
 from kinematify.validation.geometry.scene import box_corners, relative
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ class Sweeper:
         corners = np.stack([box_corners(scene.bodies[body].solid) for body in moved])
         T = poses[:, moved]
         posed = np.einsum("nbij,bkj->nbki", T[..., :3, :3], corners) + T[..., None, :3, 3]
-        longest = float(np.linalg.norm(np.diff(posed, axis=0), axis=3).sum(axis=0).max())
+        longest = float(lengths_of(np.diff(posed, axis=0)).sum(axis=0).max())
         wanted = int(np.ceil(longest / (settings.step * scene.size)))
         return min(max(wanted, settings.samples_least), settings.samples_most)
 

@@ -17,6 +17,7 @@ import fast_simplification
 import igl
 import numpy as np
 
+from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.validation.convex import ConvexPiece, convex_piece, outermost, surface_points
 
 if TYPE_CHECKING:
@@ -80,8 +81,8 @@ class Surface:
         if np.count_nonzero(count == 1) > _HOLES * len(count):
             return False
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
-        areas = np.cross(b - a, c - a)
-        return bool(np.linalg.norm(areas.sum(axis=0)) <= _HOLES * np.linalg.norm(areas, axis=1).sum())
+        areas = crossed(b - a, c - a)
+        return bool(np.linalg.norm(areas.sum(axis=0)) <= _HOLES * lengths_of(areas).sum())
 
     @cached_property
     def _winding(self) -> igl.FastWindingNumberBVH:
@@ -137,7 +138,7 @@ def _snapped(vertices: FloatArray, faces: IntArray, cells: int) -> tuple[FloatAr
         cells: Cells along the diagonal.
     """
     width = float(np.linalg.norm(np.ptp(vertices, axis=0))) / cells
-    outward = np.argsort(-np.linalg.norm(vertices - vertices.mean(axis=0), axis=1), kind="stable")
+    outward = np.argsort(-lengths_of(vertices - vertices.mean(axis=0)), kind="stable")
     keys = np.round(vertices[outward] / width).astype(np.int64)
     _, first, merged = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     cell_of = np.empty(len(vertices), dtype=np.int64)
@@ -168,9 +169,9 @@ class Concave:
     def axes(self) -> FloatArray:
         """Rows across which to cut: those of the frame or the principal ones, whichever more faces lie across."""
         triangles = self.triangles
-        normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        normals = crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
         middles = triangles.mean(axis=1)
-        weights = np.linalg.norm(normals, axis=1) + 1e-300
+        weights = lengths_of(normals) + 1e-300
         centred = middles - np.average(middles, axis=0, weights=weights)
         principal = np.linalg.eigh(np.einsum("n,ni,nj->ij", weights, centred, centred))[1].T
         return max((np.eye(3), principal), key=lambda axes: float(np.abs(normals @ axes.T).max(axis=1).sum()))
@@ -275,33 +276,33 @@ def _planes(triangles: FloatArray, axes: FloatArray, *, closed: bool) -> Iterato
     Promising are planes whose two sides have the smallest boxes together, some across each axis.
     """
     frame = triangles @ axes.T
-    following = np.roll(frame, -1, axis=1)
+    corners, following = (np.ascontiguousarray(ends.reshape(-1, 3).T) for ends in (frame, np.roll(frame, -1, axis=1)))
     for number in range(3):
         heights = frame[:, :, number]
         offsets = _offsets(triangles, heights, axes[number], closed=closed)
-        boxes = np.array([_boxes(frame, following, number, offset) for offset in offsets])
+        boxes = np.array([_boxes(corners, following, number, offset) for offset in offsets])
         for index in np.argsort(boxes, kind="stable")[:_PER_AXIS]:
             yield heights, float(offsets[index])
 
 
-def _boxes(frame: FloatArray, following: FloatArray, number: int, offset: float) -> float:
+def _boxes(corners: FloatArray, following: FloatArray, number: int, offset: float) -> float:
     """Volume of the boxes around the two sides of a plane.
 
     Args:
-        frame: Corners of triangles, shape (n, 3, 3).
-        following: The corner after each, shape (n, 3, 3).
+        corners: Of triangles, shape (3, n).
+        following: The corner after each in its triangle, shape (3, n).
         number: Axis that the plane stands across.
         offset: Height of the plane.
     """
-    start, end = frame[:, :, number] - offset, following[:, :, number] - offset
-    crossing = start * end < 0.0
-    share = (start[crossing] / (start[crossing] - end[crossing]))[:, None]
-    on_plane = frame[crossing] + share * (following[crossing] - frame[crossing])
+    start, end = corners[number] - offset, following[number] - offset
+    crossing = np.flatnonzero(start * end < 0.0)
+    share = start[crossing] / (start[crossing] - end[crossing])
+    on_plane = corners[:, crossing] + share * (following[:, crossing] - corners[:, crossing])
     volume = 0.0
-    for side in (frame[start <= 0.0], frame[start >= 0.0]):
-        low = np.minimum(side.min(axis=0, initial=np.inf), on_plane.min(axis=0, initial=np.inf))
-        high = np.maximum(side.max(axis=0, initial=-np.inf), on_plane.max(axis=0, initial=-np.inf))
-        volume += float(np.prod(np.maximum(high - low, 0.0)))
+    for side in (start <= 0.0, start >= 0.0):
+        points = np.concatenate([corners[:, side], on_plane], axis=1)
+        if points.size:
+            volume += float(np.prod(points.max(axis=1) - points.min(axis=1)))
     return volume
 
 
@@ -314,8 +315,8 @@ def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray, *, cl
     rind = _RIND * (high - low)
     if rind == 0.0:
         return np.empty(0)
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    areas = np.linalg.norm(normals, axis=1)
+    normals = crossed(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    areas = lengths_of(normals)
     across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
     levels = heights[across].mean(axis=1)
     places = np.round((levels - low) / rind).astype(np.int64)
