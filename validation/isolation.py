@@ -39,13 +39,15 @@ _VARIABLES = {
 }
 """Of the workers: one thread per library, as there are as many workers as cores, and no search for a display."""
 _PRELOADED = (
+    "kinematify.validation.settings",
+    "kinematify.validation.task.request",
     "kinematify.validation.asset.stage",
     "kinematify.validation.prepare.stage",
     "kinematify.validation.geometry.stage",
     "kinematify.validation.evidence.stage",
     "kinematify.validation.agreement",
 )
-"""Imported once for all of them; the libraries of engines are not, each stage needs another one."""
+"""What requests hold and stages need, imported once for all of them; not the libraries of engines, one for each."""
 
 
 @dataclass(frozen=True, kw_only=True)
