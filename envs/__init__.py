@@ -1,1 +1,31 @@
-"""Gymnasium environments around a model (installed as `kinematify.envs`)."""
+"""Gymnasium environments around any object: `kinematify/OpenPart-v0` and `kinematify/DrawerPull-v0`.
+
+``gymnasium.make("kinematify.envs:kinematify/OpenPart-v0", model="out/cabinet")`` needs no other import. Importing
+this package registers the ids and loads no engine.
+"""
+
+from __future__ import annotations
+
+from gymnasium.envs.registration import register
+
+OPEN_PART, DRAWER_PULL = "kinematify/OpenPart-v0", "kinematify/DrawerPull-v0"
+OPEN_PART_SPARSE, DRAWER_PULL_SPARSE = "kinematify/OpenPart-Sparse-v0", "kinematify/DrawerPull-Sparse-v0"
+IDS = (OPEN_PART, OPEN_PART_SPARSE, DRAWER_PULL, DRAWER_PULL_SPARSE)
+"""All ids."""
+
+EPISODE_STEPS = {"open_part": 100, "drawer_pull": 240}
+"""Actions after which episodes are truncated: 5 s and 12 s."""
+
+
+def _register() -> None:
+    for env_id, reward in ((OPEN_PART, "dense"), (OPEN_PART_SPARSE, "sparse")):
+        register(
+            id=env_id,
+            entry_point="kinematify.envs.open_part:make_open_part",
+            vector_entry_point="kinematify.envs.vector:OpenPartVectorEnv",
+            max_episode_steps=EPISODE_STEPS["open_part"],
+            kwargs={"reward": reward},
+        )
+
+
+_register()

@@ -1,0 +1,297 @@
+"""What both environments share: keywords, the object, start of an episode, randomisation, pictures, bookkeeping."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium.utils import EzPickle
+
+from kinematify.assembly.robot import forward_kinematics, rigid_groups
+from kinematify.envs.dynamics import draw, drawing, no_draw
+from kinematify.envs.goal import Goal
+from kinematify.envs.picture import Painter, Piece, View, Window, has_screen, require_screen
+from kinematify.envs.settings import load_settings
+from kinematify.envs.thing import AUTO, open_end
+from kinematify.envs.verdict import require_valid
+from kinematify.envs.worlds import ENGINES, shared_target, shared_thing
+from kinematify.errors import InputError
+from kinematify.validation.geometry.scene import transformed
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.goal import Progress
+    from kinematify.envs.reading import Reading
+    from kinematify.envs.thing import Target, Thing
+    from kinematify.envs.worlds import World
+
+_HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
+_OPTIONS = ("joint", "qpos", "open_fraction")
+
+
+class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], EzPickle):
+    """A joint of an object that is to be opened."""
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - gymnasium's own declaration
+        # Listed only where it works, so that check_env tries what it can.
+        "render_modes": ["rgb_array", "human"] if has_screen() else ["rgb_array"],
+        "render_fps": 20,
+    }
+    _with_robot: ClassVar[bool] = False
+    _world: World
+
+    def _begin(
+        self, *, model: str | Path | None, joint: str, open_fraction: float, engine: str, reward: str,
+        randomize: bool | str | Collection[str], terminate_on_success: bool, allow_invalid: bool,
+        render_mode: str | None,
+    ) -> None:  # fmt: skip
+        """Check the keywords and read the object; subclasses then make their world and spaces.
+
+        Raises:
+            InputError: A keyword is impossible, or the model cannot be used.
+            EnvironmentFault: The engine or the screen is missing.
+        """
+        one_of("engine", engine, ENGINES)
+        one_of("reward", reward, ("dense", "sparse"))
+        one_of("render_mode", render_mode, (None, "rgb_array", "human"))
+        if render_mode == "human":
+            require_screen()
+        if not 0.0 < open_fraction <= 1.0:
+            raise InputError(f"open_fraction is {open_fraction}, but must be above 0 and at most 1, such as 0.9.")
+        self.settings = load_settings()
+        self.engine, self.render_mode = engine, render_mode
+        self._sparse, self.terminates = reward == "sparse", terminate_on_success
+        self._drawn_names = drawing(randomize)
+        self.open_fraction = open_fraction
+        self.thing: Thing = shared_thing(model)
+        self.validation = require_valid(self.thing, engine, allow_invalid=allow_invalid)
+        self._asked_joint = joint
+        self._start_noise = np.array(self.settings.reset.start_open)
+        self._draw = no_draw(*self._counts)
+        self._painter: Painter | None = None
+        self._window: Window | None = None
+        self._progress: Progress | None = None
+        self._aim(self._choose(joint))
+
+    def _choose(self, joint: str) -> str:
+        """Return the joint that ``auto`` stands for."""
+        if joint != AUTO:
+            return joint
+        return self.thing.suggested if self.thing.suggested != AUTO else self.thing.farthest
+
+    def _aim(self, joint: str) -> None:
+        self.target: Target = shared_target(self.thing, joint)
+        self.goal = Goal(self.thing, self.target, self.open_fraction, self.settings)
+        self.middle = self._rest_place()
+        self.escape_distance = self.settings.task.escape * self.thing.scene.size
+
+    @property
+    def _counts(self) -> tuple[int, int]:
+        mechanism = self.thing.scene.mechanism
+        return len(mechanism.joints), len(mechanism.links)
+
+    def _rest_place(self) -> FloatArray:
+        """The hold at rest, world frame, the object at its usual place [m], shape (3,)."""
+        link_pose = self.thing.T_world_root @ _pose_at_rest(self.thing, self.target)
+        return np.asarray(link_pose[:3, :3] @ self.target.point + link_pose[:3, 3])
+
+    # Start of an episode.
+
+    def _start(self, options: Mapping[str, Any] | None) -> None:
+        """Draw the object and place it; a start without interpenetration is drawn again until there is one."""
+        given = dict(options or {})
+        unknown = sorted(set(given) - set(_OPTIONS))
+        if unknown:
+            raise InputError(f"reset options {', '.join(unknown)} do not exist. There are {', '.join(_OPTIONS)}.")
+        joint = self._choose(str(given.get("joint", self._asked_joint)))
+        if joint != self.target.joint:
+            self._retarget(joint)
+        rng = self.np_random
+        self._draw = draw(self._drawn_names, *self._counts, self.settings.randomize, rng, robot=self._with_robot)
+        self._world.draw(self._draw)
+        if "qpos" in given or "open_fraction" in given:
+            self._world.place(self._asked_start(given))
+            return
+        allowed = self.settings.reset.depth * self.thing.scene.size
+        for _ in range(self.settings.reset.tries):
+            leaders = self.thing.scene.mechanism.rest.copy()
+            leaders[self.target.leader] = self.target.value(float(rng.uniform(*self._start_noise)))
+            if self._world.place(leaders) <= allowed:
+                return
+        self._world.place(self.thing.scene.mechanism.rest)
+
+    def _retarget(self, joint: str) -> None:
+        """Open another joint from now on."""
+        self._aim(joint)
+        self._world.close()
+        self._make_world()
+        self._close_pictures()
+
+    def _make_world(self) -> None:
+        raise NotImplementedError
+
+    def _asked_start(self, given: Mapping[str, Any]) -> FloatArray:
+        """Values of the leaders that reset options ask for, shape (J,)."""
+        leaders = self.thing.scene.mechanism.rest.copy()
+        for name, value in dict(given.get("qpos", {})).items():
+            leader = self.thing.leader(str(name))
+            travel = self.thing.travels[leader]
+            if travel.limited and not travel.lower - 1e-9 <= float(value) <= travel.upper + 1e-9:
+                raise InputError(
+                    f"reset options put {name} at {value}, but its range is {travel.lower:g} to {travel.upper:g} "
+                    f"{travel.unit}."
+                )
+            leaders[leader] = float(value)
+        if "open_fraction" in given:
+            fraction = float(given["open_fraction"])
+            if not 0.0 <= fraction <= 1.0:
+                raise InputError(f"reset options ask for open_fraction {fraction}, but it must be from 0 to 1.")
+            leaders[self.target.leader] = self.target.value(fraction)
+        return leaders
+
+    # After a step.
+
+    def _outcome(self, reading: Reading, extra: float) -> tuple[float, bool, dict[str, Any]]:
+        """Reward, whether the episode ends, and info.
+
+        Args:
+            reading: State of the object.
+            extra: What a subclass rewards beside opening, already weighted.
+        """
+        assert self._progress is not None
+        success, opened, _ = self.goal.judge(reading, self._progress)
+        done, escaped = bool(success), bool(np.abs(reading.hold - self.middle).max() > self.escape_distance)
+        reward = float(self.rewarded(done, opened)) + (0.0 if self._sparse else extra)
+        return reward, escaped or (done and self.terminates), self._info(is_success=done, escaped=escaped)
+
+    def rewarded(self, success: Any, opened: Any) -> Any:
+        """Reward for opening, of one environment or of many, as a number or an array.
+
+        Args:
+            success: Whether it is one.
+            opened: How well the part stands open (`Goal.judge`).
+        """
+        if self._sparse:
+            return 1.0 * success
+        weights = self.settings.reward
+        share = 1.0 - weights.reach - weights.grip if self._with_robot else 1.0
+        return share * (weights.open * opened + weights.success * success)
+
+    def _failed(self, last: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """End an episode in which the engine produced numbers that are none."""
+        info = self._info(is_success=False, escaped=False)
+        info["unstable"] = True
+        return last, 0.0, True, False, info
+
+    def _info(self, *, is_success: bool, escaped: bool) -> dict[str, Any]:
+        assert self._progress is not None
+        return {
+            "is_success": is_success,
+            "open_fraction": float(self._progress.fraction),
+            "thrown": bool(self._progress.thrown),
+            "max_penetration": self._world.depth(),
+            "escaped": escaped,
+            "unstable": False,
+            "warnings": self._world.warnings(),
+            "joint": self.target.joint,
+            "validation": self.validation,
+        }
+
+    # Pictures.
+
+    def render(self) -> Any:
+        """Return a picture, shape (height, width, 3), for ``rgb_array``; show it for ``human``.
+
+        Raises:
+            EnvironmentFault: A renderer that MUJOCO_GL asks for is missing, or there is no screen.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn(
+                'render() was called without render_mode; make the environment with render_mode="rgb_array".'
+            )
+            return None
+        poses, tint = self._world.link_poses(), dict(
+            zip(self.thing.scene.mechanism.links, self._draw.color, strict=True)
+        )  # fmt: skip
+        if self.render_mode == "human":
+            self._window = self._window or Window(self._pieces(), self._view(), self.settings.picture)
+            self._window.draw(poses, tint)
+            return None
+        self._painter = self._painter or Painter(self._pieces(), self._view(), self.settings.picture)
+        return self._painter.draw(poses, tint)
+
+    @property
+    def renderer(self) -> str | None:
+        """``egl``, ``osmesa`` or ``software`` once a picture was drawn."""
+        return None if self._painter is None else self._painter.kind
+
+    def _pieces(self) -> Sequence[Piece]:
+        kinematics = self.thing.declared.kinematics
+        held = _held_links(self.thing, self.target)
+        colors = {name: _HELD if name in held else _OTHERS for name in self.thing.scene.mechanism.links}
+        colors[kinematics.root] = _BODY
+        return [
+            Piece(link=link.name, vertices=mesh.vertices, faces=mesh.faces, color=np.array(colors[link.name]))
+            for link in kinematics.links
+            for mesh in link.meshes
+            if len(mesh.faces)
+        ]
+
+    def _view(self) -> View:
+        """All of the object, at rest and open, from the side to which it opens."""
+        scene, T = self.thing.scene, self.thing.T_world_root
+        rows = np.stack([scene.mechanism.rest] * 2)
+        rows[1, self.target.leader] = open_end(self.thing.travels[self.target.leader])
+        corners = np.concatenate(
+            [
+                transformed(shape, T @ pose)
+                for row in scene.poses(rows)
+                for body, pose in zip(scene.bodies, row, strict=True)
+                for shape in body.shapes
+            ]
+        )
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        center = 0.5 * (low + high)
+        outward = self.middle - center
+        azimuth = float(np.arctan2(outward[1], outward[0])) + self.settings.picture.azimuth
+        return View(center=center, radius=0.5 * float(np.linalg.norm(high - low)), azimuth=azimuth)
+
+    def _close_pictures(self) -> None:
+        for shown in (self._painter, self._window):
+            if shown is not None:
+                shown.close()
+        self._painter = self._window = None
+
+    def close(self) -> None:
+        """Free the engine, OpenGL and the window."""
+        self._close_pictures()
+        self._world.close()
+
+
+def one_of(name: str, value: object, choices: Sequence[object]) -> None:
+    """Refuse a keyword that is none of its choices.
+
+    Raises:
+        InputError: It is none.
+    """
+    if value not in choices:
+        raise InputError(f"{name} is {value!r}, but must be one of {', '.join(map(repr, choices))}.")
+
+
+def _pose_at_rest(thing: Thing, target: Target) -> FloatArray:
+    """Link that is moved, frame of the root link, shape (4, 4)."""
+    values = {travel.joint: travel.rest for travel in thing.travels}
+    return forward_kinematics(thing.declared.kinematics, values)[target.link]
+
+
+def _held_links(thing: Thing, target: Target) -> frozenset[str]:
+    """Links of the body that is moved."""
+    return frozenset(
+        next(group.links for group in rigid_groups(thing.declared.kinematics) if target.link in group.links)
+    )

@@ -1,0 +1,161 @@
+"""Damping and friction of joints, full force of the hand, and what `randomize` draws of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.settings import HandSettings, ObjectSettings, RandomizeSettings
+    from kinematify.envs.thing import Target, Thing
+
+RANDOMIZED = ("damping", "friction", "mass", "pose", "color")
+"""What `randomize` may name."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Loads:
+    """What each joint carries, in the order of `Mechanism.joints`."""
+
+    inertia: FloatArray
+    """That each joint moves at rest [kg m^2 or kg], shape (J,)."""
+    gravity: FloatArray
+    """Torque or force that holds each joint still at rest [N m or N], shape (J,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointDynamics:
+    """In the order of `Mechanism.joints`."""
+
+    damping: FloatArray
+    """[N m s/rad or N s/m], shape (J,)."""
+    friction: FloatArray
+    """[N m or N], shape (J,)."""
+
+
+def joint_dynamics(thing: Thing, loads: Loads, settings: ObjectSettings) -> JointDynamics:
+    """What the file declares; where it declares nothing, values in proportion to what the joint moves.
+
+    Friction then also holds what its own weight would move from where it was given into its range.
+    """
+    mechanism, declared = thing.scene.mechanism, thing.declared.joint_by_name
+    damping, friction = settings.damping_rate * loads.inertia, settings.friction_acceleration * loads.inertia
+    travels = {travel.joint: travel for travel in thing.travels}
+    for k, name in enumerate(mechanism.joints):
+        joint, travel, torque = declared[name], travels.get(name), float(loads.gravity[k])
+        slack = 0.01 * travel.range if travel is not None else 0.0
+        moves = travel is None or (
+            travel.lower < travel.rest - slack if torque > 0.0 else travel.upper > travel.rest + slack
+        )
+        if moves:
+            friction[k] = max(friction[k], settings.hold * abs(torque))
+        if joint.damping is not None and joint.damping > 0.0:
+            damping[k] = joint.damping
+        if joint.friction is not None and joint.friction > 0.0:
+            friction[k] = joint.friction
+    return JointDynamics(damping=damping, friction=friction)
+
+
+def full_force(
+    target: Target, hand: HandSettings, *, inertia: FloatArray, gravity: FloatArray, damping: float, friction: float
+) -> float:
+    """Force of a hand that opens the part from rest to rest in `hand.seconds`, with a margin [N].
+
+    Args:
+        target: The joint and its way.
+        hand: Time and margin.
+        inertia: Along the way [kg m^2 or kg], shape (n,).
+        gravity: Along the way [N m or N], shape (n,).
+        damping: Of the joint.
+        friction: Of the joint.
+    """
+    acceleration = 4.0 * abs(target.range) / hand.seconds**2
+    speed = 1.5 * abs(target.range) / hand.seconds
+    needed = np.max(np.abs(gravity) + inertia * acceleration) + damping * speed + friction
+    return max(hand.least_force, hand.margin * float(needed) / target.path_ratio)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Draw:
+    """One object of many: factors are 1 and offsets 0 where nothing is randomised."""
+
+    damping: FloatArray
+    """Factor of each joint, shape (J,)."""
+    friction: FloatArray
+    """Factor of each joint, shape (J,)."""
+    surface: float
+    """Factor of the friction of all surfaces."""
+    mass: FloatArray
+    """Factor of each link, shape (L,)."""
+    T_root: FloatArray
+    """World motion of the object from its usual place, shape (4, 4)."""
+    color: FloatArray
+    """Added to sRGB of each link, shape (L, 3)."""
+
+
+def drawing(randomize: bool | str | Collection[str]) -> frozenset[str]:
+    """Return the names that a `randomize` keyword stands for.
+
+    Raises:
+        InputError: It names something else.
+    """
+    if isinstance(randomize, bool):
+        return frozenset(RANDOMIZED) if randomize else frozenset()
+    names = frozenset([randomize] if isinstance(randomize, str) else randomize)
+    unknown = sorted(str(name) for name in names if name not in RANDOMIZED)
+    if unknown:
+        raise InputError(
+            f"randomize names {', '.join(unknown)}, which cannot be randomised. Give True, False, or some of "
+            f"{', '.join(RANDOMIZED)}."
+        )
+    return names
+
+
+def draw(
+    names: frozenset[str], joints: int, links: int, ranges: RandomizeSettings, rng: np.random.Generator, *, robot: bool
+) -> Draw:
+    """Draw an object; always the same number of draws, so that one name does not change what others give.
+
+    Args:
+        names: What is randomised (`drawing`).
+        joints: J.
+        links: L.
+        ranges: From where to where.
+        rng: Source of the draws.
+        robot: The object stands in front of a robot, and moves less.
+    """
+    position, yaw = (ranges.robot_position, ranges.robot_yaw) if robot else (ranges.position, ranges.yaw)
+    damping, friction = _factors(rng, ranges.damping, joints), _factors(rng, ranges.friction, joints)
+    surface, mass = float(_factors(rng, ranges.friction, 1)[0]), _factors(rng, ranges.mass, links)
+    x, y, turn = rng.uniform(-1.0, 1.0, 3) * [position, position, yaw]
+    color = rng.uniform(-ranges.color, ranges.color, (links, 3))
+    pose = np.eye(4)
+    pose[:2, :2], pose[:2, 3] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]], (x, y)
+    given: Mapping[str, bool] = {name: name in names for name in RANDOMIZED}
+    return Draw(
+        damping=damping if given["damping"] else np.ones(joints),
+        friction=friction if given["friction"] else np.ones(joints),
+        surface=surface if given["friction"] else 1.0,
+        mass=mass if given["mass"] else np.ones(links),
+        T_root=pose if given["pose"] else np.eye(4),
+        color=color if given["color"] else np.zeros((links, 3)),
+    )
+
+
+def no_draw(joints: int, links: int) -> Draw:
+    """The object as it is."""
+    return Draw(
+        damping=np.ones(joints), friction=np.ones(joints), surface=1.0, mass=np.ones(links), T_root=np.eye(4),
+        color=np.zeros((links, 3)),
+    )  # fmt: skip
+
+
+def _factors(rng: np.random.Generator, ends: list[float], count: int) -> FloatArray:
+    return np.asarray(np.exp(rng.uniform(np.log(ends[0]), np.log(ends[1]), count)))

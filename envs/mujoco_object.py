@@ -1,0 +1,242 @@
+"""The object in MuJoCo: contacts that count, the hand's point, sensors, and dynamics that can be redrawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
+from kinematify.envs.reading import Reading
+from kinematify.validation.engines.configurations import GRAVITY
+from kinematify.validation.engines.mujoco_measure import measure
+from kinematify.validation.engines.mujoco_model import compiled, parse, with_allowances
+from kinematify.validation.engines.touching import touching
+from kinematify.validation.settings import load_settings
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.envs.dynamics import Draw, JointDynamics
+    from kinematify.envs.settings import EnvSettings
+    from kinematify.envs.thing import Target, Thing
+    from kinematify.validation.engines.mujoco_model import Source
+    from kinematify.validation.engines.touching import Touching
+
+PREFIX = "object "
+"""Before the names of the object's links, joints and shapes."""
+HOLD, AXIS, WORLD = "kinematify hold", "kinematify axis", "kinematify world"
+_WAY_SAMPLES = 9
+_WARNINGS = {
+    kind.value: name.removeprefix("mjWARN_").lower()
+    for name, kind in mujoco.mjtWarning.__members__.items()
+    if name.startswith("mjWARN_")
+}
+_STIFF = 0.999  # share of its creep that friction takes away
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ObjectSource:
+    """A parsed object whose contacts are settled; worlds are compiled from copies of it."""
+
+    source: Source
+    touching: Touching
+
+
+def object_source(thing: Thing, settings: EnvSettings) -> ObjectSource:
+    """Parse the object and look who touches whom while it moves.
+
+    What touches at rest, as a drawer its runners, acts beyond the depth that it has there; where it gets no deeper over
+    the whole motion it need not be looked at. Everything else acts from the first touch (`with_allowances`).
+    """
+    limits = load_settings().engines
+    mechanism = thing.scene.mechanism
+    source = parse(thing.prepared.urdf, mechanism, step=settings.time.step)
+    measured = compiled(source)
+    rng = np.random.default_rng(0)
+    low, high = (np.array([getattr(travel, end) for travel in thing.travels]) for end in ("lower", "upper"))
+    rows = np.concatenate(
+        [
+            mechanism.sweep(settings.object.sweep_samples),
+            rng.uniform(low, high, (settings.object.random_rows, len(low))),
+        ]
+    )
+    swept = len(rows) - settings.object.random_rows
+    seen = measure(measured, mechanism.all_values(rows[:swept]), dynamic=0, threads=1)
+    met = touching(
+        seen.contacts, mechanism, thing.prepared, rows=swept, tolerance=limits.contact_depth * thing.scene.size
+    )
+    never = np.setdiff1d(np.arange(len(met.slack)), met.meet)
+    slack = met.slack.copy()
+    slack[never] = np.inf
+    settled = replace(met, slack=slack)
+    return ObjectSource(source=with_allowances(source, measured, settled, only=False), touching=settled)
+
+
+def world_spec(settings: EnvSettings) -> mujoco.MjSpec:
+    """An empty world with the options of all environments."""
+    spec = mujoco.MjSpec()
+    spec.compiler.balanceinertia = True
+    spec.option.timestep = settings.time.step
+    spec.option.gravity = [0.0, 0.0, -GRAVITY]
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    # What blows up is told, not silently set back to the start.
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET.value
+    spec.worldbody.add_site(name=WORLD)
+    return spec
+
+
+def add_object(spec: mujoco.MjSpec, thing: Thing, target: Target, found: ObjectSource) -> None:
+    """Attach the object, mark the hold and the joint that is opened, and add their sensors."""
+    part = found.source.spec.copy()
+    part.compiler.balanceinertia = True
+    T = thing.T_world_root
+    spec.attach(part, prefix=PREFIX, frame=spec.worldbody.add_frame(pos=T[:3, 3]))
+    names = dict(zip(thing.scene.mechanism.links, found.source.names, strict=True))
+    body = spec.body(PREFIX + names[target.link])
+    body.add_site(name=HOLD, pos=target.point)
+    axis = thing.declared.kinematics.joint_by_name[target.joint].axis
+    body.add_site(name=AXIS, quat=_quaternion_to(axis))
+    for kind, site in (
+        (mujoco.mjtSensor.mjSENS_FRAMEPOS, HOLD),
+        (mujoco.mjtSensor.mjSENS_FRAMEPOS, AXIS),
+        (mujoco.mjtSensor.mjSENS_FRAMEZAXIS, AXIS),
+    ):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=site)
+
+
+def _quaternion_to(axis: FloatArray) -> FloatArray:
+    """Turn that takes z to an axis, w x y z."""
+    found = np.zeros(4)
+    mujoco.mju_quatZ2Vec(found, np.asarray(axis, dtype=np.float64))
+    return found
+
+
+class MujocoObject:
+    """Where the object stands in a compiled world, and its dynamics; redrawn in place."""
+
+    def __init__(self, model: mujoco.MjModel, thing: Thing, target: Target, found: ObjectSource) -> None:
+        """Look up names; `model` is changed by `set_up` and `apply`."""
+        self.model, self.thing, self.target = model, thing, target
+        mechanism = thing.scene.mechanism
+        self.joints: IntArray = np.array([model.joint(PREFIX + name).id for name in mechanism.joints], dtype=np.int64)
+        self.qpos: IntArray = np.asarray(model.jnt_qposadr[self.joints], dtype=np.int64)
+        self.dof: IntArray = np.asarray(model.jnt_dofadr[self.joints], dtype=np.int64)
+        self.body: IntArray = np.array(
+            [int(model.body(PREFIX + name).id) for name in found.source.names], dtype=np.int64
+        )
+        names = list(mechanism.joints)
+        self._leaders = np.array([names.index(joint) for joint in thing.joints], dtype=np.int64)
+        self.leader_qpos, self.leader_dof = self.qpos[self._leaders], self.dof[self._leaders]
+        self._root = int(self.body[mechanism.links.index(mechanism.description.root)])
+        self._geoms = np.flatnonzero(np.isin(model.geom_bodyid, self.body))
+
+    def set_up(self, settings: EnvSettings) -> JointDynamics:
+        """Give the joints their damping and friction, and keep them as what factors refer to."""
+        inertia, gravity = self._loads(self.thing.scene.mechanism.rest)
+        found = joint_dynamics(self.thing, Loads(inertia=inertia, gravity=gravity), settings.object)
+        self.model.dof_damping[self.dof], self.model.dof_frictionloss[self.dof] = found.damping, found.friction
+        # As it is, MuJoCo's friction creeps: a light handle would sink by 7 deg in a second.
+        # And its ends of ranges give: a hand that presses a lid shut would push it in by 20 deg.
+        self.model.dof_solimp[self.dof, :2], self.model.dof_solref[self.dof, 0] = _STIFF, 2.0 * settings.time.step
+        self.model.jnt_solimp[self.joints, :2], self.model.jnt_solref[self.joints, 0] = _STIFF, 2.0 * settings.time.step
+        self.model.jnt_actfrclimited[:] = 0
+        self.keep()
+        return found
+
+    def keep(self) -> None:
+        """Remember the model as it is now."""
+        model = self.model
+        self._damping, self._friction = model.dof_damping[self.dof].copy(), model.dof_frictionloss[self.dof].copy()
+        self._mass, self._moments = model.body_mass[self.body].copy(), model.body_inertia[self.body].copy()
+        self._surface = model.geom_friction[self._geoms].copy()
+        self._place, self._turn = model.body_pos[self._root].copy(), model.body_quat[self._root].copy()
+        self._masses_drawn = False
+
+    def force(self, dynamics: JointDynamics, settings: EnvSettings) -> float:
+        """Full force of a hand [N] (`full_force`)."""
+        rows = np.tile(self.thing.scene.mechanism.rest, (_WAY_SAMPLES, 1))
+        rows[:, self.target.leader] = np.linspace(self.target.closed, self.target.opened, _WAY_SAMPLES)
+        loads = [self._loads(row) for row in rows]
+        k = int(self._leaders[self.target.leader])
+        return full_force(
+            self.target,
+            settings.hand,
+            inertia=np.array([inertia[k] for inertia, _ in loads]),
+            gravity=np.array([gravity[k] for _, gravity in loads]),
+            damping=float(dynamics.damping[k]),
+            friction=float(dynamics.friction[k]),
+        )
+
+    def inertia(self) -> float:
+        """Largest inertia that the joint moves, at both ends [kg m^2 or kg]."""
+        rows = np.tile(self.thing.scene.mechanism.rest, (2, 1))
+        rows[1, self.target.leader] = self.target.opened
+        k = int(self._leaders[self.target.leader])
+        return max(float(self._loads(row)[0][k]) for row in rows)
+
+    def _loads(self, leaders: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Inertia and holding torque of every joint at a configuration of the leaders, shape (J,) each."""
+        model, data = self.model, mujoco.MjData(self.model)
+        data.qpos[self.qpos] = self.thing.scene.mechanism.all_values(leaders[None])[0]
+        mujoco.mj_forward(model, data)
+        matrix = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, matrix)
+        return np.diag(matrix)[self.dof].copy(), data.qfrc_bias[self.dof].copy()
+
+    def apply(self, drawn: Draw, data: mujoco.MjData) -> None:
+        """Redraw the object (`kinematify.envs.dynamics.draw`)."""
+        model = self.model
+        model.dof_damping[self.dof] = drawn.damping * self._damping
+        model.dof_frictionloss[self.dof] = drawn.friction * self._friction
+        model.geom_friction[self._geoms] = drawn.surface * self._surface
+        T = drawn.T_root
+        model.body_pos[self._root] = T[:3, :3] @ self._place + T[:3, 3]
+        turn = np.zeros(4)
+        mujoco.mju_mat2Quat(turn, T[:3, :3].ravel())
+        mujoco.mju_mulQuat(model.body_quat[self._root], turn, self._turn)
+        drawn_masses = bool((drawn.mass != 1.0).any())
+        if drawn_masses or self._masses_drawn:
+            model.body_mass[self.body] = drawn.mass * self._mass
+            model.body_inertia[self.body] = drawn.mass[:, None] * self._moments
+            mujoco.mj_setConst(model, data)
+        self._masses_drawn = drawn_masses
+
+    def place(self, data: mujoco.MjData, leaders: FloatArray) -> None:
+        """Set the joints, followers included, and stop them."""
+        data.qpos[self.qpos] = self.thing.scene.mechanism.all_values(leaders[None])[0]
+        data.qvel[self.dof] = 0.0
+
+    def reading(self, data: mujoco.MjData) -> Reading:
+        """Return the state after the last step."""
+        return self.split(data.qpos, data.qvel, data.sensordata)
+
+    def split(self, qpos: FloatArray, qvel: FloatArray, sensors: FloatArray) -> Reading:
+        """The same for states in rows, shapes (..., nq), (..., nv), (..., sensors)."""
+        return Reading(
+            values=qpos[..., self.leader_qpos],
+            speeds=qvel[..., self.leader_dof],
+            hold=sensors[..., 0:3],
+            anchor=sensors[..., 3:6],
+            axis=sensors[..., 6:9],
+        )
+
+
+def deepest_contact(data: mujoco.MjData) -> float:
+    """How much deeper than allowed two shapes are in each other at most [m], 0 without contact."""
+    if not data.ncon:
+        return 0.0
+    contact = data.contact
+    return max(0.0, float((contact.includemargin - contact.dist).max()))
+
+
+def reported_warnings(data: mujoco.MjData) -> dict[str, int]:
+    """What MuJoCo's solver has warned of since the last reset, by its own names."""
+    numbers = data.warning.number
+    if not numbers.any():
+        return {}
+    return {_WARNINGS[k]: int(number) for k, number in enumerate(numbers) if number}

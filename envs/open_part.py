@@ -1,0 +1,239 @@
+"""OpenPart: a hand without a robot opens a door, a drawer or a lid."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.utils import EzPickle
+
+from kinematify.envs.base import OpeningEnv, one_of
+from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
+from kinematify.envs.mujoco_hand import FORCE, POSITION, MujocoHand
+from kinematify.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+    from pathlib import Path
+
+    from gymnasium import spaces
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.goal import Goal
+    from kinematify.envs.reading import Reading
+    from kinematify.envs.worlds import HandWorld
+
+    Space = spaces.Space[NDArray[np.float32]]
+
+
+class OpenPartEnv(OpeningEnv):
+    """Open one part of an object, and leave it open and at rest, by a force at the point where it would be held.
+
+    There is no robot: the hand is a force (``control="force"``) or a spring between a commanded place and the part
+    (``control="position"``), at the best hold that a gripper would find, or at the outermost point of the part.
+    Friction, damping, weight, limits and collisions of the object are those of the engine. Episodes are truncated
+    after 100 steps of 0.05 s.
+
+    ## Action space
+
+    `Box(-1, 1, (3,), float32)`, along the axes of the world:
+
+    | index | force control | position control |
+    |---|---|---|
+    | 0 to 2 | force in shares of `full_force` [N] | speed of the hand in shares of 1.2 ways per second [m/s] |
+
+    `full_force` is three times what opens the part from rest to rest in 1.5 s, against its weight, friction and
+    damping. In position control the spring pulls with at most this force, which it has when the hand is 8 % of the
+    way ahead.
+
+    ## Observation space
+
+    `Box((57,), float32)` for models of up to 16 joints (`S` = 16; models with more get the next multiple of 16):
+
+    | index | what | lowest | highest | unit |
+    |---|---|---|---|---|
+    | 0 to 15 | where each joint is in its range; slot 0 is the one that is opened, 0 closed, 1 open | -2 | 2 | 1 |
+    | 16 to 31 | their speeds, in ranges per second | -20 | 20 | 1/s |
+    | 32 to 47 | 1 for slots with a joint | 0 | 1 | 1 |
+    | 48 to 50 | the hold, from where it is at rest (usual place of the object), world axes | -10 | 10 | m |
+    | 51 to 53 | from the hold to where the hand wants it, zero in force control | -10 | 10 | m |
+    | 54 to 56 | unit direction in which the hold moves when the part opens | -1 | 1 | 1 |
+
+    ## Reward
+
+    Dense, in [0, 1]: 0.5 times the share of `open_fraction` that is open, plus 0.5 for success. The first part is
+    paid in full up to 1.5 ways per second, falls to nothing at 3, and is not paid for a part that was thrown. Sparse
+    (``reward="sparse"``): 1 for success, else 0.
+
+    ## Success, and the end
+
+    Success: at least `open_fraction` of the way is open, no faster than 0.1 ways per second during the last step, and
+    not thrown. *Thrown* is a part that was faster than 1.5 ways per second where it counts as open; it must come back
+    by 10 % of the way before it counts again. Episodes end on success only with ``terminate_on_success=True``; they
+    also end if the engine becomes unstable or the hold gets three sizes of the object away.
+
+    ## Start
+
+    The part is open by 0 to 5 % of its way, all other joints rest, nothing moves. A start in which two parts are
+    deeper in each other than 0.2 % of the object's size is drawn again. ``reset(options=...)`` takes ``joint``
+    (name), ``qpos`` (joint -> value [rad or m]) and ``open_fraction`` (0 to 1); the last two replace the draw.
+
+    ## Info
+
+    ``is_success``, ``open_fraction`` [1], ``thrown``, ``max_penetration`` [m] (beyond what touches at rest),
+    ``escaped``, ``unstable``, ``warnings`` (of the engine, with counts), ``joint``, ``validation`` (``pass``,
+    ``warn``, ``fail``, ``bundled``).
+
+    ## Randomisation
+
+    ``randomize=True``, or some of ``damping`` and ``friction`` (factors 0.5 to 2 for each joint; friction of surfaces
+    too), ``mass`` (factor 0.8 to 1.25 for each link), ``pose`` (0.05 m along x and y, 0.35 rad about z, either way)
+    and ``color`` (0.25 of each channel). Joints without damping in the file get 1.5 1/s times the inertia that they
+    move, those without friction 0.3 m/s^2 or rad/s^2 times it, or 1.3 times what their own weight would move them with.
+    """
+
+    _world: HandWorld
+
+    def __init__(
+        self,
+        model: str | Path | None = None,
+        *,
+        joint: str = "auto",
+        open_fraction: float = 0.9,
+        engine: str = "mujoco",
+        robot: str | Path | None = None,
+        control: str = FORCE,
+        reward: str = "dense",
+        randomize: bool | str | Collection[str] = False,
+        terminate_on_success: bool = False,
+        allow_invalid: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        """Make the environment.
+
+        Args:
+            model: URDF, folder with it, ``bundled:NAME`` or ``procedural:FAMILY``; a chest of drawers if None.
+            joint: Joint that is opened; ``auto`` takes the one whose part moves farthest.
+            open_fraction: Share of the way that counts as open, above 0 and at most 1.
+            engine: ``mujoco`` or ``pybullet``.
+            robot: None; `DrawerPullEnv` has robots.
+            control: ``force`` or ``position``.
+            reward: ``dense`` or ``sparse``.
+            randomize: What is drawn anew in each episode.
+            terminate_on_success: End the episode on success.
+            allow_invalid: Take a model that fails `kinematify validate`.
+            render_mode: None, ``rgb_array`` or ``human``.
+
+        Raises:
+            InputError: A keyword is impossible, or the model cannot be used; the message says what to do.
+            EnvironmentFault: The validation itself failed.
+        """
+        EzPickle.__init__(
+            self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, control=control,
+            reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
+            allow_invalid=allow_invalid, render_mode=render_mode,
+        )  # fmt: skip
+        one_of("control", control, (FORCE, POSITION))
+        if robot is not None:
+            raise InputError(
+                f"OpenPart has no robot, but robot={str(robot)!r} was given. Leave it out, or make "
+                "kinematify/DrawerPull-v0, which has one."
+            )
+        self.control = control
+        self._begin(
+            model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
+            terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
+        )  # fmt: skip
+        self._make_world()
+        self.action_space: Space = Box(-1.0, 1.0, (3,), np.float32)
+        self.observation_space: Space = hand_space(self.goal)
+
+    def _make_world(self) -> None:
+        kind = MujocoHand if self.engine == "mujoco" else _pybullet_hand()
+        self._world = kind(self.thing, self.target, self.control, self.settings)
+
+    @property
+    def full_force(self) -> float:
+        """Force of a full action, or of the spring at most [N]."""
+        return float(self._world.facts.force)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin an episode.
+
+        Raises:
+            InputError: An option does not exist or is out of range.
+        """
+        self.begin_episode(seed, options)
+        reading = self._world.reading()
+        self._progress = self.goal.begin(reading)
+        self._last = self._observe(reading)
+        if self.render_mode == "human":
+            self.render()
+        return self._last, self._info(is_success=False, escaped=False)
+
+    def begin_episode(self, seed: int | None, options: dict[str, Any] | None) -> None:
+        """Draw and place the object; what is left of `reset` is to look at it."""
+        super().reset(seed=seed)
+        self._start(options)
+
+    @property
+    def hand(self) -> MujocoHand:
+        """The world, if it is MuJoCo's."""
+        assert isinstance(self._world, MujocoHand)
+        return self._world
+
+    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Push with an action for 0.05 s; actions beyond -1 and 1 are clipped."""
+        self._world.act(np.minimum(np.maximum(action, -1.0), 1.0))
+        if not self._world.stable():
+            return self._failed(self._last)
+        reading = self._world.reading()
+        reward, ended, info = self._outcome(reading, 0.0)
+        self._last = self._observe(reading)
+        if self.render_mode == "human":
+            self.render()
+        return self._last, reward, ended, False, info
+
+    def _observe(self, reading: Reading) -> NDArray[np.float32]:
+        found = np.zeros(self.observation_space.shape or ())
+        return observe_hand(self.goal, reading, self.middle, self._world.command(), found)
+
+
+def hand_space(goal: Goal) -> Space:
+    """Space of `observe_hand`."""
+    slots = goal.slots
+    high = np.repeat(
+        [OPEN_BOUND, SPEED_BOUND, 1.0, PLACE_BOUND, PLACE_BOUND, 1.0], [slots, slots, slots, 3, 3, 3]
+    ).astype(np.float32)
+    low = -high
+    low[2 * slots : 3 * slots] = 0.0
+    return Box(low, high, dtype=np.float32)
+
+
+def observe_hand(
+    goal: Goal, reading: Reading, middle: FloatArray, command: FloatArray, found: FloatArray
+) -> NDArray[np.float32]:
+    """Fill an array of zeros, shape (..., 3 * slots + 9), with what is seen of an object and a hand."""
+    goal.fill_joints(reading, found)
+    start = 3 * goal.slots
+    found[..., start : start + 3] = reading.hold - middle
+    found[..., start + 3 : start + 6] = command
+    places = found[..., start : start + 6]
+    np.minimum(np.maximum(places, -PLACE_BOUND, out=places), PLACE_BOUND, out=places)
+    found[..., start + 6 : start + 9] = goal.direction(reading)
+    return found.astype(np.float32)
+
+
+def _pybullet_hand() -> type:
+    from kinematify.envs.pybullet_hand import PybulletHand  # noqa: PLC0415 - it takes a second to load
+
+    return PybulletHand
+
+
+def make_open_part(**keywords: Any) -> OpenPartEnv:
+    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself."""
+    return OpenPartEnv(**keywords)

@@ -1,0 +1,98 @@
+"""OpenPart in PyBullet: the same hand as in MuJoCo, its force set anew in every step of the engine."""
+
+from __future__ import annotations
+
+import weakref
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pybullet as bullet
+
+from kinematify.envs.mujoco_hand import POSITION, hand_facts
+from kinematify.envs.pybullet_object import PybulletObject, disconnected
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.dynamics import Draw
+    from kinematify.envs.reading import Reading
+    from kinematify.envs.settings import EnvSettings
+    from kinematify.envs.thing import Target, Thing
+
+
+class PybulletHand:
+    """One world; see `kinematify.envs.worlds.World`."""
+
+    def __init__(self, thing: Thing, target: Target, control: str, settings: EnvSettings) -> None:
+        """Connect to a world of its own; `close` frees it."""
+        self.facts = hand_facts(thing, target, control)
+        self.object = PybulletObject(thing, target, self.facts.dynamics, settings)
+        self.client = self.object.client
+        self._close = weakref.finalize(self, partial(disconnected, self.client))
+        self._control, self._substeps = control, settings.time.substeps
+        self._stride = self.facts.speed * settings.time.control_step
+        self._lead = self.facts.force / self.facts.stiffness
+        self._wanted = np.zeros(3)
+
+    def draw(self, drawn: Draw) -> None:
+        """Redraw the object."""
+        self.object.apply(drawn)
+
+    def place(self, leaders: FloatArray) -> float:
+        """Set the object's joints and stop them; the hand's spring is slack."""
+        self.object.place(leaders)
+        self._wanted = self.object.hold()
+        return self.object.depth()
+
+    def act(self, action: FloatArray) -> None:
+        """Simulate until the next action."""
+        action = np.asarray(action, dtype=np.float64)
+        if self._control == POSITION:
+            hold = self.object.hold()
+            lead = self._wanted - hold + self._stride * action
+            self._wanted = hold + np.clip(lead, -self._lead, self._lead)
+        for _ in range(self._substeps):
+            hold, velocity = self.object.hold_motion()
+            self.object.push(self._force(action, hold, velocity), hold)
+            self.object.follow()
+            bullet.stepSimulation(physicsClientId=self.client)
+        self.object.look()
+
+    def _force(self, action: FloatArray, hold: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Of the hand, world axes [N], shape (3,)."""
+        facts = self.facts
+        if self._control != POSITION:
+            return facts.force * action
+        spring = facts.stiffness * (self._wanted - hold) - facts.spring_damping * velocity
+        return np.asarray(np.clip(spring, -facts.force, facts.force))
+
+    def reading(self) -> Reading:
+        """Return the state of the object."""
+        return self.object.reading()
+
+    def command(self) -> FloatArray:
+        """From the hold to where the hand wants it [m], zero in force control, shape (3,)."""
+        return self._wanted - self.object.hold() if self._control == POSITION else np.zeros(3)
+
+    def depth(self) -> float:
+        """Deepest contact of shapes that do not touch at rest [m]."""
+        return self.object.depth()
+
+    def stable(self) -> bool:
+        """True if all numbers are finite."""
+        reading = self.object.reading()
+        return bool(np.isfinite(reading.values).all() and np.isfinite(reading.speeds).all())
+
+    def warnings(self) -> dict[str, int]:
+        """PyBullet has none."""
+        return {}
+
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the object's links."""
+        return self.object.link_poses()
+
+    def close(self) -> None:
+        """Free the world."""
+        self._close()

@@ -1,0 +1,321 @@
+"""The object of an environment: read, made loadable, stood on the floor, and the way on which its joint opens."""
+
+from __future__ import annotations
+
+import difflib
+import shutil
+import tempfile
+import weakref
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
+from kinematify.errors import InputError
+from kinematify.model.output import MODEL_FILE
+from kinematify.validation.geometry.scene import read_scene, transformed
+from kinematify.validation.prepare.stage import prepare
+from kinematify.validation.read import read_model
+from kinematify.validation.settings import load_settings
+from kinematify.validation.task.grasp import moved_bodies, search_grasps
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.settings import HandSettings
+    from kinematify.validation.declared import DeclaredModel
+    from kinematify.validation.engines.mechanism import Travel
+    from kinematify.validation.geometry.scene import Scene
+    from kinematify.validation.prepare.prepared import Prepared
+
+AUTO = "auto"
+_PLINTH = 0.4  # objects whose parts swing below them stand so much higher [m]
+_WAY_SAMPLES = 33
+_LEAST_SHARE = 0.4  # of the longest way of the part: nobody pulls a lid next to its hinge
+_LEAST_WAY = 1e-4  # a part whose hold moves by less cannot be seen to open [m]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Thing:
+    """An object, its files in a folder that lives as long as it does."""
+
+    source: str
+    """The `model` keyword."""
+    urdf: Path
+    declared: DeclaredModel
+    scene: Scene
+    prepared: Prepared
+    T_world_root: FloatArray
+    """Root link with the object in the middle of the floor, shape (4, 4)."""
+    suggested: str
+    """Joint of a bundled object, or ``auto``."""
+    folder: Path
+    """Of everything that was written for it."""
+
+    @property
+    def travels(self) -> tuple[Travel, ...]:
+        """Joints that lead, in the order of the document."""
+        return self.scene.travels
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(travel.joint for travel in self.travels)
+
+    def leader(self, joint: str) -> int:
+        """Index of a joint among those that lead.
+
+        Raises:
+            InputError: There is none; the message lists all and suggests the nearest.
+        """
+        if joint in self.joints:
+            return self.joints.index(joint)
+        near = difflib.get_close_matches(joint, self.joints, n=1, cutoff=0.4)
+        hint = f"Did you mean {near[0]}? " if near else ""
+        raise InputError(
+            f"The model {self.source} has no joint {joint!r} that moves by itself. {hint}Give one of "
+            f"{', '.join(self.joints)}, or {AUTO}."
+        )
+
+    @cached_property
+    def farthest(self) -> str:
+        """Joint whose part moves farthest over its range, which is what people open."""
+        return max(self.joints, key=lambda joint: round(_longest_way(self, joint), 3))
+
+    @cached_property
+    def drawers(self) -> tuple[str, ...]:
+        """Joints that slide, those that go farthest first."""
+        slides = [travel.joint for travel in self.travels if not travel.turns]
+        return tuple(sorted(slides, key=lambda joint: -round(_longest_way(self, joint), 3)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Target:
+    """The joint that is opened, and the point at which its part is held."""
+
+    joint: str
+    leader: int
+    """Index among the joints that lead."""
+    turns: bool
+    closed: float
+    """Value at rest [rad or m]."""
+    opened: float
+    """Value at the far end of its range [rad or m]."""
+    link: str
+    """What it moves."""
+    point: FloatArray
+    """Where the part is held, frame of the link [m], shape (3,)."""
+    way: float
+    """Length of the way of that point from closed to opened [m]."""
+
+    @property
+    def range(self) -> float:
+        """Signed, from closed to opened [rad or m]."""
+        return self.opened - self.closed
+
+    def value(self, fraction: float) -> float:
+        """Value of the joint where a share of the way is open [rad or m]."""
+        return self.closed + fraction * self.range
+
+    @property
+    def path_ratio(self) -> float:
+        """Metres of the point per unit of the joint [m/rad or 1]."""
+        return self.way / abs(self.range)
+
+
+def load_thing(model: str | Path | None) -> Thing:
+    """Read the object that a `model` keyword names.
+
+    Args:
+        model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY``, or None for the default.
+
+    Raises:
+        InputError: There is no such model, it cannot be read, or nothing of it moves.
+    """
+    source = f"{PREFIX}{DEFAULT}" if model is None else str(model)
+    folder = Path(tempfile.mkdtemp(prefix="kinematify-env-"))
+    try:
+        thing = _read(source, folder)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    weakref.finalize(thing, shutil.rmtree, folder, ignore_errors=True)
+    return thing
+
+
+def _read(source: str, folder: Path) -> Thing:
+    suggested = AUTO
+    if source.startswith((PREFIX, FAMILY_PREFIX)):
+        bundled = find_bundled(source)
+        urdf, suggested = write_bundled(bundled, folder / "object"), bundled.joint
+    else:
+        urdf = urdf_of(source)
+    settings = load_settings()
+    declared = read_model(urdf)
+    scene = read_scene(declared, settings.geometry)
+    if not scene.travels:
+        raise InputError(
+            f"The model {source} has no joint that moves by itself, so there is nothing to open. Give a model with a "
+            "revolute, continuous or prismatic joint; kinematify infer finds the joints of separate parts."
+        )
+    work = folder / "prepared"
+    work.mkdir()
+    return Thing(
+        source=source,
+        urdf=urdf,
+        declared=declared,
+        scene=scene,
+        prepared=prepare(declared, work, settings.prepare),
+        T_world_root=_standing(scene),
+        suggested=suggested,
+        folder=folder,
+    )
+
+
+def urdf_of(source: str) -> Path:
+    """Return the URDF that a path names.
+
+    Raises:
+        InputError: There is none.
+    """
+    path = Path(source)
+    if path.is_dir():
+        path = path / MODEL_FILE
+    if not path.is_file():
+        raise InputError(
+            f"There is no model {source}. Give a URDF file, a folder that kinematify infer or generate has written, "
+            f"{PREFIX}NAME for an object that comes with the package, or {FAMILY_PREFIX}FAMILY."
+        )
+    return path.resolve()
+
+
+def find_target(thing: Thing, joint: str, hand: HandSettings) -> Target:
+    """Find where the part of a joint is held, and the way of that point.
+
+    The best hold for a gripper is taken, whatever its part is called; where there is none, the outermost point.
+
+    Args:
+        thing: The object.
+        joint: A joint that leads, or ``auto``.
+        hand: How wide a hold may be.
+
+    Raises:
+        InputError: There is no such joint, or it moves nothing.
+    """
+    if joint == AUTO:
+        joint = thing.suggested if thing.suggested != AUTO else thing.farthest
+    leader = thing.leader(joint)
+    opened = open_end(thing.travels[leader])
+    link = thing.declared.kinematics.joint_by_name[joint].child
+    point = _hold(thing, joint, opened, hand)
+    way = 0.0 if point is None else _length(_path(thing, joint, opened, point))
+    if point is None or way < _LEAST_WAY:
+        raise InputError(
+            f"The joint {joint} of the model {thing.source} moves nothing that could be seen to open. Give another of "
+            f"its joints: {', '.join(thing.joints)}."
+        )
+    travel = thing.travels[leader]
+    return Target(
+        joint=joint,
+        leader=leader,
+        turns=travel.turns,
+        closed=travel.rest,
+        opened=opened,
+        link=link,
+        point=point,
+        way=way,
+    )
+
+
+def open_end(travel: Travel) -> float:
+    """Value at the end of the range that is farther from rest; a quarter of a turn where there is no end [rad or m]."""
+    if not travel.limited:
+        return travel.rest + 0.5 * np.pi
+    return travel.upper if travel.upper - travel.rest >= travel.rest - travel.lower else travel.lower
+
+
+def _hold(thing: Thing, joint: str, opened: float, hand: HandSettings) -> FloatArray | None:
+    """Point in the frame of the joint's child link; None where the joint moves no geometry."""
+    settings = load_settings().task.grasp
+    grasps = search_grasps(thing.scene, joint, hand.opening, settings=settings).grasps
+    least = max(_LEAST_WAY, _LEAST_SHARE * _longest_way(thing, joint))
+    for grasp in grasps:
+        point = np.asarray(grasp.T_link_grasp[:3, 3])
+        if _length(_path(thing, joint, opened, point)) >= least:
+            return point
+    return _outermost(thing, joint, opened)
+
+
+def _outermost(thing: Thing, joint: str, opened: float) -> FloatArray | None:
+    """Corner of what a joint moves that goes farthest, of those the one that lies farthest out in that direction."""
+    corners = _corners(thing, joint)
+    if not len(corners):
+        return None
+    first, last = (_link_pose(thing, joint, value) for value in (thing.travels[thing.leader(joint)].rest, opened))
+    moves = transformed(corners, last) - transformed(corners, first)
+    lengths = np.linalg.norm(moves, axis=1)
+    far = np.flatnonzero(lengths >= 0.98 * lengths.max())
+    ahead = np.einsum("nd,nd->n", transformed(corners[far], first), moves[far])
+    return np.asarray(corners[far[int(ahead.argmax())]])
+
+
+def _corners(thing: Thing, joint: str) -> FloatArray:
+    """Corners of all bodies that a joint moves, frame of its child link at rest, shape (n, 3)."""
+    own, carried = moved_bodies(thing.scene, joint)
+    back = np.linalg.inv(_link_pose(thing, joint, thing.travels[thing.leader(joint)].rest))
+    found = [
+        transformed(shape, back @ thing.scene.at_rest[body])
+        for body in [*own, *carried]
+        for shape in thing.scene.bodies[body].shapes
+    ]
+    return np.concatenate(found) if found else np.empty((0, 3))
+
+
+def _longest_way(thing: Thing, joint: str) -> float:
+    """Longest way of a corner of what a joint moves [m]."""
+    corners = _corners(thing, joint)
+    if not len(corners):
+        return 0.0
+    travel = thing.travels[thing.leader(joint)]
+    poses = [_link_pose(thing, joint, value) for value in np.linspace(travel.rest, open_end(travel), 5)]
+    places = np.stack([transformed(corners, T) for T in poses])
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0).max())
+
+
+def _link_pose(thing: Thing, joint: str, value: float) -> FloatArray:
+    """Child link of a joint while the others rest, frame of the root link, shape (4, 4)."""
+    values = {travel.joint: travel.rest for travel in thing.travels} | {joint: value}
+    kinematics = thing.declared.kinematics
+    return forward_kinematics(kinematics, values)[kinematics.joint_by_name[joint].child]
+
+
+def _path(thing: Thing, joint: str, opened: float, point: FloatArray) -> FloatArray:
+    rest = thing.travels[thing.leader(joint)].rest
+    poses = [_link_pose(thing, joint, value) for value in np.linspace(rest, opened, _WAY_SAMPLES)]
+    return np.stack([T[:3, :3] @ point + T[:3, 3] for T in poses])
+
+
+def _length(path: FloatArray) -> float:
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+
+def _standing(scene: Scene) -> FloatArray:
+    """The object in the middle of the floor, on a plinth where one of its parts swings below it."""
+    rows = scene.mechanism.sweep(5)
+    poses = scene.poses(rows)
+    lowest = [
+        min(float(transformed(shape, T)[:, 2].min()) for body, T in zip(scene.bodies, row, strict=True)
+            for shape in body.shapes)
+        for row in poses
+    ]  # fmt: skip
+    corners = np.concatenate(
+        [transformed(s, T) for body, T in zip(scene.bodies, poses[0], strict=True) for s in body.shapes]
+    )
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    sinks = min(lowest) < low[2] - 0.01 * float(high[2] - low[2])
+    T_world_root = np.eye(4)
+    T_world_root[:3, 3] = [*(-0.5 * (low + high)[:2]), -min(lowest) + (_PLINTH if sinks else 0.0)]
+    return T_world_root

@@ -1,0 +1,85 @@
+"""What an environment asks of an engine."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from kinematify.envs.settings import load_settings
+from kinematify.envs.thing import find_target, load_thing
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.dynamics import Draw
+    from kinematify.envs.mujoco_hand import HandFacts
+    from kinematify.envs.reading import Reading
+    from kinematify.envs.thing import Target, Thing
+
+ENGINES = ("mujoco", "pybullet")
+
+
+class World(Protocol):
+    """One object in one engine, driven by a hand or a robot."""
+
+    def draw(self, drawn: Draw) -> None:
+        """Redraw the object."""
+
+    def place(self, leaders: FloatArray) -> float:
+        """Set the object's joints that lead, shape (J,) [rad or m], everything else to its start, and stop all.
+
+        Returns:
+            How much deeper than allowed two shapes are in each other at most [m].
+        """
+
+    def act(self, action: FloatArray) -> None:
+        """Simulate until the next action; `action` is within -1 and 1."""
+
+    def reading(self) -> Reading:
+        """Return the state of the object."""
+
+    def depth(self) -> float:
+        """How much deeper than allowed two shapes are in each other at most [m]."""
+
+    def stable(self) -> bool:
+        """True if all numbers are finite and the solver has not failed."""
+
+    def warnings(self) -> dict[str, int]:
+        """What the engine has warned of since `place`, with counts."""
+
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the object's links by name, of a robot's under ``robot `` and theirs, shape (4, 4) each."""
+
+    def close(self) -> None:
+        """Free what the engine holds."""
+
+
+class HandWorld(World, Protocol):
+    """An object and a hand without a robot."""
+
+    facts: HandFacts
+
+    def command(self) -> FloatArray:
+        """From the hold to where the hand wants it [m], zero in force control, shape (3,)."""
+
+
+def shared_thing(model: str | Path | None) -> Thing:
+    """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
+    path = Path(model) if isinstance(model, Path) or (isinstance(model, str) and Path(model).exists()) else None
+    file = path / "model.urdf" if path is not None and path.is_dir() else path
+    stamp = (file.stat().st_mtime_ns, file.stat().st_size) if file is not None and file.is_file() else None
+    return _loaded(None if model is None else str(model), stamp)
+
+
+@lru_cache(maxsize=8)
+def _loaded(model: str | None, stamp: tuple[int, int] | None) -> Thing:
+    del stamp
+    return load_thing(model)
+
+
+@lru_cache(maxsize=32)
+def shared_target(thing: Thing, joint: str) -> Target:
+    """Return the joint of a `joint` keyword, its hold searched once per process."""
+    return find_target(thing, joint, load_settings().hand)

@@ -1,0 +1,316 @@
+"""OpenPart: spaces as documented, engines that agree, success that cannot be cheated, clean bookkeeping."""
+
+from __future__ import annotations
+
+import pickle
+import re
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from kinematify.envs.bundled import BUNDLED
+from kinematify.envs.open_part import OpenPartEnv
+from kinematify.errors import EnvironmentFault, InputError
+from tests.envs.hands import OPEN_PART, run, steady, write_slider
+
+
+def documented_rows(cls: type) -> list[tuple[int, int, float, float]]:
+    """First and last index, lowest and highest of every row of the table of observations."""
+    text = (cls.__doc__ or "").split("## Observation space")[1].split("## Reward")[0]
+    rows = re.findall(
+        r"^ *\| (\d+)(?: to (\d+))? \| .* \| (-?[\d.]+) \| (-?[\d.]+) \| \S+ \|$", text, flags=re.MULTILINE
+    )
+    return [(int(a), int(b or a), float(low), float(high)) for a, b, low, high in rows]
+
+
+def test_the_documented_spaces_are_the_spaces() -> None:
+    env = OpenPartEnv()
+    rows = documented_rows(OpenPartEnv)
+    covered = [index for first, last, _, _ in rows for index in range(first, last + 1)]
+    assert covered == list(range(env.observation_space.shape[0]))
+    for first, last, low, high in rows:
+        assert set(env.observation_space.low[first : last + 1].tolist()) == {low}
+        assert set(env.observation_space.high[first : last + 1].tolist()) == {high}
+    doc = OpenPartEnv.__doc__ or ""
+    assert f"`Box((57,), {env.observation_space.dtype})`" in doc
+    assert f"`Box(-1, 1, {env.action_space.shape}, {env.action_space.dtype})`" in doc
+    settings = env.settings
+    assert gymnasium.spec(OPEN_PART.split(":")[1]).max_episode_steps == settings.time.episode_steps
+    numbers = {
+        f"after {settings.time.episode_steps} steps": "time",
+        f"of {settings.time.control_step:g} s": "time",
+        f"shares of {settings.hand.speed:g} ways": "hand",
+        f"{settings.hand.lag:.0%}".replace("%", " %"): "hand",
+        f"rest in {settings.hand.seconds:g} s": "hand",
+        f"{settings.reward.open:g} times the share": "reward",
+        f"plus {settings.reward.success:g} for success": "reward",
+        f"up to {settings.task.fast:g} ways per second": "task",
+        f"nothing at {2 * settings.task.fast:g}": "task",
+        f"faster than {settings.task.calm:g} ways": "task",
+        f"by {settings.task.forget:.0%}".replace("%", " %"): "task",
+        f"open by 0 to {settings.reset.start_open[1]:.0%}".replace("%", " %"): "reset",
+        f"than {settings.reset.depth:.1%}".replace("%", " %"): "reset",
+        f"factors {settings.randomize.damping[0]:g} to {settings.randomize.damping[1]:g}": "randomize",
+        f"factor {settings.randomize.mass[0]:g} to {settings.randomize.mass[1]:g}": "randomize",
+        f"{settings.randomize.position:g} m along": "randomize",
+        f"{settings.randomize.yaw:g} rad about": "randomize",
+        f"{settings.object.damping_rate:g} 1/s": "object",
+        f"{settings.object.friction_acceleration:g} m/s^2": "object",
+        f"{settings.object.hold:g} times what": "object",
+    }
+    flat = " ".join(doc.split())
+    assert [words for words in numbers if words not in flat] == []
+    _, info = env.reset(seed=0)
+    assert all(f"``{key}``" in doc for key in info)
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+@pytest.mark.parametrize("env_id", [OPEN_PART, "kinematify.envs:kinematify/OpenPart-Sparse-v0"])
+@pytest.mark.parametrize("control", ["force", "position"])
+def test_check_env_has_nothing_to_say(env_id: str, engine: str, control: str) -> None:
+    env = gymnasium.make(env_id, engine=engine, control=control, randomize=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(env.unwrapped, skip_render_check=True)  # pictures: test_picture.py
+    env.close()
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+@pytest.mark.parametrize("model", ["bundled:drawers", "bundled:door"])
+def test_a_steady_hand_opens_it_and_a_throw_is_not_paid(engine: str, model: str) -> None:
+    env = gymnasium.make(OPEN_PART, model=model, engine=engine)
+    total, info = run(env, steady, seed=1)
+    assert info["is_success"], info
+    assert not info["thrown"]
+    assert 50.0 < total < 100.0
+    assert info["max_penetration"] < 1e-3
+    thrown, info = run(env, lambda seen: (seen[0] < 0.6) * seen[54:57], seed=1)
+    assert info["thrown"], info
+    assert info["open_fraction"] > 0.85
+    assert not info["is_success"]
+    assert thrown < 5.0
+    env.close()
+
+
+def test_both_engines_tell_the_same_story() -> None:
+    """One file, one law of motion: after two seconds of the same forces the drawer stands in the same place."""
+    stories = []
+    for engine in ("mujoco", "pybullet"):
+        env = gymnasium.make(OPEN_PART, model="bundled:nightstand", engine=engine)
+        env.reset(seed=4)
+        rng = np.random.default_rng(0)
+        story = [env.step((rng.uniform(-0.4, 0.8) * np.array([0.0, -1.0, 0.0])).astype(np.float32)) for _ in range(40)]
+        stories.append(np.array([step[0][0] for step in story]))
+        env.close()
+    assert stories[0].max() > 0.3
+    assert np.abs(stories[0] - stories[1]).max() < 0.02
+
+
+def test_sparse_pays_for_success_alone() -> None:
+    env = gymnasium.make("kinematify.envs:kinematify/OpenPart-Sparse-v0", terminate_on_success=True)
+    total, info = run(env, steady, seed=1)
+    assert total == 1.0
+    assert info["is_success"]
+
+
+_TRACE = """
+import gymnasium, numpy as np
+for engine in ("mujoco", "pybullet"):
+    env = gymnasium.make("kinematify.envs:kinematify/OpenPart-v0", model="bundled:box", engine=engine, randomize=True)
+    env.action_space.seed(3)
+    rows = [env.reset(seed=7)[0]] + [env.step(env.action_space.sample())[0] for _ in range(60)]
+    print("TRACE", np.array(rows).tobytes().hex())
+"""
+
+
+def test_two_processes_roll_out_the_same_numbers() -> None:
+    traces = []
+    for _ in range(2):
+        done = subprocess.run([sys.executable, "-c", _TRACE], capture_output=True, text=True, check=True)
+        traces.append([line for line in done.stdout.splitlines() if line.startswith("TRACE")])
+    assert len(traces[0]) == 2
+    assert traces[0] == traces[1]
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+def test_a_seed_forgets_what_was_before(engine: str) -> None:
+    env = gymnasium.make(OPEN_PART, engine=engine, randomize=True)
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1.0, 1.0, (20, 3)).astype(np.float32)
+    stories = []
+    for _ in range(2):
+        env.reset(seed=11)
+        stories.append(np.array([env.step(action)[0] for action in actions]))
+        run(env, steady, seed=5)
+    np.testing.assert_array_equal(stories[0], stories[1])
+    env.close()
+
+
+def test_a_pickled_environment_is_the_same_environment() -> None:
+    env = OpenPartEnv("bundled:box", control="position", randomize=["mass"])
+    copy = pickle.loads(pickle.dumps(env))
+    action = np.array([0.1, -0.5, 0.3], dtype=np.float32)
+    for each in (env, copy):
+        each.reset(seed=2)
+    np.testing.assert_array_equal(env.step(action)[0], copy.step(action)[0])
+
+
+def test_make_vec_in_processes() -> None:
+    import kinematify.envs
+
+    envs = gymnasium.make_vec(kinematify.envs.OPEN_PART, 2, vectorization_mode="async", engine="pybullet")
+    observation, _ = envs.reset(seed=0)
+    assert observation.shape == (2, 57)
+    observation, reward, *_ = envs.step(envs.action_space.sample())
+    assert np.isfinite(observation).all()
+    assert reward.shape == (2,)
+    envs.close()
+
+
+def test_reset_options() -> None:
+    env = OpenPartEnv("bundled:nightstand")
+    observation, info = env.reset(seed=0, options={"open_fraction": 0.5})
+    assert info["open_fraction"] == pytest.approx(0.5)
+    assert observation[0] == pytest.approx(0.5)
+    observation, info = env.reset(seed=0, options={"joint": "door_1_joint", "qpos": {"drawer_1_joint": 0.1}})
+    assert info["joint"] == "door_1_joint"
+    assert info["open_fraction"] == pytest.approx(0.0)
+    assert observation[1] == pytest.approx(0.1 / env.thing.travels[1].upper)
+    _, info = env.reset(seed=0)
+    assert info["joint"] == "drawer_1_joint"
+    for options, words in (
+        ({"qpos": {"drawer_1_joint": 3.0}}, "range"),
+        ({"open_fraction": 1.5}, "from 0 to 1"),
+        ({"speed": 1}, "do not exist"),
+        ({"joint": "drawer_9_joint"}, "Did you mean drawer_1_joint"),
+    ):
+        with pytest.raises(InputError, match=words):
+            env.reset(options=options)
+
+
+def test_what_is_randomised_and_what_is_not() -> None:
+    env = OpenPartEnv("bundled:drawers", randomize=["mass", "pose"])
+    model = env.hand.model
+    seen = []
+    for seed in (0, 1):
+        env.reset(seed=seed)
+        seen.append(
+            (model.body_mass.copy(), model.body_pos.copy(), model.dof_damping.copy(), model.dof_frictionloss.copy())
+        )
+    for before, after, differ in zip(*seen, (True, True, False, False), strict=True):
+        assert bool((before != after).any()) is differ
+    ratio = seen[0][0][1:] / OpenPartEnv("bundled:drawers").hand.model.body_mass[1:]
+    assert 0.79 < ratio.min() < ratio.max() < 1.26
+
+
+def test_the_objects_own_damping_and_friction_are_kept(tmp_path: Path) -> None:
+    env = OpenPartEnv(write_slider(tmp_path / "slider.urdf"))
+    assert env.hand.model.dof_damping.tolist() == [4.0]
+    assert env.hand.model.dof_frictionloss.tolist() == [1.0]
+    assert env.validation in {"pass", "warn"}
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+def test_nothing_leaks_over_a_thousand_resets(engine: str) -> None:
+    env = OpenPartEnv("bundled:box", engine=engine, randomize=True)
+
+    def resident() -> int:
+        return int(Path("/proc/self/statm").read_text("ascii").split()[1]) * 4096
+
+    for k in range(50):
+        env.reset(seed=k)
+    before = resident()
+    for k in range(1000):
+        env.reset(seed=k)
+    assert resident() - before < 8e6
+    env.close()
+
+
+def test_close_frees_the_engine() -> None:
+    import pybullet
+
+    worlds = [OpenPartEnv("bundled:box", engine="pybullet") for _ in range(3)]
+    clients = [env._world.client for env in worlds]
+    assert all(pybullet.isConnected(client) for client in clients)
+    for env in worlds:
+        env.close()
+        env.close()
+    assert not any(pybullet.isConnected(client) for client in clients)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "words"),
+    [
+        ({"joint": "drawr_1_joint"}, "Did you mean drawer_1_joint.*drawer_2_joint, drawer_3_joint"),
+        ({"engine": "bullet"}, "'mujoco', 'pybullet'"),
+        ({"control": "torque"}, "'force', 'position'"),
+        ({"reward": "shaped"}, "'dense', 'sparse'"),
+        ({"open_fraction": 0.0}, "above 0"),
+        ({"randomize": ["gravity"]}, "damping, friction, mass, pose, color"),
+        ({"robot": "arm.urdf"}, "DrawerPull"),
+        ({"render_mode": "ansi"}, "rgb_array"),
+        ({"model": "nowhere.urdf"}, "There is no model nowhere.urdf"),
+        ({"model": "bundled:drawer"}, "Did you mean bundled:drawers"),
+        ({"model": "procedural:ovn"}, "Did you mean procedural:oven"),
+    ],
+)
+def test_impossible_keywords_are_refused(keywords: dict[str, object], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        gymnasium.make(OPEN_PART, **keywords)
+
+
+def test_a_model_without_movable_joints_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="nothing to open"):
+        OpenPartEnv(write_slider(tmp_path / "stiff.urdf", kind="fixed"))
+
+
+def test_a_model_that_fails_validation_is_refused_unless_asked_for(tmp_path: Path) -> None:
+    wall = """<link name="wall"><collision><geometry><box size="0.4 0.02 0.2"/></geometry></collision></link>
+  <joint name="wall_joint" type="fixed"><parent link="body"/><child link="wall"/><origin xyz="0 -0.3 0"/></joint>"""
+    model = write_slider(tmp_path / "walled.urdf", extra=wall)
+    with pytest.raises(InputError, match=r"does not pass kinematify validate: KV\d+.*allow_invalid=True"):
+        OpenPartEnv(model)
+    env = OpenPartEnv(model, allow_invalid=True)
+    assert env.reset(seed=0)[1]["validation"] == "fail"
+    _, info = run(gymnasium.make(OPEN_PART, model=model, allow_invalid=True), steady, seed=0)
+    assert info["open_fraction"] < 0.6  # real contacts: the wall is in the way
+
+
+def test_a_window_without_a_screen_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    with pytest.raises(EnvironmentFault, match="rgb_array"):
+        gymnasium.make(OPEN_PART, render_mode="human")
+
+
+@pytest.mark.parametrize("model", BUNDLED)
+def test_every_bundled_object_stands_still_until_it_is_pushed(model: str) -> None:
+    env = OpenPartEnv(f"bundled:{model}")
+    env.reset(seed=0, options={"open_fraction": 0.0})
+    for _ in range(20):
+        observation, _, _, _, info = env.step(np.zeros(3, dtype=np.float32))
+    assert abs(info["open_fraction"]) < 0.01
+    assert np.abs(observation[16:32]).max() < 0.02
+    assert info["warnings"] == {}
+    assert info["max_penetration"] < 1e-3
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+@pytest.mark.parametrize("model", ["bundled:box", "bundled:door"])
+def test_full_force_against_the_ends_of_the_range_does_not_push_through(model: str, engine: str) -> None:
+    env = OpenPartEnv(model, engine=engine)
+    observation, _ = env.reset(seed=0)
+    for sign in (-1.0, 1.0):
+        shares = []
+        for _ in range(60):
+            observation, *_ = env.step((sign * observation[54:57]).astype(np.float32))
+            shares.append(float(observation[0]))
+        assert min(shares) > -0.02, sign
+        assert max(shares) < 1.02, sign
+    env.close()
