@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.report import JointSummary
+    from kinematify.validation.report import Summary
     from kinematify.validation.stage import StageRequest
 
 _SHOWN = 200
@@ -70,7 +70,7 @@ class StageEnd:
     """How a stage ended."""
 
     stage: Stage
-    told: tuple[CheckResult | JointSummary, ...]
+    told: tuple[CheckResult | Summary, ...]
     failure: str | None
     """Why it did not end by itself, as words that follow "because"; None if it did."""
     seconds: float
@@ -81,7 +81,7 @@ class _Running:
     stage: Stage
     process: BaseProcess
     started: float
-    told: list[CheckResult | JointSummary]
+    told: list[CheckResult | Summary]
 
 
 def start_server() -> None:

@@ -32,6 +32,54 @@ class JointSummary:
 
 
 @dataclass(frozen=True, kw_only=True)
+class JointCurve:
+    """How one engine drove a joint from rest to one end, at some looks on the way."""
+
+    joint: str
+    engine: str
+    upper: bool
+    """True towards the upper end."""
+    commanded: tuple[float, ...]
+    """[rad or m]."""
+    reached: tuple[float, ...]
+    """[rad or m]."""
+    force: tuple[float, ...]
+    """Of the servo [N m or N]."""
+    depth: tuple[float, ...]
+    """How much deeper than allowed any two links are in each other [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairSummary:
+    """What the exact geometry knows of two bodies that touch, or that something is to be said of."""
+
+    pair: tuple[str, str]
+    """In the order of the document."""
+    reason: str | None
+    """Why their contact is tolerated; None if it is not."""
+    at_rest: float
+    """Depth at rest [m]."""
+    tolerated: float
+    """Depth up to which nothing is reported [m]."""
+    meets: tuple[tuple[str, float, float], ...] = ()
+    """Joint, value where it begins [rad or m], and the depth that comes of it [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairTable:
+    """Which bodies meet which, by exact geometry."""
+
+    bodies: tuple[str, ...]
+    """All that have geometry, in the order of the tree."""
+    pairs: tuple[PairSummary, ...]
+    """Those that touch at rest or meet on the way; all others stay clear in what was looked at."""
+
+
+Summary = JointSummary | JointCurve | PairTable
+"""What a stage may tell besides its checks."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class ValidationReport:
     """The result for one model."""
 
@@ -39,6 +87,10 @@ class ValidationReport:
     """Path as it was given."""
     checks: tuple[CheckResult, ...]
     joints: tuple[JointSummary, ...] = ()
+    curves: tuple[JointCurve, ...] = ()
+    """As the engines drove the joints, those that ran."""
+    pairs: PairTable | None = None
+    """None if the exact geometry was not looked at."""
     environment: Mapping[str, Any] = field(default_factory=dict)
     """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
 

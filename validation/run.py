@@ -26,7 +26,7 @@ from kinematify.validation.plan import (
     task_stage,
 )
 from kinematify.validation.precheck.document import precheck
-from kinematify.validation.report import JointSummary, ValidationReport
+from kinematify.validation.report import JointCurve, JointSummary, PairTable, ValidationReport
 from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.suppression import suppress
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from kinematify.validation.catalogue import Check
     from kinematify.validation.isolation import StageEnd
     from kinematify.validation.plan import CheckKey
+    from kinematify.validation.report import Summary
     from kinematify.validation.settings import ValidationSettings
     from kinematify.validation.suppression import Suppression
     from kinematify.validation.task.request import TaskRequest
@@ -127,6 +128,8 @@ class _Run:
         self._progress = progress or (lambda stage, fraction: None)
         self._results: dict[CheckKey, CheckResult] = {}
         self._joints: dict[str, JointSummary] = {}
+        self._curves: list[JointCurve] = []
+        self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
         self._failures: dict[str, str] = {}
         self._started = time.perf_counter()
@@ -205,12 +208,21 @@ class _Run:
         checks = suppress([self._result(key) for key in keys(list(_checks(self.task).values()))], suppressions)
         facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
         return ValidationReport(
-            model=str(self.path), checks=checks, joints=tuple(self._joints.values()), environment=facts
+            model=str(self.path),
+            checks=checks,
+            joints=tuple(self._joints.values()),
+            curves=tuple(self._curves),
+            pairs=self._pairs,
+            environment=facts,
         )
 
-    def _take(self, told: CheckResult | JointSummary) -> None:
+    def _take(self, told: CheckResult | Summary) -> None:
         if isinstance(told, JointSummary):
             self._joints[told.joint] = _merged(self._joints.get(told.joint), told)
+        elif isinstance(told, JointCurve):
+            self._curves.append(told)
+        elif isinstance(told, PairTable):
+            self._pairs = told
         else:
             self._results[told.check, told.engine] = told
 

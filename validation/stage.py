@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.validation.finding import Blame
-    from kinematify.validation.report import JointSummary
+    from kinematify.validation.report import Summary
     from kinematify.validation.settings import ValidationSettings
     from kinematify.validation.task.request import Suspicion, TaskRequest
 
@@ -116,7 +116,7 @@ class OpenCheck:
 class Recorder:
     """Collects what a stage has to say and passes it on at once."""
 
-    def __init__(self, tell: Callable[[CheckResult | JointSummary], None], selected: frozenset[str]) -> None:
+    def __init__(self, tell: Callable[[CheckResult | Summary], None], selected: frozenset[str]) -> None:
         """Keep where results go and which checks are wanted."""
         self._tell = tell
         self._selected = selected
@@ -141,9 +141,9 @@ class Recorder:
         if name in self._selected:
             self._tell(_closed(check, time.perf_counter() - start))
 
-    def summarise(self, joint: JointSummary) -> None:
-        """Tell what is known of a joint; later summaries of the same joint add to earlier ones."""
-        self._tell(joint)
+    def summarise(self, summary: Summary) -> None:
+        """Tell what is known of a joint or a pair; later summaries of the same joint add to earlier ones."""
+        self._tell(summary)
 
 
 def _closed(check: OpenCheck, seconds: float) -> CheckResult:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -16,9 +16,16 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Self
 
-_RESULT = TypeAdapter(JobResult)
+
+class _Keyed(Protocol):
+    @property
+    def key(self) -> str: ...
+
+
+_Result = TypeVar("_Result", bound=_Keyed)
+RESULT = TypeAdapter(JobResult)
 _PACKAGE = Path(__file__).resolve().parents[1]
-_NO_INFLUENCE = {"cli", "envs", "validation", "batch.py", "refine.py"}
+_NO_INFLUENCE = {"cli", "envs", "nightly", "validation", "batch.py", "refine.py"}
 """Parts of the package that stand to the right of the inference."""
 _REPORTING = {
     f"benchmark/{name}.py"
@@ -27,11 +34,12 @@ _REPORTING = {
 """Parts of the benchmark that run jobs or show their results."""
 
 
-class Ledger:
+class Ledger(Generic[_Result]):
     """Results of a work folder; a context manager that keeps the file open for appending."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, adapter: TypeAdapter[_Result]) -> None:
         self.path = path
+        self._adapter = adapter
 
     def __enter__(self) -> Self:
         try:
@@ -50,21 +58,21 @@ class Ledger:
     ) -> None:
         self._file.close()
 
-    def read(self) -> dict[str, JobResult]:
+    def read(self) -> dict[str, _Result]:
         """Return the results so far by key; lines that an older version wrote are passed over."""
         self._file.seek(0)
         results = {}
         for line in self._file.read().splitlines():
             try:
-                result = _RESULT.validate_json(line)
+                result = self._adapter.validate_json(line)
             except ValidationError:
                 continue
             results[result.key] = result
         return results
 
-    def append(self, result: JobResult) -> None:
+    def append(self, result: _Result) -> None:
         """Add a result; it is on disk when this returns."""
-        self._file.write(_RESULT.dump_json(result) + b"\n")
+        self._file.write(self._adapter.dump_json(result) + b"\n")
         self._file.flush()
         os.fsync(self._file.fileno())
 

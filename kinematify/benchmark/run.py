@@ -9,11 +9,11 @@ import shlex
 import sys
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from kinematify.benchmark.datasets import CONDITIONS, BenchObject, Condition, find_objects
 from kinematify.benchmark.job import INFER, Job, JobResult
-from kinematify.benchmark.ledger import Ledger, code_version
+from kinematify.benchmark.ledger import RESULT, Ledger, code_version
 from kinematify.benchmark.workers import run_jobs
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
@@ -23,6 +23,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     Progress = Callable[[str, float], None]
+
+
+class _OfObject(Protocol):
+    @property
+    def object(self) -> str: ...
+
 
 DEFAULT_TIMEOUT = 900.0
 """Wall time for one object [s]; H1 is allowed 40 s."""
@@ -107,7 +113,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
     version_hash = code_version()
     keyed = [(job.key(version_hash), job) for job in jobs]
     total = len({key for key, _ in keyed})
-    with Ledger(request.work_folder / "jobs.jsonl") as ledger:
+    with Ledger(request.work_folder / "jobs.jsonl", RESULT) as ledger:
         if request.fresh:
             ledger.clear()
         results = ledger.read()
@@ -123,7 +129,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
                 progress(_line(result), finished / total)
     # Two labels can name the same configuration, which is run once.
     ordered = tuple(replace(results[key], variant=job.variant) for key, job in keyed)
-    return BenchmarkReport(header=_header(request, ordered), results=ordered)
+    return BenchmarkReport(header=header_of(request, ordered), results=ordered)
 
 
 def changed(config: Config, changes: Mapping[str, Any]) -> Config:
@@ -151,9 +157,27 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         raise ConfigError(f"The changes {dict(changes)} do not fit configuration {config.name}: {error}.") from error
 
 
+def selected_objects(request: BenchmarkRequest) -> list[BenchObject]:
+    """Objects that a request asks for.
+
+    Raises:
+        InputError: There is no such data or object.
+    """
+    return _selected(find_objects(request.data), request.only)
+
+
+def selected_conditions(request: BenchmarkRequest) -> list[Condition]:
+    """Conditions that a request asks for.
+
+    Raises:
+        InputError: There is no such condition.
+    """
+    return [_condition(name) for name in request.conditions]
+
+
 def _jobs(request: BenchmarkRequest) -> list[Job]:
-    objects = _selected(find_objects(request.data), request.only)
-    conditions = [_condition(name) for name in request.conditions]
+    objects = selected_objects(request)
+    conditions = selected_conditions(request)
     return [
         Job(item=item, condition=condition, variant=variant.label, config=config, infer=request.infer)
         for variant, config in [(variant, variant.load()) for variant in request.variants]
@@ -196,7 +220,8 @@ def _line(result: JobResult) -> str:
     return f"{place}: {result.status}, {result.message}"
 
 
-def _header(request: BenchmarkRequest, results: Sequence[JobResult]) -> dict[str, Any]:
+def header_of(request: BenchmarkRequest, results: Sequence[_OfObject]) -> dict[str, Any]:
+    """Command, date, versions, machine, seeds, number of objects."""
     seeds = {condition.seed for condition in CONDITIONS if condition.name in request.conditions}
     return {
         "command": _command(),

@@ -21,7 +21,14 @@ from kinematify.validation.engines.mujoco_drive import drive_all, set_up
 from kinematify.validation.engines.mujoco_free import drop, hold_and_release, release_finely
 from kinematify.validation.engines.mujoco_measure import measure
 from kinematify.validation.engines.mujoco_runs import around_fastest
-from kinematify.validation.engines.outcome import Case, Driven, find_escapes, find_penetrations, find_unreached
+from kinematify.validation.engines.outcome import (
+    Case,
+    Driven,
+    find_escapes,
+    find_penetrations,
+    find_unreached,
+    tell_curves,
+)
 from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.finding import Blame
 
@@ -157,6 +164,7 @@ def _tell_driven(recorder: Recorder, work: MujocoWork, bench: Bench | None, seen
         if _ready(check, work, bench) and bench is not None:
             session = drive_all(bench, seen, lambda: work.request.remaining)
             work.ends += _ends(work, session)
+            tell_curves(recorder, work.case(session.sweep), session.driven, ENGINE)
             find_unreached(check, work.case(session.sweep), session.driven)
             _say_left(check, session)
     tellers: dict[str, Callable[[OpenCheck, Case, Sequence[Driven]], None]]

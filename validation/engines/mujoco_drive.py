@@ -175,6 +175,8 @@ class _Record:
     beyond: float
     looks: FloatArray
     """Values of all joints on the way, the last where the joint stands at last, shape (_LOOKS, J)."""
+    way: FloatArray
+    """Command, value [rad or m] and force of the driven joint at these looks, shape (3, _LOOKS)."""
     fastest: FloatArray
     """Values of all joints right before and after the step with most motion, shape (2, J)."""
     warnings: tuple[str, ...]
@@ -211,6 +213,7 @@ def _record(bench: Bench, drive: Drive, runs: Trajectories, run: int, control: F
         lag=float(np.abs(drive.reference - q)[way].max()),
         beyond=float(np.max(outward * (q[arrived:] - drive.end))),
         looks=runs.q[run, looks],
+        way=np.stack([drive.reference[looks], q[looks], np.clip(force[looks], -strongest, strongest)]),
         fastest=around_fastest(runs, run, bench.inertia),
         warnings=runs.warnings[run],
     )
@@ -237,4 +240,5 @@ def _driven(record: _Record, excess: FloatArray) -> Driven:
         beyond=record.beyond,
         excess=excess.max(axis=1),
         at_end=excess[:, -1],
+        looks=np.vstack([record.way, excess.max(axis=0, initial=0.0)]),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from kinematify.validation.engines.mechanism import sweep_rows
 from kinematify.validation.engines.touching import stand_in_error, stand_in_reason
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.validation.engines.touching import Touching
     from kinematify.validation.prepare.prepared import Prepared
     from kinematify.validation.settings import EngineSettings
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.stage import OpenCheck, Recorder
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,6 +41,9 @@ class Driven:
     """How much deeper than allowed each pair of `Touching` gets on the way [m], shape (pairs,)."""
     at_end: FloatArray
     """The same where the joint stands at last, shape (pairs,)."""
+    looks: FloatArray
+    """What is drawn of the way: command, value [rad or m], force [N m or N] and depth beyond what is allowed [m] at
+    each look, shape (4, looks)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -117,6 +121,23 @@ def _find_overlap(check: OpenCheck, case: Case, index: int) -> None:
         limit=case.sweep.tolerance,
         unit="m",
     )
+
+
+def tell_curves(recorder: Recorder, case: Case, driven: Sequence[Driven], engine: str) -> None:
+    """Tell how the joints were driven, for whoever draws it."""
+    for item in driven:
+        commanded, reached, force, depth = (tuple(map(float, row)) for row in item.looks)
+        recorder.summarise(
+            JointCurve(
+                joint=case.travel(item).joint,
+                engine=engine,
+                upper=bool(item.drive.end == case.travel(item).upper),
+                commanded=commanded,
+                reached=reached,
+                force=force,
+                depth=depth,
+            )
+        )
 
 
 def find_unreached(check: OpenCheck, case: Case, driven: Sequence[Driven]) -> None:

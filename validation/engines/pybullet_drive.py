@@ -178,6 +178,8 @@ class _Record:
     beyond: float
     looks: FloatArray | None
     """Values of all joints on the way, the last where the joint stands at last, shape (_LOOKS, J); None: diverged."""
+    way: FloatArray
+    """Command, value [rad or m] and force of the driven joint at these looks, shape (3, looks)."""
     against: frozenset[tuple[int, int]]
     """Pairs of bodies that press against each other there, smaller index first."""
     fastest: float
@@ -191,7 +193,7 @@ def _drive(bench: Bench, acting: PybulletModel, drive: Drive) -> _Record:
     acting.act(pairs, on=True)
     motors = Motors(acting, bench)
     looks = set((np.linspace(drive.arrived / _LOOKS, drive.arrived, _LOOKS).astype(int) - 1).tolist())
-    values, forces, seen, fastest = [], [], [], 0.0
+    values, forces, seen, way, fastest = [], [], [], [], 0.0
     against: frozenset[tuple[int, int]] = frozenset()
     motors.hold(_UNLIMITED)
     for step, (target, speed) in enumerate(zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)):
@@ -205,6 +207,7 @@ def _drive(bench: Bench, acting: PybulletModel, drive: Drive) -> _Record:
         forces.append(abs(torques[column]))
         if step in looks:
             seen.append(q)
+            way.append((drive.reference[step], q[column], torques[column]))
             fastest = max(fastest, fastest_link(acting))
         if step == drive.arrived - 1:
             against = acting.touching_bodies()
@@ -219,6 +222,7 @@ def _drive(bench: Bench, acting: PybulletModel, drive: Drive) -> _Record:
         lag=float(np.abs(drive.reference[:arrived] - moved[:arrived]).max()) if whole else np.nan,
         beyond=float(np.max((outward or _side(bench, drive)) * (moved[arrived:] - drive.end))) if whole else np.nan,
         looks=np.array(seen) if whole else None,
+        way=np.array(way).reshape(-1, 3).T,
         against=against,
         fastest=fastest,
     )
@@ -311,6 +315,7 @@ def _driven(bench: Bench, record: _Record, sweep: Touching, excess: FloatArray) 
         beyond=record.beyond,
         excess=excess.max(axis=1),
         at_end=np.where(pressed, np.maximum(excess[:, -1], 0.0), excess[:, -1]),
+        looks=np.vstack([record.way, excess.max(axis=0, initial=0.0)]),
     )
     body = bench.mechanism.body_of_link
     silent = {tuple(sorted((int(body[a]), int(body[b])))) for a, b in bench.at_rest}

@@ -30,6 +30,7 @@ from kinematify.validation.engines.outcome import (
     find_overlaps,
     find_penetrations,
     find_unreached,
+    tell_curves,
 )
 from kinematify.validation.engines.placed import find_misplaced, link_poses
 from kinematify.validation.engines.pybullet_drive import drive_all, set_up
@@ -280,6 +281,7 @@ def _tell_driven(recorder: Recorder, work: _Work, bench: Bench) -> None:
             session = drive_all(bench, acting, work.seen, lambda: work.request.remaining)
             acting.disconnect()
             _keep_drives(work, session)
+            tell_curves(recorder, work.case(session.sweep), session.driven, ENGINE)
             find_unreached(check, work.case(session.sweep), session.driven)
             _say_left(check, session)
     tellers: dict[str, Callable[[OpenCheck, Case, Sequence[Driven]], None]]

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import base64
 import json
-from html import escape
 from typing import TYPE_CHECKING
 
 from kinematify.validation.finding import Blame, Severity, Status
-from kinematify.validation.formats.html_frame import SCRIPT, STYLE
+from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
     alternative,
@@ -17,21 +16,20 @@ from kinematify.validation.formats.text import (
     figures,
     joint_range,
     measure,
-    printable,
     title,
     where,
 )
 from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
 
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-"""A name in a URDF must not be able to make the page load or run anything."""
+_COUNTS = ("", "", "number", "number", "number", "number", "number")
+"""Classes of the columns of the table of families."""
 
 
 def as_html(outcomes: Sequence[Outcome], pictures: Mapping[str, bytes]) -> str:
@@ -41,18 +39,14 @@ def as_html(outcomes: Sequence[Outcome], pictures: Mapping[str, bytes]) -> str:
         outcomes: In the order of the models.
         pictures: PNG of a model, keyed by its path as given; may lack some.
     """
-    parts = [
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">',
-        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>kinematify validate: {_text(_headline(outcomes))}</title><style>{STYLE}</style></head><body>",
-        f"<h1>kinematify validate: {_text(_headline(outcomes))}</h1>",
+    title_text = f"kinematify validate: {_headline(outcomes)}"
+    body = [
+        f"<h1>{text(title_text)}</h1>",
         _contents(outcomes) if len(outcomes) > 1 else "",
         _filters(outcomes),
         *(_section(index, outcome, pictures.get(outcome.model, b"")) for index, outcome in enumerate(outcomes)),
-        f"<script>{SCRIPT}</script></body></html>\n",
     ]
-    return "\n".join(part for part in parts if part)
+    return page(title_text, body)
 
 
 def _headline(outcomes: Sequence[Outcome]) -> str:
@@ -65,13 +59,18 @@ def _headline(outcomes: Sequence[Outcome]) -> str:
 def _contents(outcomes: Sequence[Outcome]) -> str:
     rows = [
         (
-            f'<a href="#model-{index}">{_text(outcome.model)}</a>',
-            _badge(outcome.verdict),
+            f'<a href="#model-{index}">{text(outcome.model)}</a>',
+            badge(outcome.verdict),
             *(("", "", "") if isinstance(outcome, Unusable) else map(str, _severities(outcome))),
         )
         for index, outcome in enumerate(outcomes)
     ]
-    return _table(("model", "verdict", "errors", "warnings", "notes"), rows)
+    return table(
+        ("model", "verdict", "errors", "warnings", "notes"),
+        rows,
+        name="models",
+        classes=("", "", "number", "number", "number"),
+    )
 
 
 def _severities(report: ValidationReport) -> tuple[int, ...]:
@@ -95,20 +94,20 @@ def _box(kind: str, value: str) -> str:
 
 
 def _section(index: int, outcome: Outcome, picture: bytes) -> str:
-    heading = f'<h2 id="model-{index}">{_badge(outcome.verdict)} {_text(outcome.model)}</h2>'
+    heading = f'<h2 id="model-{index}">{badge(outcome.verdict)} {text(outcome.model)}</h2>'
     if isinstance(outcome, Unusable):
-        return f"<section>{heading}<p>{_text(outcome.message)}</p></section>"
+        return f"<section>{heading}<p>{text(outcome.message)}</p></section>"
     parts = [
         heading,
-        f"<p>{_text(_summary(outcome))}</p>",
+        f"<p>{text(_summary(outcome))}</p>",
         _picture(picture),
         "<h3>Families</h3>",
-        _table(FAMILY_HEADINGS, _family_cells(outcome)),
+        table(FAMILY_HEADINGS, _family_cells(outcome), name=f"families-{index}", classes=_COUNTS),
         "<h3>Findings</h3>",
         "".join(_finding(item) for item in outcome.findings if not _is_pair_note(item)) or "<p>None.</p>",
-        _joints(outcome),
-        _pairs(outcome),
-        _checks(outcome),
+        _joints(index, outcome),
+        _pairs(index, outcome),
+        _checks(index, outcome),
         _environment(outcome),
     ]
     return "<section>" + "\n".join(part for part in parts if part) + "</section>"
@@ -136,7 +135,7 @@ def _picture(png: bytes) -> str:
 
 
 def _family_cells(report: ValidationReport) -> list[tuple[str, ...]]:
-    return [tuple(map(_text, row)) for row in family_rows(report)]
+    return [tuple(map(text, row)) for row in family_rows(report)]
 
 
 def _finding(finding: Finding) -> str:
@@ -152,21 +151,21 @@ def _finding(finding: Finding) -> str:
     return (
         f'<div class="finding {finding.severity.value}{" suppressed" if shut else ""}" '
         f'data-severity="{finding.severity.value}" data-blame="{finding.blame.value}">'
-        f"<p><strong>{finding.severity.value} {_text(title(finding))}</strong></p>"
-        f'<p class="faint">{_text("; ".join(fact for fact in facts if fact))}</p>'
-        f"<p>{_text(finding.message)}</p><p>Remedy: {_text(finding.remedy)}</p>"
-        + (f"<p>Suppressed: {_text(finding.suppressed or '')}</p>" if shut else "")
+        f"<p><strong>{finding.severity.value} {text(title(finding))}</strong></p>"
+        f'<p class="faint">{text("; ".join(fact for fact in facts if fact))}</p>'
+        f"<p>{text(finding.message)}</p><p>Remedy: {text(finding.remedy)}</p>"
+        + (f"<p>Suppressed: {text(finding.suppressed or '')}</p>" if shut else "")
         + "</div>"
     )
 
 
-def _joints(report: ValidationReport) -> str:
+def _joints(index: int, report: ValidationReport) -> str:
     if not report.joints:
         return ""
     rows = [
         tuple(
             map(
-                _text,
+                text,
                 (
                     joint.joint,
                     joint.kind,
@@ -179,16 +178,16 @@ def _joints(report: ValidationReport) -> str:
         for joint in report.joints
     ]
     headings = ("joint", "type", "declared limits", "free travel", "better alternative")
-    return "<h3>Joints</h3>" + _table(headings, rows)
+    return "<h3>Joints</h3>" + table(headings, rows, name=f"joints-{index}")
 
 
-def _pairs(report: ValidationReport) -> str:
+def _pairs(index: int, report: ValidationReport) -> str:
     """Notes about pairs, such as why they may touch: often hundreds, so a table and not a card each."""
     notes = [finding for finding in report.findings if _is_pair_note(finding)]
     if not notes:
         return ""
-    rows = [tuple(map(_text, (where(f), title(f), measure(f), f.message))) for f in notes]
-    inner = _table(("pair", "check", "measured", "reason"), rows)
+    rows = [tuple(map(text, (where(f), title(f), measure(f), f.message))) for f in notes]
+    inner = table(("pair", "check", "measured", "reason"), rows, name=f"pairs-{index}")
     return f"<details><summary>{len(rows)} notes on pairs, such as why they may touch</summary>{inner}</details>"
 
 
@@ -196,12 +195,14 @@ def _is_pair_note(finding: Finding) -> bool:
     return finding.severity is Severity.NOTE and finding.pair is not None
 
 
-def _checks(report: ValidationReport) -> str:
+def _checks(index: int, report: ValidationReport) -> str:
     rows = [
-        (_text(title(check)), check.status.value, f"{check.seconds:.3f}", _text(_remark(check)))
+        (text(title(check)), check.status.value, f"{check.seconds:.3f}", text(_remark(check)))
         for check in report.checks
     ]
-    inner = _table(("check", "status", "seconds", "remark"), rows)
+    inner = table(
+        ("check", "status", "seconds", "remark"), rows, name=f"checks-{index}", classes=("", "state", "number", "")
+    )
     return f"<details><summary>All {len(rows)} checks</summary>{inner}</details>"
 
 
@@ -211,19 +212,4 @@ def _remark(check: CheckResult) -> str:
 
 def _environment(report: ValidationReport) -> str:
     facts = json.dumps(report.as_json()["environment"], indent=2)
-    return f"<details><summary>Environment and settings</summary><pre>{_text(facts)}</pre></details>"
-
-
-def _badge(verdict: str) -> str:
-    return f'<span class="verdict {verdict}">{verdict}</span>'
-
-
-def _table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of cells that are HTML already."""
-    head = "".join(f"<th>{heading}</th>" for heading in headings)
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
-    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
-
-
-def _text(text: str) -> str:
-    return escape(printable(text))
+    return f"<details><summary>Environment and settings</summary><pre>{text(facts)}</pre></details>"

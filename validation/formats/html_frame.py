@@ -1,49 +1,112 @@
-"""What every HTML report shares: its style, light and dark, and the few lines that filter findings."""
+"""What every HTML page shares: the frame with its policy, style and script, tables, badges and escaped text."""
 
 from __future__ import annotations
 
-STYLE = """
-:root { color-scheme: light dark; --back: #f8f9fb; --card: #ffffff; --ink: #20242c; --faint: #646b78; --line: #dfe3ea;
-  --error: #c1121f; --warning: #a65f00; --note: #2b62b8; --pass: #1c7a3e; --mark: #eef1f6; }
-@media (prefers-color-scheme: dark) { :root { --back: #14161a; --card: #1d2026; --ink: #e6e8ec; --faint: #9aa2b1;
-  --line: #343a45; --error: #ff7b7b; --warning: #f0b04a; --note: #85b4ff; --pass: #62cf8a; --mark: #282c35; } }
-* { box-sizing: border-box; }
-body { margin: 0 auto; max-width: 70rem; padding: 1rem; background: var(--back); color: var(--ink);
-  font: 16px/1.5 system-ui, sans-serif; overflow-wrap: anywhere; }
-h1 { font-size: 1.4rem; } h2 { font-size: 1.2rem; margin: 2.2rem 0 .4rem; }
-h3 { font-size: 1rem; margin: 1.4rem 0 .5rem; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .9rem; background: var(--card); }
-th, td { padding: .3rem .7rem; border: 1px solid var(--line); text-align: left; vertical-align: top; }
-th { background: var(--mark); } td.number { text-align: right; font-variant-numeric: tabular-nums; }
-.verdict { display: inline-block; padding: 0 .6rem; border-radius: .4rem; color: var(--card); font-weight: 600; }
-.fail, .unusable { background: var(--error); } .warn { background: var(--warning); } .pass { background: var(--pass); }
-.faint { color: var(--faint); } .picture { max-width: 100%; border-radius: .6rem; }
-.finding { background: var(--card); border: 1px solid var(--line); border-left: .35rem solid var(--line);
-  border-radius: .4rem; padding: .5rem .8rem; margin: .6rem 0; }
-.finding[hidden] { display: none; } .finding p { margin: .25rem 0; }
-.error { border-left-color: var(--error); } .warning { border-left-color: var(--warning); }
-.note { border-left-color: var(--note); } .suppressed { opacity: .65; }
-.filters { position: sticky; top: 0; background: var(--back); padding: .5rem 0; border-bottom: 1px solid var(--line); }
-.filters label { margin-right: .9rem; white-space: nowrap; }
-details { margin: .8rem 0; } summary { cursor: pointer; } pre { overflow-x: auto; font-size: .85rem; }
-@media (max-width: 40rem) { body { padding: .6rem; font-size: 15px; } th, td { padding: .25rem .4rem; } }
-@media print { .filters { display: none; } .finding { break-inside: avoid; } }
-"""
+from functools import cache
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-SCRIPT = """
-const boxes = [...document.querySelectorAll('.filters input')];
-const findings = [...document.querySelectorAll('.finding')];
-function show() {
-  const off = kind => new Set(boxes.filter(b => b.name === kind && !b.checked).map(b => b.value));
-  const severities = off('severity'), blames = off('blame');
-  let shown = 0;
-  for (const f of findings) {
-    f.hidden = severities.has(f.dataset.severity) || blames.has(f.dataset.blame);
-    shown += !f.hidden;
-  }
-  document.getElementById('shown').textContent = shown + ' of ' + findings.length + ' findings shown';
-}
-boxes.forEach(b => b.addEventListener('change', show));
-if (boxes.length) show();
-"""
+from kinematify.validation.formats.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+_ASSETS = Path(__file__).resolve().parent / "assets"
+_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+"""A name in a URDF must not be able to make the page load anything from elsewhere."""
+_MANY_ROWS = 8
+"""Tables with more rows get a box that filters them."""
+
+Cell = str | tuple[str, str]
+"""HTML of a table's cell, or that with the value by which the cell is sorted."""
+
+
+@cache
+def asset(name: str) -> str:
+    """Text of a style or script that is packaged beside this module."""
+    return (_ASSETS / name).read_text(encoding="utf-8")
+
+
+def page(title: str, body: Iterable[str], *, scripts: Sequence[str] = ()) -> str:
+    """Return a page that loads nothing from elsewhere and can be read without scripts.
+
+    Args:
+        title: Plain text.
+        body: Pieces of HTML.
+        scripts: Names of further assets.
+    """
+    code = "\n".join(asset(name) for name in ("page.js", *scripts))
+    parts = [
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">',
+        f'<meta http-equiv="Content-Security-Policy" content="{_POLICY}">',
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        f"<title>{text(title)}</title><style>{asset('page.css')}</style></head><body>",
+        '<a class="skip" href="#content">To the content</a><main id="content">',
+        *body,
+        f"</main><script>{code}</script></body></html>\n",
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+def text(words: str) -> str:
+    """Escaped text without what neither XML nor terminals can take."""
+    return escape(printable(words))
+
+
+def badge(verdict: str) -> str:
+    """A verdict as a word on a colour."""
+    return f'<span class="verdict {text(verdict)}">{text(verdict)}</span>'
+
+
+def table(
+    headings: Sequence[str],
+    rows: Iterable[Sequence[Cell]],
+    *,
+    name: str,
+    classes: Sequence[str] = (),
+    anchors: Sequence[str] = (),
+) -> str:
+    """Return a table that sorts by a click on a heading, with a box that filters it if it is long.
+
+    Args:
+        headings: Plain text.
+        rows: Cells that are HTML already.
+        name: Id of the table, unique in the page.
+        classes: A class for all cells of each column, empty for none; ``state``: the cell's text is its class.
+        anchors: Id of each row.
+    """
+    head = "".join(
+        f'<th scope="col" aria-sort="none"><button type="button">{text(heading)}</button></th>' for heading in headings
+    )
+    kinds = [*classes, *[""] * (len(headings) - len(classes))]
+    listed = list(rows)
+    lines = [
+        _row([_cell(cell, kind) for cell, kind in zip(row, kinds, strict=True)], anchors[k] if anchors else "")
+        for k, row in enumerate(listed)
+    ]
+    tools = _tools(name) if len(lines) > _MANY_ROWS else ""
+    return (
+        f'{tools}<div class="scroll" tabindex="0" role="region" aria-label="Table {text(name)}">'
+        f'<table id="{text(name)}"><thead><tr>{head}</tr></thead><tbody>{"".join(lines)}</tbody></table></div>'
+    )
+
+
+def _tools(name: str) -> str:
+    return (
+        f'<div class="tools"><label>Filter <input type="search" data-table="{text(name)}" disabled></label>'
+        '<output class="faint" aria-live="polite"></output></div>'
+    )
+
+
+def _row(cells: Sequence[str], anchor: str) -> str:
+    mark = f' id="{text(anchor)}"' if anchor else ""
+    return f"<tr{mark}>{''.join(cells)}</tr>"
+
+
+def _cell(cell: Cell, kind: str) -> str:
+    shown, value = (cell, None) if isinstance(cell, str) else cell
+    kind = shown.split(" ")[0] if kind == "state" else kind
+    css = f' class="{text(kind)}"' if kind else ""
+    sort = "" if value is None else f' data-value="{text(value)}"'
+    return f"<td{css}{sort}>{shown}</td>"

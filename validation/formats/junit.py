@@ -34,8 +34,8 @@ def as_junit(outcomes: Sequence[Outcome]) -> str:
             _fill_unusable(suite, outcome)
         else:
             _fill(suite, outcome)
-        _count(suite)
-    _count(root)
+        count_cases(suite)
+    count_cases(root)
     text: str = etree.tostring(root, encoding="unicode", pretty_print=True)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}'
 
@@ -91,8 +91,8 @@ def _told(finding: Finding) -> str:
     return printable("\n".join(lines))
 
 
-def _count(element: _Element) -> None:
-    """Set the attributes by which readers of JUnit sum up."""
+def count_cases(element: _Element) -> None:
+    """Set the attributes of a suite, or of all suites, by which readers of JUnit sum up."""
     cases = list(element.iter("testcase"))
     element.set("tests", str(len(cases)))
     for attribute, tag in _COUNTED:

@@ -10,13 +10,15 @@ import numpy as np
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.remark import SLIMMER, UNSEEN, Remark, configuration, in_document_order, length
 from kinematify.validation.geometry.rest import Reason
+from kinematify.validation.report import PairSummary, PairTable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.validation.geometry.overlap import Overlap
     from kinematify.validation.geometry.rest import Allowance, AtRest
     from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.validation.geometry.sweep import JointSweep
     from kinematify.validation.geometry.together import Configurations
 
 
@@ -134,6 +136,29 @@ def allowed_table(scene: Scene, allowance: Allowance, reasons: dict[Pair, Reason
             + _listed(list(scene.stand_ins), scene.settings.listed),
             "Write <collision> elements; engines see nothing there.",
         )
+
+
+def pair_table(
+    scene: Scene, allowance: Allowance, reasons: Mapping[Pair, Reason], sweeps: Sequence[JointSweep]
+) -> PairTable:
+    """Return what is known of every pair that touches at rest or meets while one joint moves."""
+    meets: dict[Pair, list[tuple[str, float, float]]] = defaultdict(list)
+    for sweep in sweeps:
+        for meeting in (meeting for side in sweep.sides for meeting in side.meetings if meeting.inside):
+            meets[meeting.pair].append((sweep.travel.joint, meeting.first, meeting.depth))
+    return PairTable(
+        bodies=tuple(body.name for body in scene.bodies),
+        pairs=tuple(
+            PairSummary(
+                pair=in_document_order(scene, pair),
+                reason=reasons[pair].value if pair in reasons else None,
+                at_rest=allowance.at_rest(pair),
+                tolerated=allowance.at_rest(pair) + allowance.tolerance(pair),
+                meets=tuple(meets.get(pair, ())),
+            )
+            for pair in sorted({*reasons, *meets})
+        ),
+    )
 
 
 def _tolerated(scene: Scene, allowance: Allowance, pair: Pair) -> str:

@@ -19,7 +19,14 @@ from kinematify.validation.geometry import judge_motion
 from kinematify.validation.geometry.exact_contacts import exact_contacts
 from kinematify.validation.geometry.hulls import HullView, seen_by_engines
 from kinematify.validation.geometry.judge_motion import MotionCase
-from kinematify.validation.geometry.judge_rest import allowed_pairs, allowed_table, hovering, neighbours, strangers
+from kinematify.validation.geometry.judge_rest import (
+    allowed_pairs,
+    allowed_table,
+    hovering,
+    neighbours,
+    pair_table,
+    strangers,
+)
 from kinematify.validation.geometry.judge_together import free_configurations, in_each_others_way
 from kinematify.validation.geometry.overlap import Overlap
 from kinematify.validation.geometry.rest import Allowance
@@ -56,6 +63,8 @@ def run(request: StageRequest, recorder: Recorder) -> None:
         _skip(recorder, _IN_MOTION, "no joint moves")
         return
     _tell_motion(recorder, looks)
+    reasons = allowed_pairs(scene, looks.allowance, looks.random)
+    recorder.summarise(pair_table(scene, looks.allowance, reasons, looks.sweeps))
     _tell_together(recorder, looks)
     _tell_hulls(recorder, looks)
     if recorder.wants("KV604") and looks.in_time:

@@ -1,0 +1,183 @@
+"""`kinematify nightly`: benchmark and validation, compared with the night before and with the baseline."""
+
+from __future__ import annotations
+
+import os
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.progress import progress_reporter
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.nightly.compare import Change
+    from kinematify.nightly.run import NightResult
+    from kinematify.nightly.settings import NightlySettings
+
+_FOUND_REGRESSIONS = 1
+_SHOWN = 20
+"""Changes of a class that are told on the terminal; the page has all."""
+
+
+@click.command(
+    "nightly",
+    short_help="Benchmark and validation, compared with the night before.",
+    epilog=examples(
+        "kinematify nightly",
+        "kinematify nightly --config my_nightly.yaml -o results/nightly",
+        "kinematify nightly --objects panda --objects 'cabinet_*' -o out/nights",
+        "kinematify nightly --accept 2026-01-31-0a1b2c3",
+        "kinematify nightly --smoke",
+    ),
+)
+@click.option("--config", default="nightly", show_default=True, metavar="NAME|FILE", help="What to run, and the gates.")
+@click.option(
+    "-o",
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder of all nights.  [default: results/nightly; with --smoke out/nightly-smoke]",
+)
+@click.option("--data", metavar="pip|PATH", help="URDFs with known joints, instead of the configuration's.")
+@click.option(
+    "--objects",
+    "patterns",
+    multiple=True,
+    metavar="GLOB",
+    help="Only objects of such a name, category or kind; may be given more than once.",
+)
+@click.option("--baseline", metavar="NIGHT", help="Compare with this night instead of the accepted one.")
+@click.option("--accept", metavar="NIGHT", help="Make a night the baseline, and run nothing.")
+@click.option("--smoke", is_flag=True, help="Two objects of the built-in generator, in about half a minute.")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
+)
+@json_option
+def command(
+    *,
+    config: str,
+    out: Path | None,
+    data: str | None,
+    patterns: tuple[str, ...],
+    baseline: str | None,
+    accept: str | None,
+    smoke: bool,
+    jobs: int | None,
+    json_to: str | None,
+) -> int:
+    """Infer every object of the benchmark, validate the models, and say what has changed since earlier nights.
+
+    Writes a folder OUT/DATE-COMMIT with JSON, JSON lines, JUnit and a page, and OUT/index.html with the trends of all
+    nights. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became worse than in
+    the night before or than in the accepted baseline; times are only reported.
+    """
+    from kinematify.nightly.run import NightRequest, run_night
+
+    folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
+    if accept is not None:
+        return _accept(folder, accept)
+    settings = _settings(config, data=data, smoke=smoke)
+    request = NightRequest(
+        settings=settings,
+        out=folder,
+        only=_matching(settings, patterns),
+        baseline=baseline,
+        smoke=smoke,
+        workers=jobs or os.cpu_count() or 1,
+    )
+    with progress_reporter() as progress:
+        result = run_night(request, progress)
+    if json_to:
+        write_answer(_answer(result), json_to)
+    if json_to != "-":
+        click.echo(_described(result))
+    for notice in result.notices:
+        click.echo(notice, err=True)
+    return _FOUND_REGRESSIONS if result.night.failed else 0
+
+
+def _accept(folder: Path, name: str) -> int:
+    from kinematify.nightly.store import accept, chosen, load_nights, locked
+
+    with locked(folder):
+        nights, _ = load_nights(folder)
+        accept(folder, chosen(nights, name, folder))
+    click.echo(f"{name} is the baseline of {folder} from now on.")
+    return 0
+
+
+def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
+    from kinematify.nightly.settings import load_nightly
+
+    settings = load_nightly(config)
+    changes: dict[str, object] = {} if data is None else {"data": data}
+    if smoke:
+        changes |= {"conditions": settings.smoke.conditions, "engines": settings.smoke.engines}
+    return settings.model_copy(update=changes)
+
+
+def _matching(settings: NightlySettings, patterns: Sequence[str]) -> tuple[str, ...]:
+    from kinematify.benchmark.datasets import find_objects
+    from kinematify.errors import InputError
+
+    if not patterns:
+        return ()
+    words = sorted({word for item in find_objects(settings.data) for word in (item.name, item.category, item.kind)})
+    chosen = tuple(word for word in words if any(fnmatchcase(word, pattern) for pattern in patterns))
+    if not chosen:
+        raise InputError(
+            f"No object, category or kind matches --objects {' '.join(patterns)}. There are {', '.join(words)}."
+        )
+    return chosen
+
+
+def _answer(result: NightResult) -> dict[str, object]:
+    from kinematify.nightly.compare import CHANGES
+
+    night = result.night
+    return {
+        **night.header,
+        "changes": CHANGES.dump_python(night.changes, mode="json"),
+        "baseline_changes": CHANGES.dump_python(night.baseline_changes, mode="json"),
+        "folder": str(result.place),
+        "notices": list(result.notices),
+    }
+
+
+def _described(result: NightResult) -> str:
+    """The verdict, what changed by class, and where to look."""
+    night = result.night
+    header = night.header
+    compared = header["last"] or "nothing: it is the first night"
+    verdict = f"{header['gate']}: night {night.name}"
+    size = f"{header['objects']} objects, {header['runs']} runs, {header['seconds'] / 60.0:.1f} min"
+    lines = [f"{verdict}, {size}, compared with {compared}", *_told(night.changes)]
+    if night.baseline_changes:
+        lines += [f"Compared with the baseline {header['baseline']}:", *_told(night.baseline_changes)]
+    pages = f"Pages: {result.place / 'index.html'} and {result.place.parent / 'index.html'}"
+    return "\n".join([*lines, pages])
+
+
+def _told(changes: Sequence[Change]) -> list[str]:
+    from kinematify.nightly.compare import Class
+
+    lines = []
+    for kind in Class:
+        found = [change for change in changes if change.kind is kind]
+        if not found:
+            continue
+        lines.append(f"  {kind.value}: {len(found)}")
+        if kind not in (Class.STILL_FAILING, Class.NEW_SERIES):
+            lines += [f"    {_line(change)}" for change in found[:_SHOWN]]
+            lines += [f"    and {len(found) - _SHOWN} more, see the page"] if len(found) > _SHOWN else []
+    return lines or ["  nothing has changed"]
+
+
+def _line(change: Change) -> str:
+    mark = "FAILS " if change.gate else ""
+    return f"{mark}{change.object}, {change.what} {change.case}: {change.subject} {change.text}".replace(":  ", ": ")

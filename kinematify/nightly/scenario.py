@@ -1,0 +1,75 @@
+"""Which runs of two nights may be compared: the hash of all that they depend on besides the code under test.
+
+The values of the inference's own configuration are part of the method: tuning them is what a night judges, and must
+not start a new series behind which a regression hides. Its name is part of the scenario; so are the thresholds of the
+validation, since they say what is wrong.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from kinematify.benchmark.datasets import BenchObject, Condition
+    from kinematify.nightly.settings import NightlySettings
+    from kinematify.validation.settings import ValidationSettings
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_NO_INFLUENCE = ("cli", "nightly")
+_JUDGES = ("problem_angle", "problem_line", "problem_limits")
+"""Settings that say from when on a joint is wrong."""
+
+
+def accuracy_scenario(item: BenchObject, condition: Condition, settings: NightlySettings) -> str:
+    """Hash of an object in a condition."""
+    return digest(
+        {
+            "version": settings.version,
+            "content": item.content_hash,
+            "gripper": item.gripper_joints,
+            "condition": asdict(condition),
+            "config": Path(settings.infer_config).stem,
+            "judges": {name: getattr(settings, name) for name in _JUDGES},
+        }
+    )
+
+
+def validation_scenario(
+    item: BenchObject, source: str, settings: NightlySettings, thresholds: ValidationSettings
+) -> str:
+    """Hash of a model of an object under the thresholds of the validation."""
+    return digest(
+        {
+            "version": settings.version,
+            "content": item.content_hash,
+            "source": source,
+            "config": Path(settings.infer_config).stem if source == "inferred" else None,
+            "engines": list(settings.engines),
+            "thresholds": thresholds.model_dump(mode="json"),
+        }
+    )
+
+
+def digest(facts: Any) -> str:
+    """Twelve characters that stand for plain values."""
+    return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:12]
+
+
+def whole_code_version() -> str:
+    """Hash of every source and configuration on which a run depends, the validation's included."""
+    found = hashlib.sha256()
+    for path in _sources():
+        found.update(path.relative_to(_PACKAGE).as_posix().encode())
+        found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def _sources() -> list[Path]:
+    # `validation` and `configs` stand behind links, which `rglob` does not follow on its own.
+    folders = (_PACKAGE, _PACKAGE / "validation", _PACKAGE / "configs")
+    paths = {path for folder in folders for kind in ("*.py", "*.yaml") for path in folder.rglob(kind)}
+    return sorted(path for path in paths if path.relative_to(_PACKAGE).parts[0] not in _NO_INFLUENCE)

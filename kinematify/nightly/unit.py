@@ -1,0 +1,197 @@
+"""One validation of a night in a process of its own: ``python -m kinematify.nightly.unit REQUEST ANSWER``.
+
+Whatever happens to it, the night goes on.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import signal
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from pydantic import TypeAdapter
+
+from kinematify.assembly.description import read_description
+from kinematify.assembly.erase import erase
+from kinematify.assembly.part import Assembly
+from kinematify.config import load_config
+from kinematify.model.urdf import write_urdf
+from kinematify.nightly.record import Problem
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.text import where
+from kinematify.validation.outcome import severity_counts, status_counts
+from kinematify.validation.run import validate
+from kinematify.validation.settings import load_settings
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.settings import ValidationSettings
+
+_DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
+_STATES = ("fail", "warn", "blocked", "pass", "skipped")
+"""Of a family, the worst first; skipped only where nothing else is left, for much does not apply to every model."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitRequest:
+    """What to validate."""
+
+    urdf: str
+    package_dirs: tuple[str, ...]
+    source: str
+    """``truth``: the file as it is; ``inferred``: what the inference makes of its parts at rest."""
+    infer: str
+    """Function under test, as ``module:name``."""
+    infer_config: str
+    validation_config: str
+    engines: tuple[str, ...]
+    budget: float
+    """[s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitAnswer:
+    """The part of a validation report that a night keeps."""
+
+    status: str
+    seconds: float
+    message: str = ""
+    values: dict[str, float | None] = field(default_factory=dict)
+    problems: tuple[Problem, ...] = ()
+    not_run: dict[str, str] = field(default_factory=dict)
+    families: dict[str, str] = field(default_factory=dict)
+
+
+REQUEST = TypeAdapter(UnitRequest)
+ANSWER = TypeAdapter(UnitAnswer)
+
+
+def main(request_file: str, answer_file: str) -> None:
+    """Answer a request; the answer appears whole or not at all."""
+    _die_with_the_night()
+    request = REQUEST.validate_json(Path(request_file).read_bytes())
+    start = time.perf_counter()
+    try:
+        answer = _answer(request)
+    except Exception as error:  # the boundary of a unit: one bad object never ends the night
+        seconds = round(time.perf_counter() - start, 3)
+        answer = UnitAnswer(status="error", seconds=seconds, message=f"{type(error).__name__}: {error}")
+    aside = Path(f"{answer_file}.partly")
+    aside.write_bytes(ANSWER.dump_json(answer))
+    aside.replace(answer_file)
+
+
+def _die_with_the_night() -> None:
+    """A night that is killed takes its validations with it, so that they do not slow down the one that resumes."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)
+
+
+def _answer(request: UnitRequest) -> UnitAnswer:
+    with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
+        urdf, package_dirs = Path(request.urdf), request.package_dirs
+        if request.source == "inferred":
+            urdf, package_dirs = _inferred(request, Path(folder)), ()
+        start = time.perf_counter()
+        report = validate(
+            urdf,
+            package_dirs=package_dirs,
+            settings=_patient(load_settings(request.validation_config), request.budget),
+            engines=request.engines,
+            workers=1,
+        )
+        return kept(report, time.perf_counter() - start, request.engines)
+
+
+def _inferred(request: UnitRequest, folder: Path) -> Path:
+    """Write the model that the inference makes of the anonymous parts of an object at rest."""
+    package_dirs = tuple(map(Path, request.package_dirs))
+    erased = erase(read_description(Path(request.urdf), package_dirs=package_dirs), pose="rest", seed=0)
+    module, _, name = request.infer.partition(":")
+    infer = getattr(importlib.import_module(module), name)
+    inference = infer(Assembly(parts=erased.parts, source="nightly"), config=load_config(request.infer_config))
+    write_urdf(inference.model, folder)
+    return folder / "model.urdf"
+
+
+def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings:
+    budget = settings.budget.model_copy(update={"seconds": seconds, "stage_seconds": seconds})
+    return settings.model_copy(update={"budget": budget})
+
+
+def kept(report: ValidationReport, seconds: float, engines: Sequence[str]) -> UnitAnswer:
+    """Return what a night keeps of a report: what is wrong, what did not run, and counts.
+
+    Args:
+        report: Of one model.
+        seconds: That it took.
+        engines: That were asked for; what belongs to others is left out.
+    """
+    checks = [check for check in report.checks if check.engine is None or check.engine in engines]
+    severities, statuses = severity_counts(report), status_counts(report)
+    counts = {f"{severity.value}s": severities.get(severity, 0) for severity in Severity}
+    counts |= {status.value: statuses.get(status, 0) for status in Status}
+    left = {
+        check_key(check): f"{check.status.value}: {check.reason or 'no reason given'}"
+        for check in checks
+        if check.status in (Status.SKIPPED, Status.BLOCKED)
+    }
+    return UnitAnswer(
+        status=report.verdict,
+        seconds=round(seconds, 3),
+        values={name: float(count) for name, count in counts.items()},
+        problems=_problems(checks),
+        not_run=left,
+        families=_families(checks),
+    )
+
+
+def check_key(item: CheckResult | Finding) -> str:
+    """Id of a check with its engine, as problems and skipped checks name it."""
+    return f"{item.check} [{item.engine}]" if item.engine else item.check
+
+
+def _problems(checks: Sequence[CheckResult]) -> tuple[Problem, ...]:
+    """Errors and warnings; where a check says the same of one place twice, a number tells the two apart."""
+    seen: dict[str, int] = defaultdict(int)
+    problems = []
+    for check in checks:
+        for finding in check.findings:
+            if finding.severity is Severity.NOTE or finding.suppressed is not None:
+                continue
+            # The finding may name another engine than the check, but the check decides what is skipped.
+            name = f"{check_key(check)} {where(finding)}".strip()
+            seen[name] += 1
+            number = f" ({seen[name]})" if seen[name] > 1 else ""
+            severity: Literal["error", "warning"] = "error" if finding.severity is Severity.ERROR else "warning"
+            problems.append(Problem(id=name + number, check=check_key(check), severity=severity, text=finding.message))
+    return tuple(problems)
+
+
+def _families(checks: Sequence[CheckResult]) -> dict[str, str]:
+    """State of each family of checks, the worst of its checks."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for check in checks:
+        found[check.check[:3]].add(_state(check))
+    return {family: next(state for state in _STATES if state in states) for family, states in found.items()}
+
+
+def _state(check: CheckResult) -> str:
+    if check.status is not Status.FAIL:
+        return check.status.value
+    errors = any(finding.severity is Severity.ERROR and finding.suppressed is None for finding in check.findings)
+    return "fail" if errors else "warn"
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,314 @@
+"""`kinematify nightly`: classes of changes, planted faults, resuming after SIGKILL, the lock and bad folders."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from lxml import etree
+from test_benchmark_run import write_object
+
+from kinematify.cli.app import run as run_command
+from kinematify.errors import InputError, OutputError
+from kinematify.nightly.compare import Class, compare
+from kinematify.nightly.record import Problem, Run
+from kinematify.nightly.run import NightRequest, run_night
+from kinematify.nightly.settings import NightlySettings, load_nightly
+from kinematify.nightly.smoke import write_smoke_objects
+from kinematify.nightly.store import accept, load_nights, locked
+
+if TYPE_CHECKING:
+    from kinematify.nightly.run import NightResult
+
+TESTS = Path(__file__).resolve().parent
+SETTINGS = load_nightly()
+AXIS = Problem(id="axis hinge", check="axis", severity="error", text="off by 40 deg")
+TOUCH = Problem(id="KV312 joint hinge", check="KV312", severity="error", text="runs into the frame")
+HINT = Problem(id="KV343 joint hinge", check="KV343", severity="warning", text="beside the pin")
+ACCURACY = Run(
+    scenario="s1", object="door", kind="everyday", category="door", what="accuracy", case="rest", status="ok",
+    seconds=2.0, values={"angle_deg": 0.5, "types": 1.0},
+)  # fmt: skip
+VALIDATION = replace(ACCURACY, what="validation", case="truth", status="pass", values={"errors": 0.0})
+
+
+def changes(now: Run, before: Run, *, same_machine: bool = True) -> list[tuple[str, str, bool]]:
+    found = compare([now], {before.place: [before]}, SETTINGS, same_machine=same_machine)
+    return [(change.kind.value, change.subject, change.gate) for change in found]
+
+
+@pytest.mark.parametrize(
+    ("now", "before", "expected"),
+    [
+        ({}, {}, []),
+        ({"problems": (AXIS,)}, {}, [("new", AXIS.id, True)]),
+        ({}, {"problems": (AXIS,)}, [("fixed", AXIS.id, False)]),
+        ({"problems": (AXIS,)}, {"problems": (AXIS,)}, [("still failing", AXIS.id, False)]),
+        ({"values": {"angle_deg": 0.7, "types": 1.0}}, {}, [("worse", "angle_deg", True)]),
+        ({"values": {"angle_deg": 0.1, "types": 1.0}}, {}, [("better", "angle_deg", False)]),
+        ({"values": {"angle_deg": 0.5, "types": 0.5}}, {}, [("worse", "types", True)]),
+        ({"values": {"angle_deg": 0.51, "types": 1.0}}, {}, []),
+        ({"seconds": 9.0}, {}, [("slower", "seconds", False)]),
+        ({"seconds": 2.9}, {}, []),
+        ({}, {"seconds": 9.0}, [("faster", "seconds", False)]),
+        ({"scenario": "s2", "problems": (AXIS,), "seconds": 9.0}, {}, [("new series", "", False)]),
+        ({"status": "unreadable", "values": {}}, {}, [("newly skipped", "", True)]),
+    ],
+)
+def test_class_of_a_change(now: dict[str, Any], before: dict[str, Any], expected: list[Any]) -> None:
+    assert changes(replace(ACCURACY, **now), replace(ACCURACY, **before)) == expected
+
+
+@pytest.mark.parametrize(
+    ("now", "before", "expected"),
+    [
+        ({"problems": (HINT,)}, {}, [("new", HINT.id, False)]),
+        ({"problems": (TOUCH,)}, {"problems": (HINT,)}, [("new", TOUCH.id, True), ("fixed", HINT.id, False)]),
+        # A check that does not run any more has fixed nothing.
+        ({"not_run": {"KV312": "blocked: x"}}, {"problems": (TOUCH,)}, [("newly skipped", "KV312", True)]),
+        ({"not_run": {"KV312": "skipped: y"}}, {"not_run": {"KV312": "blocked: x"}}, []),
+        ({"status": "crash", "values": {}}, {}, [("newly skipped", "", True)]),
+        ({"status": "crash", "values": {}}, {"status": "timeout", "values": {}}, [("still failing", "", False)]),
+    ],
+)
+def test_class_of_a_change_of_checks(now: dict[str, Any], before: dict[str, Any], expected: list[Any]) -> None:
+    assert changes(replace(VALIDATION, **now), replace(VALIDATION, **before)) == expected
+
+
+def test_times_of_another_machine_are_not_compared() -> None:
+    assert changes(replace(ACCURACY, seconds=90.0), ACCURACY, same_machine=False) == []
+
+
+def test_the_latest_run_of_the_same_scenario_is_compared_with() -> None:
+    """A night of another configuration in between does not hide a regression."""
+    other, old = replace(ACCURACY, scenario="s2"), ACCURACY
+    found = compare(
+        [replace(ACCURACY, problems=(AXIS,))], {ACCURACY.place: [other, old]}, SETTINGS, same_machine=True
+    )
+    assert [change.kind for change in found] == [Class.NEW]
+
+
+def test_a_run_that_is_missing_is_told() -> None:
+    found = compare([], {ACCURACY.place: [ACCURACY]}, SETTINGS, same_machine=True)
+    assert [(change.kind, change.gate) for change in found] == [(Class.GONE, False)]
+
+
+# Nights over small objects.
+
+
+@pytest.fixture(scope="module")
+def boxes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two objects of boxes, of two and of three parts."""
+    data = tmp_path_factory.mktemp("boxes")
+    write_object(data / "hinged", with_knob=False)
+    write_object(data / "drawered", with_knob=True)
+    return data
+
+
+def settings(data: Path, **changed: Any) -> NightlySettings:
+    quick = {"conditions": ["rest"], "sources": [], "engines": [], "data": str(data)}
+    return SETTINGS.model_copy(update={**quick, **changed})
+
+
+def night(data: Path, out: Path, infer: str = "quick_inference:star", **changed: Any) -> NightResult:
+    request = NightRequest(settings=settings(data, **changed), out=out, workers=2, infer=infer)
+    return run_night(request, lambda what, share: None)
+
+
+def kinds(result: NightResult) -> Counter[str]:
+    return Counter(change.kind.value for change in result.night.changes)
+
+
+@pytest.fixture(autouse=True)
+def _tests_on_the_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Workers import the function under test by its name."""
+    monkeypatch.setenv("PYTHONPATH", str(TESTS))
+
+
+def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxes: Path, tmp_path: Path) -> None:
+    first, second = night(boxes, tmp_path), night(boxes, tmp_path)
+    assert kinds(first) == {"new series": 2}
+    assert set(kinds(second)) <= {"still failing"}
+    assert not second.night.failed
+    slow = night(boxes, tmp_path, "planted:slow_on_three_parts")
+    told = [(change.kind.value, change.object) for change in slow.night.changes if change.kind != "still failing"]
+    assert told == [("slower", "drawered")]
+    assert not slow.night.failed
+    assert len({first.place, second.place, slow.place}) == 3
+    assert all((place / "index.html").is_file() for place in (first.place, slow.place, tmp_path))
+    assert not (tmp_path / ".unfinished").exists()
+
+
+def test_one_bad_object_does_not_end_the_night(boxes: Path, tmp_path: Path) -> None:
+    night(boxes, tmp_path)
+    bad = night(boxes, tmp_path, "planted:crashing_on_three_parts")
+    assert len(bad.night.runs) == 2
+    gates = [change for change in bad.night.changes if change.gate]
+    assert {change.object for change in gates} == {"drawered"}
+    suites = etree.fromstring((bad.place / "junit.xml").read_bytes())
+    assert [case.get("classname") for case in suites.iter("testcase") if case.find("failure") is not None] == [
+        "drawered.accuracy"
+    ]
+
+
+def test_a_changed_configuration_starts_a_new_series(boxes: Path, tmp_path: Path) -> None:
+    night(boxes, tmp_path)
+    other = night(boxes, tmp_path, "planted:crashing_on_three_parts", version=2)
+    assert kinds(other) == {"new series": 2}
+    assert not other.night.failed
+
+
+def test_baseline_is_compared_with_until_a_night_is_accepted(boxes: Path, tmp_path: Path) -> None:
+    good = night(boxes, tmp_path)
+    assert any("--accept" in notice for notice in good.notices)
+    accept(tmp_path, good.night)
+    broken = night(boxes, tmp_path, "planted:crashing_on_three_parts")
+    still = night(boxes, tmp_path, "planted:crashing_on_three_parts")
+    assert broken.night.failed
+    assert not any(change.gate for change in still.night.changes)
+    assert still.night.failed, "a regression must fail every night until it is mended or accepted"
+    assert {change.object for change in still.night.baseline_changes if change.gate} == {"drawered"}
+    accept(tmp_path, still.night)
+    assert not night(boxes, tmp_path, "planted:crashing_on_three_parts").night.failed
+
+
+def test_planted_axis_and_limit_faults_are_new_problems(tmp_path: Path) -> None:
+    """With the real inference and the real validation of the model that it writes."""
+    data, out = tmp_path / "data", tmp_path / "nights"
+    write_smoke_objects(data, ["a cabinet with one drawer"])
+    asked = {"sources": ["inferred"]}
+    sound = night(data, out, "planted:sound", **asked)
+    assert next(run.status for run in sound.night.runs) == "ok"
+    assert not any(problem.severity == "error" for run in sound.night.runs for problem in run.problems)
+    axis = night(data, out, "planted:without_axis_evidence", conditions=["rest"])
+    found = {(change.kind.value, change.subject.split()[0]) for change in axis.night.changes if change.gate}
+    assert {("new", "axis"), ("worse", "angle_deg")} <= found
+    limits = night(data, out, "planted:with_limits_in_degrees", **asked)
+    against_sound = {
+        (change.kind.value, change.what, change.subject.split()[0]) for change in limits.night.changes if change.gate
+    }
+    assert ("new", "validation", "KV320") in against_sound or ("new", "validation", "KV312") in against_sound
+    assert ("new", "accuracy", "limits") in against_sound
+
+
+# Killed and resumed.
+
+_NIGHT = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+from test_nightly import night
+night(Path({data!r}), Path({out!r}), "quick_inference:slow_star", sources=["truth"], conditions=["rest", "random-0"])
+"""
+
+
+def start(data: Path, out: Path) -> subprocess.Popen[bytes]:
+    code = _NIGHT.format(tests=str(TESTS), data=str(data), out=str(out))
+    return subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, start_new_session=True)
+
+
+def answers(out: Path) -> list[dict[str, Any]]:
+    """Lines of the only night of a folder, without times."""
+    (file,) = out.glob("*/runs.jsonl")
+    return [{**json.loads(line), "seconds": 0.0} for line in file.read_text().splitlines()]
+
+
+def test_killed_at_five_points_it_resumes_to_the_same_report(boxes: Path, tmp_path: Path) -> None:
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    began = time.monotonic()
+    assert start(boxes, whole).wait() == 0
+    seconds = time.monotonic() - began
+    for share in np.random.default_rng(3).uniform(0.2, 0.6, size=5):
+        process = start(boxes, killed)
+        time.sleep(share * seconds)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    assert start(boxes, killed).wait() == 0
+    assert answers(killed) == answers(whole)
+
+
+# Bad folders.
+
+
+_LOCKING = """
+from pathlib import Path
+from kinematify.nightly.store import locked
+with locked(Path({!r})):
+    pass
+"""
+
+
+def test_two_nights_at_once(boxes: Path, tmp_path: Path) -> None:
+    with locked(tmp_path):
+        code = _LOCKING.format(str(tmp_path))
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "Another night is running" in done.stderr
+    assert f"process {os.getpid()}" in done.stderr
+    with locked(tmp_path):
+        pass  # and it goes with its holder
+
+
+def test_a_night_of_a_newer_version_is_not_touched(boxes: Path, tmp_path: Path) -> None:
+    place = night(boxes, tmp_path).place
+    header = json.loads((place / "night.json").read_text())
+    (place / "night.json").write_text(json.dumps({**header, "schema": 99}))
+    before = sorted((path, path.stat().st_mtime_ns) for path in tmp_path.rglob("*.*"))
+    with pytest.raises(InputError, match=r"schema 99.*newer Kinematify"):
+        night(boxes, tmp_path)
+    assert sorted((path, path.stat().st_mtime_ns) for path in tmp_path.rglob("*.*")) == before
+
+
+def test_a_half_written_night_is_named_and_passed_over(boxes: Path, tmp_path: Path) -> None:
+    place = night(boxes, tmp_path).place
+    lines = (place / "runs.jsonl").read_bytes()
+    (place / "runs.jsonl").write_bytes(lines[: len(lines) // 2])
+    (tmp_path / "2020-01-01-abc").mkdir()
+    nights, warnings = load_nights(tmp_path)
+    assert nights == ()
+    assert len(warnings) == 2
+    second = night(boxes, tmp_path)
+    assert second.place != place
+    assert (place / "runs.jsonl").read_bytes() == lines[: len(lines) // 2]
+    assert kinds(second) == {"new series": 2}
+
+
+def test_no_such_baseline(boxes: Path, tmp_path: Path) -> None:
+    request = NightRequest(settings=settings(boxes), out=tmp_path, baseline="2020-01-01-none")
+    with pytest.raises(InputError, match="no night 2020-01-01-none"):
+        run_night(request, lambda what, share: None)
+    assert not list(tmp_path.glob("2*"))
+
+
+def test_no_permission(boxes: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be kept in"):
+        night(boxes, tmp_path / "file" / "nights")
+
+
+def test_the_smoke_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The whole command, validation in an engine included, on an object of the generator."""
+    small = tmp_path / "small.yaml"
+    small.write_text(
+        "extends: nightly\nsources: [truth]\nsmoke: {sentences: [a cabinet with one drawer], engines: [mujoco]}\n"
+    )
+    out = tmp_path / "nights"
+    assert run_command(["nightly", "--smoke", "--config", str(small), "-o", str(out), "--json", "-"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert (answer["schema"], answer["gate"], answer["runs"], answer["objects"]) == (1, "pass", 2, 1)
+    assert answer["counts"]["new series"] == 2
+    name = Path(answer["folder"]).name
+    assert run_command(["nightly", "-o", str(out), "--accept", name]) == 0
+    assert json.loads((out / "baseline.json").read_text())["night"] == name
+    assert run_command(["nightly", "-o", str(out), "--accept", "none"]) == 2
+    runs = [json.loads(line) for line in (out / name / "runs.jsonl").read_text().splitlines()]
+    assert {run["families"].get("KV4") for run in runs if run["what"] == "validation"} == {"pass"}
