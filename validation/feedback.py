@@ -94,8 +94,6 @@ class RangeSignal:
     lower: float | None
     """[rad or m], about the declared axis."""
     upper: float | None
-    certain: bool
-    """The failure is an error, which geometry proves."""
     check: str
     reason: str
 
@@ -226,7 +224,6 @@ class _Case:
                 child=joint.child,
                 lower=lower,
                 upper=upper,
-                certain=finding.severity is Severity.ERROR,
                 check=finding.check,
                 reason=reason,
             )

@@ -33,6 +33,7 @@ _FOUND_FAILURES = 1
         "kinematify bench models/ --conditions rest --objects panda --objects cabinet_*",
         "kinematify bench models/ --config default --config paper",
         "kinematify bench models/ --baseline results/robots.json",
+        "kinematify bench models/ --refine --tiers geometry,engines --perturb all --conditions rest",
     ),
 )
 @click.argument("folder", metavar="[DATA]", required=False, type=click.Path(path_type=Path))
@@ -69,6 +70,22 @@ _FOUND_FAILURES = 1
 )
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
 @click.option("--fresh", is_flag=True, help="Run all again instead of taking up what an earlier run has finished.")
+@click.option("--refine", is_flag=True, help="Measure what simulation and choosing again change, instead of accuracy.")
+@click.option(
+    "--tiers",
+    metavar="LIST",
+    default="geometry",
+    show_default=True,
+    help="With --refine: how far it simulates, of geometry, engines and task.",
+)
+@click.option(
+    "--perturb",
+    metavar="LIST",
+    default="none",
+    show_default=True,
+    help="With --refine: input that is a little wrong too; all, or some of "
+    "tolerance-half, tolerance-double, noise, contacts-missing, contacts-spurious, split, gaps.",
+)
 @json_option
 def command(
     *,
@@ -82,6 +99,9 @@ def command(
     baseline: Path | None,
     jobs: int | None,
     fresh: bool,
+    refine: bool,
+    tiers: str,
+    perturb: str,
     json_to: str | None,
 ) -> int:
     """Erase the joints of every URDF below DATA, infer them again and measure how far off they are.
@@ -92,6 +112,9 @@ def command(
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
     --baseline do.
+
+    With --refine each object is inferred once and refined by every tier; the table says what that mends, what it costs
+    and where it does harm. --perturb adds input with wrong tolerances, noise, faulty contacts, cut parts or gaps.
     """
     from kinematify.benchmark.regression import find_regressions
     from kinematify.benchmark.report import as_json, load_report, write_report
@@ -109,6 +132,11 @@ def command(
         fresh=fresh,
         workers=jobs or os.cpu_count() or 1,
     )
+    if refine:
+        from kinematify.cli.bench_refine import measure_refinement
+
+        measure_refinement(request, tiers=tiers, perturb=perturb, out=out, name=name, json_to=json_to)
+        return 0
     with progress_reporter() as progress:
         report = run_benchmark(request, progress)
     written = write_report(report, out, name=name, baseline=earlier)

@@ -58,7 +58,7 @@ class RefineConfig(StageConfig):
     lead: float
     """A candidate replaces the chosen one if it leads by more [log odds]."""
     least_travel: float
-    """A range may not be cut below this share of what the geometry leaves free."""
+    """A range may not be cut below this share of what the inference saw free."""
     contact_tolerance: float
     """Gap up to which two parts are held to touch when contacts are measured again, fraction of the diagonal."""
     hovering_share: float

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.refinement.plan import Plan
-    from kinematify.refinement.simulate import Simulator, Verdict
+    from kinematify.refinement.simulate import Simulator
     from kinematify.validation.feedback import Feedback, RangeSignal
 
 
@@ -58,13 +58,12 @@ class Chooser:
     refused: list[str] = field(default_factory=list)
     """Choices that would have hidden a failure, with the reason."""
 
-    def choose_again(self, plan: Plan, feedback: Feedback, verdict: Verdict) -> tuple[Plan, list[Change]]:
+    def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[Change]]:
         """Take the blamed decisions about joints again, one part after the other.
 
         Args:
             plan: What was simulated.
             feedback: What its failures blame.
-            verdict: With the free travel of its joints.
         """
         changes: list[Change] = []
         doubted = sorted({item.child for item in feedback.lines} | {item.child for item in feedback.types})
@@ -75,7 +74,7 @@ class Chooser:
         moved = {change.part for change in changes}
         for signal in feedback.ranges:
             if signal.child not in moved:
-                plan, cut = self._cut(plan, signal, verdict)
+                plan, cut = self._cut(plan, signal)
                 changes += [cut] if cut is not None else []
         return plan, changes
 
@@ -146,14 +145,13 @@ class Chooser:
         change = Change(part=child, what="fixed", before=described(old), after="fixed", why=why)
         return plan.with_joint(joint), change
 
-    def _cut(self, plan: Plan, signal: RangeSignal, verdict: Verdict) -> tuple[Plan, Change | None]:
-        """End a range where the way ends, unless that leaves less than the stated share of what is free."""
+    def _cut(self, plan: Plan, signal: RangeSignal) -> tuple[Plan, Change | None]:
+        """End a range where the way ends, unless that leaves less than the stated share of it."""
         old = plan.joints[plan.index(signal.child)]
-        travel = {item.joint: item.free_travel for item in verdict.joints}.get(plan.joint_of[signal.child])
         new = shortened(old, signal)
         if new is None:
             return plan, None
-        if not _open_enough(new, travel, old, self.config.least_travel, certain=signal.certain):
+        if new.upper - new.lower < self.config.least_travel * (old.upper - old.lower):
             self.refused.append(
                 f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}, too "
                 "little of it to be told from hiding the failure"
@@ -182,19 +180,6 @@ def shortened(joint: JointEstimate, signal: RangeSignal) -> JointEstimate | None
     low, high = (lower, upper) if sign > 0 else (-upper, -lower)
     kind = JointType.REVOLUTE if joint.kind.turns else joint.kind
     return replace(joint, kind=kind, axis=sign * joint.axis, lower=low, upper=high)
-
-
-def _open_enough(
-    new: JointEstimate, travel: tuple[float, float] | None, old: JointEstimate, share: float, *, certain: bool
-) -> bool:
-    """Whether a range keeps the stated share of what there is.
-
-    What a certain failure (an error) leaves free is all there is of it; a warning may be a button in a housing without
-    a hole, and then the share is that of the range as it was.
-    """
-    length = old.upper - old.lower
-    free = length if travel is None else min(travel[1] - travel[0], length)
-    return new.upper - new.lower >= share * (free if certain else length) and new.upper - new.lower > 0.0
 
 
 def _known(joint: JointEstimate, score: float, against: float) -> Trial:

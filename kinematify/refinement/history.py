@@ -34,7 +34,10 @@ class Round:
     changes: tuple[Change, ...]
     """What was chosen anew before it was simulated."""
     errors: int
+    """About motion or the task, by all that it was simulated by."""
     warnings: int
+    motion_errors: int
+    """By the exact geometry alone, which every tier has."""
     failed: tuple[str, ...]
     """``CHECK joint`` of every error and warning about motion."""
     blamed: tuple[str, ...]

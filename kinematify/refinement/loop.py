@@ -196,6 +196,7 @@ class _Loop:
         self.request.progress(f"round {number}: simulating", number / (self.rounds + 1))
         start = time.perf_counter()
         verdict = self.simulator.judge(plan.model, in_time=lambda: number == 0 or self.in_time())
+        motion_errors = _severities(verdict)[0]
         if self.tier != GEOMETRY:
             verdict = dear_verdict(plan, verdict, tier=self.tier, settings=self.request.settings)
         feedback = feedback_from(verdict.findings, verdict.joints, plan.declared, self.config.feedback)
@@ -212,6 +213,7 @@ class _Loop:
                 changes=tuple(changes),
                 errors=errors,
                 warnings=warnings,
+                motion_errors=motion_errors,
                 failed=tuple(_failed(verdict)),
                 blamed=tuple(_blamed(feedback)),
                 score=_score(plan, feedback),
@@ -237,7 +239,7 @@ class _Loop:
             return plan, done.contacts, changes, []
         candidates = CandidateJoints(plan.assembly, done.contacts.graph, done.contacts.bearings, plan.config)
         chooser = Chooser(candidates=candidates, simulator=self.simulator, config=self.config, in_time=self.in_time)
-        plan, changes = chooser.choose_again(plan, done.feedback, done.verdict)
+        plan, changes = chooser.choose_again(plan, done.feedback)
         plan, votes = vote(plan, done.contacts.graph, chooser)
         self.simulated += chooser.simulated
         return plan, done.contacts, [*changes, *votes], chooser.refused
