@@ -1,4 +1,4 @@
-"""`kinematify generate`: a sentence or a category becomes parts with exact joints, and the model inferred from them."""
+"""`kinematify generate`: a sentence, a category or an image becomes parts, and the model inferred from them."""
 
 from __future__ import annotations
 
@@ -16,10 +16,13 @@ from kinematify.cli.table import format_table
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.cli.generation import Generation
+    from kinematify.cli.provided import ProvidedGeneration
+
 
 @click.command(
     "generate",
-    short_help="A sentence -> parts with exact joints -> a model, offline.",
+    short_help="A sentence or a photo -> parts -> a model; sentences work offline.",
     epilog=examples(
         'kinematify generate --text "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
         "kinematify generate --category cabinet --set doors=2 --set drawers=3 --set handle=knob -o out/c2",
@@ -28,6 +31,8 @@ if TYPE_CHECKING:
         "kinematify generate --list --category cabinet",
         "kinematify generate --gallery docs",
         "kinematify generate --corpus 100 --seed 1 -o corpus",
+        "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
+        "kinematify generate --image chair.png --source command --command 'partcrafter {image} {out}' -o out/chair",
     ),
 )
 @click.option("--text", metavar="SENTENCE", help="What to build, in English.")
@@ -42,6 +47,33 @@ if TYPE_CHECKING:
     metavar="DIR",
     help="Make a page with a picture and the parameters of every category.",
 )
+@click.option(
+    "--image",
+    "images",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="A photo of the object, for --source; up to five views.",
+)
+@click.option(
+    "--source",
+    type=click.Choice(["rodin", "command"]),
+    help="Let a web service (key in RODIN_API_KEY) or a program of yours make the parts.",
+)
+@click.option("--command", "program", metavar="WORDS", help="The program with {image}, {text}, {seed} and {out}.")
+@click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="For the program, or one job.")
+@click.option(
+    "--budget", type=click.FloatRange(min=0.0), metavar="CREDITS", help="Refuse what is expected to cost more."
+)
+@click.option(
+    "--record", type=click.Path(path_type=Path), metavar="DIR", help="Keep what the source makes, for --replay."
+)
+@click.option(
+    "--replay", type=click.Path(path_type=Path), metavar="DIR", help="Take what was recorded; nothing is sent."
+)
+@click.option("--resend", is_flag=True, help="Send steps again that failed, or of which no answer is known.")
+@click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
+@click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
@@ -56,6 +88,16 @@ def command(
     seed: int | None,
     listing: bool,
     gallery: Path | None,
+    images: tuple[Path, ...],
+    source: str | None,
+    program: str | None,
+    time_limit: float | None,
+    budget: float | None,
+    record: Path | None,
+    replay: Path | None,
+    resend: bool,
+    up: str,
+    scale: float,
     out: Path | None,
     force: bool,
     no_preview: bool,
@@ -70,9 +112,13 @@ def command(
 
     Ends with 1 if the model has an error, see `kinematify validate`.
 
-    Nothing is downloaded: objects are put together from boards, hinges, slides and bearings by rules.
+    Without --source nothing is downloaded: objects are put together from boards, hinges, slides and bearings by rules.
+
+    With --source another generator makes the parts from --image or --text, and there are no known joints to compare
+    with. Its job is kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
     """
     from kinematify.cli.generation import Generation
+    from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
     from kinematify.sources.procedural.request import from_category, from_text
 
     if listing:
@@ -84,18 +130,44 @@ def command(
     if corpus is not None:
         _write_corpus(corpus, seed or 0, _needed(out), text or category)
         return 0
+    if source is not None:
+        if category is not None or settings:
+            raise click.UsageError(
+                "--category and --set belong to objects built by rules. Leave --source out for those."
+            )
+        asked = ProvidedOptions(
+            text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
+            record=record, replay=replay, resend=resend, up=up, scale=scale, seed=seed or 0,
+        )  # fmt: skip
+        return _run(ProvidedGeneration(asked, _needed(out), not no_preview, not no_validation), force, json_to)
+    _refuse_without_source(images, program, time_limit, budget, record, replay, resend)
     if (text is None) == (category is None):
         raise click.UsageError("Give either --text or --category (or --corpus, or --list to see what there is).")
     if settings and text is not None:
         raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
     request = from_text(text) if text is not None else from_category(category or "", _pairs(settings))
-    run = Generation(request, seed, _needed(out), preview=not no_preview, validated=not no_validation)
+    return _run(
+        Generation(request, seed, _needed(out), preview=not no_preview, validated=not no_validation), force, json_to
+    )
+
+
+def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:
     with progress_reporter() as progress:
         run.all(progress, overwrite=force)
     if json_to:
         write_answer(run.answer, json_to)
     run.say(quiet=json_to == "-")
     return run.exit_status
+
+
+def _refuse_without_source(images: tuple[Path, ...], *others: object) -> None:
+    if images:
+        raise click.UsageError(
+            "Say who makes parts of the image: --source rodin (a web service, needs a key) or --source command (a "
+            "program of yours). Objects built by rules take --text or --category."
+        )
+    if any(others):
+        raise click.UsageError("--command, --time-limit, --budget, --record, --replay and --resend belong to --source.")
 
 
 def _needed(out: Path | None) -> Path:

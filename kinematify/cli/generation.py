@@ -78,20 +78,12 @@ class Generation:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
 
     def _validate(self, progress: Reporter) -> None:
-        self.report = validate(self.out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
-        picture = self.out / PREVIEW_FILE
-        pictures = {self.report.model: picture.read_bytes()} if self.preview else {}
-        files = ReportFiles(
-            json=str(self.out / "validation.json"), junit=None, sarif=None, html=self.out / "validation.html"
-        )
-        files.write([self.report], pictures)
+        self.report = validated(self.out, preview=self.preview, progress=progress)
 
     @property
     def exit_status(self) -> int:
         """1 if the model has an error, 130 if the validation was interrupted, else 0."""
-        if self.report is None:
-            return 0
-        return _INTERRUPTED if self.report.environment.get("interrupted") else self.report.exit_status
+        return status_of(self.report)
 
     @property
     def answer(self) -> dict[str, Any]:
@@ -103,7 +95,7 @@ class Generation:
             "parameters": dict(self.blueprint.parameters),
             "understood": list(self.request.understood),
             "ignored": list(self.request.ignored),
-            "validation": _validation(self.report) if self.report is not None else None,
+            "validation": summary_of(self.report),
             "accuracy": _accuracy(self._score()),
         }
 
@@ -114,17 +106,11 @@ class Generation:
         blocks = [
             _understood(self.request),
             describe(self.inference, self.out),
-            self._verdict(),
+            verdict_on(self.report, self.out),
             _describe_score(self._score()),
         ]
         say("\n\n".join(block for block in blocks if block))
-        if self.exit_status == _INTERRUPTED:
-            click.echo("Interrupted. The model is complete, its validation is not.", err=True)
-
-    def _verdict(self) -> str:
-        if self.report is None:
-            return f"Not validated; kinematify validate {self.out / MODEL_FILE} does that."
-        return f"{describe_briefly(self.report)}\n{self.out / 'validation.html'}: every check, with remedies"
+        warn_if_interrupted(self.report)
 
     def _score(self) -> ObjectScore:
         """Compare with the joints that the object was built with."""
@@ -139,14 +125,39 @@ class Generation:
         )
 
 
-def _understood(request: Request) -> str:
-    lines = [f"Understood: {', '.join(request.understood)}."] if request.understood else []
-    if request.ignored:
-        lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")
-    return "\n".join(lines)
+def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationReport:
+    """Validate the model of a folder and write the reports into it; the picture goes into the page if there is one."""
+    report = validate(out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
+    pictures = {report.model: (out / PREVIEW_FILE).read_bytes()} if preview else {}
+    files = ReportFiles(json=str(out / "validation.json"), junit=None, sarif=None, html=out / "validation.html")
+    files.write([report], pictures)
+    return report
 
 
-def _validation(report: ValidationReport) -> dict[str, Any]:
+def status_of(report: ValidationReport | None) -> int:
+    """Exit status: 1 if the model has an error, 130 if the validation was interrupted, else 0."""
+    if report is None:
+        return 0
+    return _INTERRUPTED if report.environment.get("interrupted") else report.exit_status
+
+
+def verdict_on(report: ValidationReport | None, out: Path) -> str:
+    """What a user reads of a validation, or how to get one."""
+    if report is None:
+        return f"Not validated; kinematify validate {out / MODEL_FILE} does that."
+    return f"{describe_briefly(report)}\n{out / 'validation.html'}: every check, with remedies"
+
+
+def warn_if_interrupted(report: ValidationReport | None) -> None:
+    """Say that only the validation is incomplete."""
+    if status_of(report) == _INTERRUPTED:
+        click.echo("Interrupted. The model is complete, its validation is not.", err=True)
+
+
+def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
+    """The verdict as JSON values."""
+    if report is None:
+        return None
     counts = severity_counts(report)
     return {
         "verdict": report.verdict,
@@ -154,6 +165,13 @@ def _validation(report: ValidationReport) -> dict[str, Any]:
         "failed": sorted({item.check for item in report.counted if item.severity is Severity.ERROR}),
         "seconds": report.environment.get("seconds"),
     }
+
+
+def _understood(request: Request) -> str:
+    lines = [f"Understood: {', '.join(request.understood)}."] if request.understood else []
+    if request.ignored:
+        lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")
+    return "\n".join(lines)
 
 
 def _accuracy(score: ObjectScore) -> dict[str, Any]:

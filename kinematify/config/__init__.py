@@ -25,6 +25,7 @@ from kinematify.config.joints import (
 from kinematify.config.output import ModelConfig, PreviewConfig
 from kinematify.config.refinement import FeedbackConfig, RefineConfig
 from kinematify.config.shapes import AssemblyConfig, ContactConfig, SdfConfig, SurfaceConfig
+from kinematify.config.sources import RodinConfig, SourcesConfig
 from kinematify.config.trees import BaseConfig, RewardWeights, TopologyConfig
 
 if TYPE_CHECKING:
@@ -52,8 +53,10 @@ __all__ = [
     "RailsConfig",
     "RefineConfig",
     "RewardWeights",
+    "RodinConfig",
     "SdfConfig",
     "SlidesConfig",
+    "SourcesConfig",
     "StageConfig",
     "SurfaceConfig",
     "SweepConfig",
@@ -81,6 +84,7 @@ class Config(StageConfig):
     sdf: SdfConfig
     cavl: CavlConfig
     refine: RefineConfig
+    sources: SourcesConfig
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:

@@ -59,6 +59,8 @@ class Inference:
     """What the user should know, one sentence each; those of the assembly included."""
     refinement: Mapping[str, Any] | None = None
     """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
+    provenance: Mapping[str, Any] | None = None
+    """Who made the parts, from what (`kinematify.sources.provided`), as JSON values; None where that is not known."""
 
     @cached_property
     def model(self) -> KinematicModel:

@@ -99,6 +99,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "trees": [_tree(tree, assembly.names) for tree in inference.trees],
         "joints": [_joint(joint, assembly.names) for joint in inference.joints],
         "refinement": inference.refinement,
+        "provenance": inference.provenance,
         "seconds": dict(inference.timings),
         "peak_mb": inference.peak_mb,
         "configuration": inference.config.model_dump(mode="json"),

@@ -1,0 +1,162 @@
+"""One call of `kinematify generate` with parts of another generator: image or sentence -> parts -> model -> verdict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kinematify.assembly.load import load_assembly
+from kinematify.cli.generation import status_of, summary_of, validated, verdict_on, warn_if_interrupted
+from kinematify.cli.infer import describe
+from kinematify.cli.verdict import say
+from kinematify.config import load_config
+from kinematify.model.output import check_output, write_model_folder
+from kinematify.pipeline import infer
+from kinematify.pipeline.record import write_inference_files
+from kinematify.sources.provided.command import CommandSource
+from kinematify.sources.provided.job import open_job
+from kinematify.sources.provided.prompt import check_prompt
+from kinematify.sources.provided.recorded import RecordingSource, ReplayedSource
+from kinematify.sources.provided.rodin.source import RodinSource
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.cli.progress import Reporter
+    from kinematify.pipeline import Inference
+    from kinematify.sources.provided.source import Generated, PartSource
+    from kinematify.validation.report import ValidationReport
+
+_MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85  # shares of the time at which these are done
+JOB_SUFFIX = ".job"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProvidedOptions:
+    """As they were given on the command line."""
+
+    text: str | None
+    images: tuple[Path, ...]
+    source: str
+    command: str | None
+    time_limit: float | None
+    budget: float | None
+    record: Path | None
+    replay: Path | None
+    resend: bool
+    up: str
+    scale: float
+    seed: int
+
+    def part_source(self) -> PartSource:
+        """The generator that was asked for.
+
+        Raises:
+            click.UsageError: Options do not go together.
+        """
+        if self.record is not None and self.replay is not None:
+            raise click.UsageError("--record and --replay exclude each other.")
+        source = self._plain_source()
+        if self.record is not None:
+            return RecordingSource(source, self.record)
+        return source if self.replay is None else ReplayedSource(source, self.replay)
+
+    def _plain_source(self) -> PartSource:
+        settings = load_config().sources
+        if self.source == "command":
+            if self.command is None:
+                raise click.UsageError("--source command needs --command 'program {image} {out}'.")
+            if self.budget is not None:
+                raise click.UsageError("--budget belongs to --source rodin. Leave it out.")
+            return CommandSource(self.command, self.time_limit or settings.command_seconds)
+        if self.command is not None:
+            raise click.UsageError("--command belongs to --source command.")
+        chosen = settings.rodin
+        if self.time_limit is not None:
+            chosen = chosen.model_copy(update={"job_seconds": self.time_limit})
+        return RodinSource(chosen, self.budget)
+
+
+@dataclass
+class ProvidedGeneration:
+    """What was asked for, and what has come of it so far."""
+
+    options: ProvidedOptions
+    out: Path
+    preview: bool
+    with_verdict: bool
+    generated: Generated = field(init=False)
+    inference: Inference = field(init=False)
+    report: ValidationReport | None = None
+
+    def all(self, progress: Reporter, *, overwrite: bool) -> None:
+        """Get the parts, infer their joints, write the folder and validate the model in it.
+
+        Raises:
+            InputError: The prompt, the key or an option cannot be used.
+            EnvironmentFault: The generator failed; the same call goes on where it stopped.
+            OutputError: The folder exists and must not be replaced, or cannot be written.
+        """
+        check_output(self.out, overwrite=overwrite)
+        self._make_parts(lambda stage, done: progress(stage, _MADE * done))
+        config = load_config()
+        progress("reading the parts", _MADE)
+        given = load_assembly(
+            self.generated.path, config=config.assembly, up=self.options.up, scale=self.options.scale,
+            labels=self.generated.labels,
+        )  # fmt: skip
+        share = _INFERRED - _MADE
+        found = infer(given, config=config, progress=lambda stage, done: progress(stage, _MADE + share * done))
+        self.inference = replace(found, provenance=self.generated.provenance.as_json())
+        progress("writing the model", _INFERRED)
+        write_model_folder(
+            self.out, lambda folder: write_inference_files(self.inference, folder, preview=self.preview),
+            overwrite=overwrite,
+        )  # fmt: skip
+        if self.with_verdict:
+            rest = 1.0 - _WRITTEN
+            self.report = validated(
+                self.out, preview=self.preview,
+                progress=lambda stage, done: progress(f"validation: {stage}", _WRITTEN + rest * done),
+            )  # fmt: skip
+
+    @property
+    def job_folder(self) -> Path:
+        """Beside the model: it stays, so that the same request never costs anything again."""
+        return self.out.parent / f"{self.out.name}{JOB_SUFFIX}"
+
+    def _make_parts(self, progress: Reporter) -> None:
+        source = self.options.part_source()
+        prompt = check_prompt(self.options.text, self.options.images, seed=self.options.seed)
+        with open_job(self.job_folder, source.name, prompt.digest(source.options())) as job:
+            if self.options.resend:
+                job.resend()
+            self.generated = source.generate(prompt, job, progress)
+
+    @property
+    def exit_status(self) -> int:
+        """1 if the model has an error, 130 if the validation was interrupted, else 0."""
+        return status_of(self.report)
+
+    @property
+    def answer(self) -> dict[str, Any]:
+        """Everything as JSON values."""
+        return {
+            "schema": 1,
+            "out": str(self.out),
+            "job": str(self.job_folder),
+            "provenance": self.generated.provenance.as_json(),
+            "validation": summary_of(self.report),
+        }
+
+    def say(self, *, quiet: bool) -> None:
+        """Tell the user; nothing if a machine reads stdout."""
+        if quiet:
+            return
+        facts = self.generated.provenance
+        made = f"Parts of {facts.provider} ({facts.model}), cost: {facts.cost or 'unknown'}. Terms: {facts.licence}"
+        kept = f"{self.job_folder}: everything that the generator made; the same request is not sent again"
+        say("\n\n".join([f"{made}\n{kept}", describe(self.inference, self.out), verdict_on(self.report, self.out)]))
+        warn_if_interrupted(self.report)

@@ -1,0 +1,153 @@
+"""A program of the user's own as a generator: any local model that can be called with an image and a folder."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import string
+import subprocess
+import time
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.errors import EnvironmentFault, InputError
+from kinematify.sources.provided.found_parts import found_parts
+from kinematify.sources.provided.source import Generated, Provenance
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.sources.provided.job import Job
+    from kinematify.sources.provided.prompt import Prompt
+    from kinematify.sources.provided.source import Progress
+
+LOG_FILE = "command.log"
+OUTPUT_FOLDER = "made"
+FIELDS = ("image", "text", "seed", "out")
+_STEP = "command"
+_POLL = 0.1  # between looks at the program [s]
+_GRACE = 5.0  # from the polite end to the other one [s]
+_LAST_LINES = 6
+
+
+@dataclass(frozen=True)
+class CommandSource:
+    """Runs a command line with ``{image}``, ``{text}``, ``{seed}`` and ``{out}`` filled in; no shell is involved."""
+
+    template: str
+    limit: float
+    """[s]"""
+    licence: str = "That of the program and its weights."
+    name: str = "command"
+
+    def options(self) -> dict[str, object]:
+        """The command line."""
+        return {"command": self.template}
+
+    def generate(self, prompt: Prompt, job: Job, progress: Progress) -> Generated:
+        """Run the program unless an earlier call has; see `PartSource`."""
+        arguments = filled(self.template, prompt, job.folder / OUTPUT_FOLDER)
+        if job.state(_STEP) != "done":
+            self._run(arguments, job, progress)
+        path, labels = found_parts(job.folder / OUTPUT_FOLDER)
+        job.finish(_STEP, seconds=job.facts(_STEP).get("seconds"))
+        return Generated(
+            path=path,
+            labels=labels,
+            provenance=Provenance(
+                provider="command",
+                model=arguments[0],
+                text=prompt.text,
+                images=tuple(image.name for image in prompt.images),
+                seed=prompt.seed,
+                licence=self.licence,
+                cost=f"{job.facts(_STEP)['seconds']:.0f} s of this machine",
+                details={"command": self.template},
+            ),
+        )
+
+    def _run(self, arguments: list[str], job: Job, progress: Progress) -> None:
+        log, out = job.folder / LOG_FILE, job.folder / OUTPUT_FOLDER
+        out.mkdir(exist_ok=True)
+        start = time.monotonic()
+        with log.open("wb") as file:
+            try:
+                program = subprocess.Popen(
+                    arguments, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, start_new_session=True
+                )
+            except OSError as error:
+                raise InputError(
+                    f"The program {arguments[0]!r} cannot be started: {error.strerror}. Check --command."
+                ) from error
+            try:
+                status = self._waited(program, arguments[0], start, progress)
+            finally:
+                _stop(program)
+        if status is None:
+            raise EnvironmentFault(
+                f"The program {arguments[0]!r} was stopped after {self.limit:.0f} s. Give it more with --time-limit. "
+                f"{_told(log)}"
+            )
+        if status != 0:
+            raise EnvironmentFault(f"The program {arguments[0]!r} ended with status {status}. {_told(log)}")
+        job.accept(_STEP, seconds=time.monotonic() - start)
+
+    def _waited(self, program: subprocess.Popen[bytes], name: str, start: float, progress: Progress) -> int | None:
+        """Exit status, or None if time ran out."""
+        while (status := program.poll()) is None:
+            spent = time.monotonic() - start
+            if spent > self.limit:
+                return None
+            progress(f"{name} has run for {spent:.0f} s", min(0.95, spent / self.limit))
+            time.sleep(_POLL)
+        return status
+
+
+def filled(template: str, prompt: Prompt, out: Path) -> list[str]:
+    """Fill a command line in, word by word: what is filled in is never split or interpreted.
+
+    Raises:
+        InputError: It is empty, has unknown fields, or lacks what the prompt holds.
+    """
+    try:
+        words = shlex.split(template)
+        fields = [name for word in words for _, name, _, _ in string.Formatter().parse(word) if name is not None]
+    except ValueError as error:
+        raise InputError(f"The command {template!r} cannot be read: {error}. Check its quotes and braces.") from error
+    if not words:
+        raise InputError("The command is empty. Give --command 'program {image} {out}'.")
+    unknown = sorted(set(fields) - set(FIELDS))
+    if unknown or "out" not in fields:
+        problem = f"has unknown fields {', '.join(unknown)}" if unknown else "does not say where to write"
+        raise InputError(
+            f"The command {template!r} {problem}. The fields are {{image}}, {{text}}, {{seed}} and {{out}}."
+        )
+    for name, given in (("image", bool(prompt.images)), ("text", prompt.text is not None)):
+        if name in fields and not given:
+            raise InputError(f"The command needs {{{name}}}, which was not given. Give --{name}.")
+    image = str(prompt.images[0]) if prompt.images else ""
+    values = {"image": image, "text": prompt.text or "", "seed": str(prompt.seed), "out": str(out)}
+    return [word.format(**values) for word in words]
+
+
+def _stop(program: subprocess.Popen[bytes]) -> None:
+    """End a program and everything that it started."""
+    if program.poll() is not None:
+        return
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        with suppress(ProcessLookupError):
+            os.killpg(program.pid, number)
+        with suppress(subprocess.TimeoutExpired):
+            program.wait(_GRACE)
+            return
+
+
+def _told(log: Path) -> str:
+    """The last lines of a log that may hold anything."""
+    text = log.read_bytes()[-20_000:].decode("utf-8", errors="replace")
+    clean = "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in text)
+    lines = [line.strip() for line in clean.splitlines() if line.strip()][-_LAST_LINES:]
+    said = f"It said last: {' | '.join(line[:200] for line in lines)}." if lines else "It said nothing."
+    return f"{said} Everything that it said: {log}"
