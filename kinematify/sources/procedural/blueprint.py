@@ -34,6 +34,8 @@ class BlueprintJoint:
     """[rad or m]; -inf for continuous."""
     upper: float
     """[rad or m]; +inf for continuous."""
+    value: float = 0.0
+    """How far it has moved from the pose in which it was designed [rad or m]; limits are counted from here."""
 
     def __post_init__(self) -> None:
         axis = np.asarray(self.axis, dtype=np.float64)
@@ -100,6 +102,7 @@ class Blueprint:
                     pivot=above[:3, :3] @ joint.pivot + above[:3, 3],
                     lower=joint.lower - value,
                     upper=joint.upper - value,
+                    value=joint.value + value,
                 )
             )
         parts = tuple(_placed(part, T_new_old[part.name]) for part in self.parts)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from kinematify.assembly.truth import GroundTruth, TrueJoint
@@ -30,7 +29,7 @@ def ground_truth(blueprint: Blueprint) -> GroundTruth:
                 pivot=joint.pivot,
                 lower=joint.lower,
                 upper=joint.upper,
-                value=0.0 if math.isinf(joint.lower) else -joint.lower,
+                value=joint.value,
             )
             for joint in blueprint.joints
         ),
