@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
+import warnings
 from dataclasses import dataclass, field
-from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
 
 
+_RUN = re.compile(r"(?:v[ \t].*\n?)++|(?:f[ \t].*\n?)++")
+"""Lines of vertices, or of faces, that follow one another."""
 _TEXTURE_AND_NORMAL = re.compile(r"/\S*")
 
 
@@ -57,14 +59,19 @@ def read_obj(path: Path) -> tuple[FloatArray, tuple[ObjGroup, ...]]:
         ValueError: A line is malformed; the message names it.
     """
     content = _Content()
-    with path.open(encoding="utf-8", errors="replace") as lines:
-        for keyword, run in groupby(lines, key=_keyword):
-            if keyword == "v":
-                _read_vertices(list(run), content)
-            elif keyword == "f":
-                _read_faces(list(run), content)
-            elif keyword in ("o", "g"):
-                _read_names(keyword, list(run), content)
+    text = path.read_text(encoding="utf-8", errors="replace")
+    end = 0
+    while end < len(text):
+        start = end
+        run = _RUN.match(text, start)
+        end = run.end() if run else (text.find("\n", start) + 1 or len(text))
+        keyword = text[start] if run else _keyword(text[start:end])
+        if keyword == "v":
+            _read_vertices(text[start:end], content)
+        elif keyword == "f":
+            _read_faces(text[start:end], content)
+        elif keyword in ("o", "g"):
+            _read_name(keyword, text[start:end], content)
     vertices = np.concatenate([np.empty((0, 3)), *content.vertices])
     return vertices, tuple(ObjGroup(name=name, faces=np.concatenate(runs)) for name, runs in content.faces.items())
 
@@ -73,29 +80,44 @@ def _keyword(line: str) -> str:
     return line.split(None, 1)[0] if line.strip() else ""
 
 
-def _read_vertices(lines: list[str], content: _Content) -> None:
-    numbers = _numbers("".join(lines).replace("v", " "), float)
-    width, rest = divmod(len(numbers), len(lines))
+def _read_vertices(text: str, content: _Content) -> None:
+    numbers = _numbers(text.replace("v", " "), float)
+    width, rest = divmod(len(numbers), _count(text))
     uniform = rest == 0 and width >= 3
     # Otherwise there is a mixture, or a mistake to be named.
-    block = numbers.reshape(-1, width)[:, :3] if uniform else np.array([_vertex(line) for line in lines])
+    block = numbers.reshape(-1, width)[:, :3] if uniform else np.array([_vertex(line) for line in _lines(text)])
     content.vertices.append(block)
     content.count += len(block)
 
 
-def _read_faces(lines: list[str], content: _Content) -> None:
-    corners = _numbers(_TEXTURE_AND_NORMAL.sub("", "".join(lines)).replace("f", " "), int)
-    if len(corners) == 3 * len(lines) and corners.min() > 0:
+def _read_faces(text: str, content: _Content) -> None:
+    plain = _TEXTURE_AND_NORMAL.sub("", text) if "/" in text else text
+    corners = _numbers(plain.replace("f", " "), int)
+    if len(corners) == 3 * _count(text) and corners.min() > 0:
         block = corners.reshape(-1, 3) - 1
     else:  # polygons, indices that count back, or a mistake to be named
-        block = np.array([corner for line in lines for corner in _fan(line, content.count)], dtype=np.int64)
+        block = np.array([corner for line in _lines(text) for corner in _fan(line, content.count)], dtype=np.int64)
     content.faces.setdefault(content.label, []).append(block.reshape(-1, 3))
+
+
+def _count(text: str) -> int:
+    return text.count("\n") + (not text.endswith("\n"))
+
+
+def _lines(text: str) -> list[str]:
+    return text.removesuffix("\n").split("\n")
 
 
 def _numbers(text: str, kind: type) -> NDArray[Any]:
     """All numbers of a text; empty where it holds anything else."""
     try:
-        return np.array(text.split(), dtype=kind)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", DeprecationWarning)  # older NumPy only warns where there is no number
+            return np.fromstring(text, dtype=kind, sep=" ")
+    except (DeprecationWarning, ValueError):
+        pass
+    try:
+        return np.array(text.split(), dtype=kind)  # Python knows more ways to write a number
     except ValueError:
         return np.empty(0, dtype=kind)
 
@@ -120,8 +142,8 @@ def _fan(line: str, count: int) -> list[tuple[int, int, int]]:
     return [(zero_based[0], zero_based[k], zero_based[k + 1]) for k in range(1, len(corners) - 1)]
 
 
-def _read_names(keyword: str, lines: list[str], content: _Content) -> None:
-    name = lines[-1].strip()[1:].strip()
+def _read_name(keyword: str, line: str, content: _Content) -> None:
+    name = line.strip()[1:].strip()
     if keyword == "o":
         content.object_name, content.group_name = name, ""
     else:
