@@ -6,6 +6,7 @@ result through a pipe at once; what it sent before it died is kept.
 
 from __future__ import annotations
 
+import gc
 import importlib
 import multiprocessing
 import os
@@ -139,6 +140,7 @@ def _start(stage: Stage, request: StageRequest) -> tuple[Connection, _Running]:
 def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     """Body of a worker. Ctrl-C reaches the whole process group; the parent alone answers it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    gc.freeze()  # what the server imported is looked through no more, and stays shared with it
     limit = request.settings.budget.stage_bytes
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

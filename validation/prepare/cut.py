@@ -263,11 +263,21 @@ def _best_cut(body: Concave, chunk: Chunk) -> list[Chunk]:
         sides = split(chunk.triangles, heights - offset)
         if min(map(len, sides)) == 0:
             continue
-        chunks = [body.chunk(side) for side in sides]
-        left = sum(side.hollow for side in chunks)
-        if left < best:
-            best, chosen = left, chunks
+        chunks = _if_better(body, sides, best)
+        if chunks:
+            best, chosen = sum(side.hollow for side in chunks), chunks
     return chosen
+
+
+def _if_better(body: Concave, sides: tuple[FloatArray, FloatArray], best: float) -> list[Chunk]:
+    """Measure two sides, the larger first; empty, often before the second, where no less than `best` is left to cut."""
+    first = int(len(sides[1]) > len(sides[0]))
+    one = body.chunk(sides[first])
+    if one.hollow >= best:
+        return []
+    other = body.chunk(sides[1 - first])
+    chunks = [one, other] if first == 0 else [other, one]
+    return chunks if sum(side.hollow for side in chunks) < best else []
 
 
 def _planes(triangles: FloatArray, axes: FloatArray, *, closed: bool) -> Iterator[tuple[FloatArray, float]]:
