@@ -261,8 +261,8 @@ class PartSurface:
     @cached_property
     def _face_boxes(self) -> tuple[FloatArray, FloatArray]:
         vertices, faces = self.welded
-        corners = vertices[faces]
-        return corners.min(1), corners.max(1)
+        a, b, c = (vertices[faces[:, k]] for k in range(3))
+        return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
     def gap(self, other: PartSurface) -> float:
         """Smallest distance between the triangles of two parts of one assembly [m]; 0 where they cross."""
