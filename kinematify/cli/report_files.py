@@ -54,19 +54,23 @@ class ReportFiles:
         if len({os.path.realpath(path) for path in self.paths.values()}) < len(self.paths):
             raise OutputError(f"Two of {', '.join(self.paths)} name the same file. Give each report its own.")
 
-    def write(self, outcomes: Sequence[Outcome], pictures: Mapping[str, bytes]) -> None:
-        """Write what was asked for.
+    def write(
+        self, outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str] | None = None
+    ) -> None:
+        """Write what was asked for; see `as_html` for pictures and scenes.
 
         Raises:
             OutputError: A file cannot be written.
         """
-        texts = self._texts(outcomes, pictures)
+        texts = self._texts(outcomes, pictures, scenes or {})
         for option, path in self.paths.items():
             _write(option, path, texts[option])
         if self.json == "-":
             click.echo(texts["--json"], nl=False)
 
-    def _texts(self, outcomes: Sequence[Outcome], pictures: Mapping[str, bytes]) -> dict[str, str]:
+    def _texts(
+        self, outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str]
+    ) -> dict[str, str]:
         from kinematify.validation.formats.html import as_html
         from kinematify.validation.formats.json_lines import as_json_text
         from kinematify.validation.formats.junit import as_junit
@@ -80,7 +84,7 @@ class ReportFiles:
         if self.sarif is not None:
             texts["--sarif"] = as_sarif(outcomes)
         if self.html is not None:
-            texts["--html"] = as_html(outcomes, pictures)
+            texts["--html"] = as_html(outcomes, pictures, scenes)
         return texts
 
 

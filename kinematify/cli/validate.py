@@ -91,7 +91,12 @@ if TYPE_CHECKING:
 @click.option("--json", "json_to", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Report as JUnit XML.")
 @click.option("--sarif", type=click.Path(path_type=Path), metavar="FILE", help="Report as SARIF 2.1.0.")
-@click.option("--html", type=click.Path(path_type=Path), metavar="FILE", help="Report as one HTML file with a picture.")
+@click.option(
+    "--html",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Report as one HTML file, with the model to turn and move.",
+)
 def command(
     *,
     models: tuple[str, ...],
@@ -156,7 +161,7 @@ def command(
             run.all(progress)
     except KeyboardInterrupt:
         run.interrupted = True
-    files.write(run.outcomes, run.pictures)
+    files.write(run.outcomes, run.pictures, run.scenes)
     run.say(quiet=json_to == "-")
     return run.exit_status
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.cli.progress import Reporter
+    from kinematify.validation.formats.picture import Drawing
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.settings import ValidationSettings
@@ -46,6 +47,7 @@ class ValidationRun:
     task: TaskRequest | None = None
     outcomes: list[Outcome] = field(default_factory=list)
     pictures: dict[str, bytes] = field(default_factory=dict)
+    scenes: dict[str, str] = field(default_factory=dict)
     interrupted: bool = False
 
     def all(self, progress: Reporter) -> None:
@@ -81,7 +83,8 @@ class ValidationRun:
         self.interrupted = bool(report.environment.get("interrupted"))
         if self.with_pictures and len(self.models) <= PICTURES_AT_MOST and _can_be_drawn(report):
             progress("picture", 0.97)
-            self.pictures[report.model] = self._picture(model)
+            drawing = self._drawing(model)
+            self.pictures[report.model], self.scenes[report.model] = drawing.picture, drawing.scene
 
     def _task_of(self, model: Path) -> TaskRequest | None:
         """The task with names of films that tell the models apart."""
@@ -90,10 +93,10 @@ class ValidationRun:
         stem = model.stem if len(self.models) == 1 else f"{model.absolute().parent.name}_{model.stem}"
         return replace(self.task, stem=f"{stem}_{self.task.kind}")
 
-    def _picture(self, model: Path) -> bytes:
-        from kinematify.validation.formats.picture import picture_of
+    def _drawing(self, model: Path) -> Drawing:
+        from kinematify.validation.formats.picture import drawing_of
 
-        return picture_of(model, self.package_dirs, self.settings, seconds=PICTURE_SECONDS)
+        return drawing_of(model, self.package_dirs, self.settings, seconds=PICTURE_SECONDS)
 
     @property
     def exit_status(self) -> int:

@@ -49,6 +49,7 @@ def validation_scenario(
             "source": source,
             "config": Path(settings.infer_config).stem if source == "inferred" else None,
             "engines": list(settings.engines),
+            "checks": list(settings.checks),
             "thresholds": thresholds.model_dump(mode="json"),
         }
     )

@@ -60,6 +60,8 @@ class NightlySettings(StageConfig):
     """Models of every object that are validated."""
     engines: list[Literal["mujoco", "pybullet", "pinocchio"]]
     """Engines of the validation."""
+    checks: list[str] = Field(min_length=1)
+    """Checks of the validation, ids or patterns; those of file and meshes always run."""
     timeout: float = Field(gt=0.0)
     """Wall time of one inference [s]."""
     validation_timeout: float = Field(gt=0.0)

@@ -13,6 +13,7 @@ import tempfile
 import time
 from collections import defaultdict
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -24,6 +25,7 @@ from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.model.urdf import write_urdf
 from kinematify.nightly.record import Problem
+from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.text import where
 from kinematify.validation.outcome import severity_counts, status_counts
@@ -31,7 +33,7 @@ from kinematify.validation.run import validate
 from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.report import ValidationReport
@@ -55,6 +57,8 @@ class UnitRequest:
     infer_config: str
     validation_config: str
     engines: tuple[str, ...]
+    checks: tuple[str, ...]
+    """Ids or patterns."""
     budget: float
     """[s]."""
 
@@ -102,15 +106,17 @@ def _answer(request: UnitRequest) -> UnitAnswer:
         urdf, package_dirs = Path(request.urdf), request.package_dirs
         if request.source == "inferred":
             urdf, package_dirs = _inferred(request, Path(folder)), ()
+        selected = [check for check in CATALOGUE if any(fnmatchcase(check, word) for word in request.checks)]
         start = time.perf_counter()
         report = validate(
             urdf,
             package_dirs=package_dirs,
             settings=_patient(load_settings(request.validation_config), request.budget),
+            selected=selected,
             engines=request.engines,
             workers=1,
         )
-        return kept(report, time.perf_counter() - start, request.engines)
+        return kept(report, time.perf_counter() - start, selected, request.engines)
 
 
 def _inferred(request: UnitRequest, folder: Path) -> Path:
@@ -129,15 +135,17 @@ def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings
     return settings.model_copy(update={"budget": budget})
 
 
-def kept(report: ValidationReport, seconds: float, engines: Sequence[str]) -> UnitAnswer:
+def kept(report: ValidationReport, seconds: float, selected: Collection[str], engines: Collection[str]) -> UnitAnswer:
     """Return what a night keeps of a report: what is wrong, what did not run, and counts.
 
     Args:
         report: Of one model.
         seconds: That it took.
-        engines: That were asked for; what belongs to others is left out.
+        selected: Checks that were asked for; others are left out.
+        engines: That were asked for; likewise.
     """
-    checks = [check for check in report.checks if check.engine is None or check.engine in engines]
+    asked = [check for check in report.checks if check.check in selected]
+    checks = [check for check in asked if check.engine is None or check.engine in engines]
     severities, statuses = severity_counts(report), status_counts(report)
     counts = {f"{severity.value}s": severities.get(severity, 0) for severity in Severity}
     counts |= {status.value: statuses.get(status, 0) for status in Status}

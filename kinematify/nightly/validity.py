@@ -61,6 +61,7 @@ def unit_request(item: BenchObject, source: str, settings: NightlySettings, infe
         infer_config=settings.infer_config,
         validation_config=settings.validation_config,
         engines=tuple(settings.engines),
+        checks=tuple(settings.checks),
         budget=settings.budget,
     )
 

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from kinematify.model.kinematics import forward_kinematics
-from kinematify.validation.formats.picture import picture_of, shown_model
+from kinematify.validation.formats.picture import Drawing, drawing_of, shown_model
 from kinematify.validation.read import read_model
 from kinematify.validation.settings import load_settings
 
@@ -52,7 +52,8 @@ def test_shown_model_stands_at_rest_and_moves_as_declared(gripper: Path) -> None
 
 
 def test_a_model_is_drawn(gripper: Path) -> None:
-    png = picture_of(gripper, (), load_settings(), seconds=30.0)
+    drawing = drawing_of(gripper, (), load_settings(), seconds=30.0)
+    png = drawing.picture
     image = Image.open(io.BytesIO(png))
     assert image.format == "PNG"
     assert image.width > image.height > 200
@@ -62,5 +63,5 @@ def test_a_model_is_drawn(gripper: Path) -> None:
 def test_what_cannot_be_drawn_is_no_failure(tmp_path: Path) -> None:
     (tmp_path / "bare.urdf").write_text('<robot name="bare"><link name="base"/></robot>')
     (tmp_path / "broken.urdf").write_text("<robot")
-    assert picture_of(tmp_path / "bare.urdf", (), load_settings(), seconds=30.0) == b""
-    assert picture_of(tmp_path / "broken.urdf", (), load_settings(), seconds=30.0) == b""
+    assert drawing_of(tmp_path / "bare.urdf", (), load_settings(), seconds=30.0) == Drawing()
+    assert drawing_of(tmp_path / "broken.urdf", (), load_settings(), seconds=30.0) == Drawing()

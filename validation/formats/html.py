@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 from typing import TYPE_CHECKING
 
+from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.formats.html_frame import badge, page, table, text
+from kinematify.validation.formats.html_motion import curves, show_button, viewer
+from kinematify.validation.formats.html_pairs import pair_matrix
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
     alternative,
@@ -32,21 +36,27 @@ _COUNTS = ("", "", "number", "number", "number", "number", "number")
 """Classes of the columns of the table of families."""
 
 
-def as_html(outcomes: Sequence[Outcome], pictures: Mapping[str, bytes]) -> str:
+def as_html(outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str] | None = None) -> str:
     """Return the outcomes as a page.
 
     Args:
         outcomes: In the order of the models.
         pictures: PNG of a model, keyed by its path as given; may lack some.
+        scenes: JSON of a model for the viewer in the page; likewise.
     """
+    scenes = scenes or {}
     title_text = f"kinematify validate: {_headline(outcomes)}"
     body = [
         f"<h1>{text(title_text)}</h1>",
         _contents(outcomes) if len(outcomes) > 1 else "",
         _filters(outcomes),
-        *(_section(index, outcome, pictures.get(outcome.model, b"")) for index, outcome in enumerate(outcomes)),
+        *(
+            _section(index, outcome, pictures.get(outcome.model, b""), scenes.get(outcome.model, ""))
+            for index, outcome in enumerate(outcomes)
+        ),
+        _explained(outcomes),
     ]
-    return page(title_text, body)
+    return page(title_text, body, scripts=("viewer.js",) if scenes else ())
 
 
 def _headline(outcomes: Sequence[Outcome]) -> str:
@@ -93,7 +103,7 @@ def _box(kind: str, value: str) -> str:
     return f'<label><input type="checkbox" name="{kind}" value="{value}" checked> {value}</label>'
 
 
-def _section(index: int, outcome: Outcome, picture: bytes) -> str:
+def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
     heading = f'<h2 id="model-{index}">{badge(outcome.verdict)} {text(outcome.model)}</h2>'
     if isinstance(outcome, Unusable):
         return f"<section>{heading}<p>{text(outcome.message)}</p></section>"
@@ -101,11 +111,14 @@ def _section(index: int, outcome: Outcome, picture: bytes) -> str:
         heading,
         f"<p>{text(_summary(outcome))}</p>",
         _picture(picture),
+        viewer(index, scene),
         "<h3>Families</h3>",
         table(FAMILY_HEADINGS, _family_cells(outcome), name=f"families-{index}", classes=_COUNTS),
         "<h3>Findings</h3>",
-        "".join(_finding(item) for item in outcome.findings if not _is_pair_note(item)) or "<p>None.</p>",
+        _findings(index, outcome, with_viewer=bool(scene)),
         _joints(index, outcome),
+        curves(outcome),
+        pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
         _checks(index, outcome),
         _environment(outcome),
@@ -138,7 +151,24 @@ def _family_cells(report: ValidationReport) -> list[tuple[str, ...]]:
     return [tuple(map(text, row)) for row in family_rows(report)]
 
 
-def _finding(finding: Finding) -> str:
+def _findings(index: int, report: ValidationReport, *, with_viewer: bool) -> str:
+    told = [finding for finding in report.findings if not _is_pair_note(finding)]
+    cards = (
+        _finding(finding, f"finding-{index}-{k + 1}", _shown(index, report, finding) if with_viewer else "")
+        for k, finding in enumerate(told)
+    )
+    return "".join(cards) or "<p>None.</p>"
+
+
+def _shown(index: int, report: ValidationReport, finding: Finding) -> str:
+    """A button that shows where a finding was seen; empty if it names neither a configuration nor a link."""
+    links = [*(finding.pair or ()), *([finding.link] if finding.link else [])]
+    joints = {joint.joint for joint in report.joints}
+    q = {name: value for name, value in (finding.q or {}).items() if name in joints and math.isfinite(value)}
+    return f"<p>{show_button(index, q, links, 'Show in 3-D')}</p>" if links or q else ""
+
+
+def _finding(finding: Finding, anchor: str, button: str) -> str:
     facts = [
         where(finding),
         finding.engine or "",
@@ -149,12 +179,14 @@ def _finding(finding: Finding) -> str:
     ]
     shut = finding.suppressed is not None
     return (
-        f'<div class="finding {finding.severity.value}{" suppressed" if shut else ""}" '
+        f'<div id="{anchor}" class="finding {finding.severity.value}{" suppressed" if shut else ""}" '
         f'data-severity="{finding.severity.value}" data-blame="{finding.blame.value}">'
-        f"<p><strong>{finding.severity.value} {text(title(finding))}</strong></p>"
+        f'<p><strong>{finding.severity.value} <a href="#check-{finding.check}">{text(title(finding))}</a></strong> '
+        f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
         f'<p class="faint">{text("; ".join(fact for fact in facts if fact))}</p>'
         f"<p>{text(finding.message)}</p><p>Remedy: {text(finding.remedy)}</p>"
         + (f"<p>Suppressed: {text(finding.suppressed or '')}</p>" if shut else "")
+        + button
         + "</div>"
     )
 
@@ -208,6 +240,20 @@ def _checks(index: int, report: ValidationReport) -> str:
 
 def _remark(check: CheckResult) -> str:
     return "; ".join(part for part in (check.reason or "", figures(check)) if part)
+
+
+def _explained(outcomes: Sequence[Outcome]) -> str:
+    """What each check looks at of which a finding is shown."""
+    told = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
+    checks = [CATALOGUE[name] for name in sorted(told)]
+    if not checks:
+        return ""
+    parts = (
+        f'<details id="check-{check.id}"><summary>{check.id} {text(check.title)}</summary><p>{text(check.verifies)}</p>'
+        f"<p>{text(check.matters)}</p><p>Remedy: {text(check.remedy)}</p></details>"
+        for check in checks
+    )
+    return f"<section><h2>What these checks look at</h2>{''.join(parts)}</section>"
 
 
 def _environment(report: ValidationReport) -> str:

@@ -1,7 +1,8 @@
-"""A picture of the declared model, at rest and moved, for the HTML report; drawn in a process of its own."""
+"""Pictures of the declared model for the HTML report, still and to be turned; made in a process of its own."""
 
 from __future__ import annotations
 
+import json
 import tempfile
 import time
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from kinematify.assembly.robot import forward_kinematics, joint_values, rest_con
 from kinematify.config import load_config
 from kinematify.model.kinematic_model import Inertial, Joint, KinematicModel, Link
 from kinematify.model.preview import render_preview
+from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.isolation import Stage, run_stages
 from kinematify.validation.read import read_model
 from kinematify.validation.stage import StageRequest
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
     from kinematify.validation.stage import Recorder
 
 _FILE = "picture.png"
+_SCENE = "scene.json"
+_FACES = 20_000
+"""Triangles of the model in a page: 250 kB, so that a page of twelve models stays below 5 MB."""
 _PANEL = {
     "panel_width": 420,  # read on a phone too, and the report must stay small
     "panel_height": 380,
@@ -40,7 +45,17 @@ _PANEL = {
 _NO_INERTIAL = Inertial(mass=1.0, center_of_mass=np.zeros(3), tensor=np.eye(3), source="volume")
 
 
-def picture_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSettings, *, seconds: float) -> bytes:
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """What a page shows of a model; a report stands without it."""
+
+    picture: bytes = b""
+    """PNG of the model at rest and moved; empty if it could not be drawn in time."""
+    scene: str = ""
+    """JSON from `view_data`; empty likewise."""
+
+
+def drawing_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSettings, *, seconds: float) -> Drawing:
     """Draw a model whose file and meshes passed their checks.
 
     Args:
@@ -50,7 +65,7 @@ def picture_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
         seconds: Time that it may take.
 
     Returns:
-        A PNG, empty if it could not be drawn in time: a report stands without its picture.
+        What was drawn in time.
     """
     stage = Stage(name="picture", function="kinematify.validation.formats.picture:run", checks=())
     with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
@@ -63,13 +78,22 @@ def picture_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
             deadline=time.time() + seconds,
         )
         (end,) = run_stages([stage], request, workers=1)
-        file = Path(folder, _FILE)
-        return file.read_bytes() if end.failure is None and file.is_file() else b""
+        picture, scene = Path(folder, _FILE), Path(folder, _SCENE)
+        return Drawing(
+            picture=picture.read_bytes() if end.failure is None and picture.is_file() else b"",
+            scene=scene.read_text(encoding="utf-8") if scene.is_file() else "",
+        )
 
 
 def run(request: StageRequest, _recorder: Recorder) -> None:
     """Draw the model of a request into its folder; body of the process."""
-    model = shown_model(read_model(request.urdf, package_dirs=request.package_dirs).kinematics)
+    robot = read_model(request.urdf, package_dirs=request.package_dirs).kinematics
+    scene = view_data(robot, faces=_FACES)
+    if scene is not None:
+        aside = request.work / f".{_SCENE}"
+        aside.write_text(json.dumps(scene, allow_nan=False), encoding="utf-8")
+        aside.replace(request.work / _SCENE)  # a process that is stopped leaves no half of it
+    model = shown_model(robot)
     config = load_config("default").preview.model_copy(update=_PANEL)
     if any(len(link.part.faces) > 1 for link in model.links):
         render_preview(model, request.work / _FILE, config)

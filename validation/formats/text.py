@@ -20,7 +20,8 @@ SHOWN_JOINTS = 4
 FAMILY_HEADINGS = ("family", "engine", *(status.value for status in Status), "seconds")
 """Headings of `family_rows`."""
 _UNPRINTABLE = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
-_TURNING = ("revolute", "continuous")
+TURNING = ("revolute", "continuous")
+"""Types whose values are angles."""
 
 
 def printable(text: str) -> str:
@@ -63,7 +64,7 @@ def joint_range(joint: JointSummary, limits: tuple[float, float] | None) -> str:
     """A range in degrees or millimetres; a dash if there is none."""
     if limits is None:
         return "-"
-    turning = joint.kind in _TURNING
+    turning = joint.kind in TURNING
     low, high = (number(math.degrees(value) if turning else 1000.0 * value) for value in limits)
     return f"{low} to {high} {'deg' if turning else 'mm'}"
 
