@@ -130,7 +130,7 @@ def kinds(result: NightResult) -> Counter[str]:
 @pytest.fixture(autouse=True)
 def _tests_on_the_path(monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers import the function under test by its name."""
-    monkeypatch.setenv("PYTHONPATH", str(TESTS))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(TESTS), *filter(None, [os.environ.get("PYTHONPATH")])]))
 
 
 def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxes: Path, tmp_path: Path) -> None:
