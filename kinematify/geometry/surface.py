@@ -277,7 +277,7 @@ class PartSurface:
         vertices, faces = self.welded
         model = fcl.BVHModel()
         model.beginModel(len(vertices), len(faces))
-        model.addSubModel((vertices - self.origin) / self.unit, faces)
+        model.addSubModel((vertices - self.origin) / self.unit, faces.tolist())
         model.endModel()
         return fcl.CollisionObject(model, fcl.Transform())
 

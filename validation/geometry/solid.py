@@ -84,7 +84,7 @@ class Solid:
         vertices, faces = self.shells.vertices, self.shells.faces
         model = fcl.BVHModel()
         model.beginModel(len(vertices), len(faces))
-        model.addSubModel((vertices - self.middle) / self._unit, faces)
+        model.addSubModel((vertices - self.middle) / self._unit, faces.tolist())
         model.endModel()
         return model
 
