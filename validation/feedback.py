@@ -134,14 +134,10 @@ class Feedback:
         """Whether the search has something to act on."""
         return bool(self.edges or self.lines or self.types or self.ranges)
 
-    @property
-    def blamed(self) -> frozenset[str]:
-        """Parts whose joint is doubted in any way."""
-        return frozenset(signal.child for signal in (*self.edges, *self.lines, *self.types, *self.ranges))
-
     def against(self, child: str) -> float:
         """Sum of the log odds against the joint of a part, parent left out."""
-        return sum(signal.weight for signal in (*self.lines, *self.types) if signal.child == child)
+        weights = [signal.weight for signal in self.lines if signal.child == child]
+        return sum(weights) + sum(signal.weight for signal in self.types if signal.child == child)
 
     def as_json(self) -> dict[str, Any]:
         """JSON values."""
@@ -153,6 +149,8 @@ def feedback_from(
     summaries: Iterable[JointSummary],
     joints: Mapping[str, DeclaredJoint],
     config: FeedbackConfig,
+    *,
+    placements: Mapping[str, float] | None = None,
 ) -> Feedback:
     """Turn the findings about one model into feedback.
 
@@ -161,9 +159,10 @@ def feedback_from(
         summaries: Free travel of the joints, where it was measured.
         joints: The joints of the model by name.
         config: Weight of each kind of failure.
+        placements: How many places of a robot were tried for each joint, if there was a task.
     """
     travel = {item.joint: item.free_travel for item in summaries if item.free_travel is not None}
-    case = _Case(findings=findings, travel=travel, joints=joints, config=config)
+    case = _Case(findings=findings, travel=travel, joints=joints, config=config, placements=placements or {})
     for finding in findings:
         if finding.suppressed is None:
             _route(case, finding)
@@ -185,6 +184,7 @@ class _Case:
     travel: Mapping[str, tuple[float, float]]
     joints: Mapping[str, DeclaredJoint]
     config: FeedbackConfig
+    placements: Mapping[str, float]
     edges: list[EdgeSignal] = field(default_factory=list)
     lines: list[LineSignal] = field(default_factory=list)
     types: list[TypeSignal] = field(default_factory=list)
@@ -245,7 +245,7 @@ def _route(case: _Case, finding: Finding) -> None:
         case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
     elif finding.check in _FILES or finding.check.startswith(("KV1", "KV2", "KV6")):
         case.leave(finding, "frames, masses or files disagree; that is the exporter's to mend")
-    elif finding.check in _ROWS and finding.joint in case.joints:
+    elif finding.check in _ROWS and finding.joint is not None and finding.joint in case.joints:
         _ROWS[finding.check](case, finding, case.joints[finding.joint])
     else:
         case.leave(finding, "it names no joint that could be chosen again")
@@ -390,7 +390,7 @@ def _sinks(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
 
 def _no_way(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
     """KV703 to KV706: only what fails from several places of the robot speaks against the joint."""
-    if finding.check != "KV706" and (finding.value or 0.0) < case.config.placements:
+    if finding.check != "KV706" and case.placements.get(finding.joint or "", 0.0) < case.config.placements:
         case.leave(finding, "too few places of the robot were tried to blame the joint", Blame.TASK)
     else:
         case.against_line(finding, joint.child, case.config.task_line, "no way leads through its range")

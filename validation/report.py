@@ -29,6 +29,8 @@ class JointSummary:
     """Range around rest in which nothing collides [rad or m]; None if it was not measured."""
     best_alternative: Mapping[str, Any] | None = None
     """``kind``, ``axis``, ``pivot`` (world frame at zero), ``score`` of a joint that explains the geometry better."""
+    next_best: tuple[Mapping[str, Any], ...] = ()
+    """Of a joint that failed, the next best candidates of the inference, where its record stands beside the model."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +93,8 @@ class ValidationReport:
     """As the engines drove the joints, those that ran."""
     pairs: PairTable | None = None
     """None if the exact geometry was not looked at."""
+    refinement: Mapping[str, Any] | None = None
+    """Rounds of `kinematify refine`, where their record stands beside the model."""
     environment: Mapping[str, Any] = field(default_factory=dict)
     """Versions, seed, settings, seconds, and ``interrupted`` if it is partial."""
 
@@ -128,6 +132,7 @@ class ValidationReport:
             "checks": [_check_json(check) for check in self.checks],
             "findings": [_finding_json(finding) for finding in self.findings],
             "joints": [_joint_json(joint) for joint in self.joints],
+            "refinement": _plain(self.refinement),
             "environment": _plain(self.environment),
         }
 
@@ -171,6 +176,7 @@ def _joint_json(joint: JointSummary) -> dict[str, Any]:
         "declared_limits": _plain(joint.declared_limits),
         "free_travel": _plain(joint.free_travel),
         "best_alternative": _plain(joint.best_alternative),
+        "next_best": _plain(joint.next_best),
     }
 
 

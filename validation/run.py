@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import run_stages, start_server
 from kinematify.validation.plan import (
     ENGINES,
@@ -207,10 +208,12 @@ class _Run:
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         checks = suppress([self._result(key) for key in keys(list(_checks(self.task).values()))], suppressions)
         facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
+        inferred = inferred_beside(self.path)
         return ValidationReport(
             model=str(self.path),
             checks=checks,
-            joints=tuple(self._joints.values()),
+            joints=with_next_best(self._joints.values(), checks, inferred),
+            refinement=None if inferred is None else inferred.refinement,
             curves=tuple(self._curves),
             pairs=self._pairs,
             environment=facts,

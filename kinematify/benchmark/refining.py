@@ -8,7 +8,7 @@ import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -112,6 +112,8 @@ def run_refining(jobs: Sequence[tuple[str, RefiningJob]], *, workers: int) -> It
                     yield result
             except (KeyboardInterrupt, GeneratorExit):
                 pool.shutdown(wait=False, cancel_futures=True)
+                for process in active_children():  # leaving the pool would wait for what is under way
+                    process.kill()
                 raise
         waiting = [(key, job) for key, job in waiting if key not in done]
 

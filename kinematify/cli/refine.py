@@ -118,13 +118,13 @@ def exit_status(refinement: Refinement) -> int:
 
 def describe_refinement(inference: Inference) -> str:
     """The rounds as a table, which one was kept and why the loop ended."""
-    from kinematify.refinement.history import HISTORY_HEADINGS, history_rows, history_words
+    from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
 
     record = inference.refinement
     if record is None:
         return ""
-    table = format_table(HISTORY_HEADINGS, history_rows(record)) if record["rounds"] else ""
-    return "\n".join(line for line in (table, *history_words(record)) if line)
+    table = format_table(ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
+    return "\n".join(line for line in (table, *round_words(record)) if line)
 
 
 def as_answer(refinement: Refinement, folder: Path) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import re
 import shutil
 import sys
 import textwrap
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -15,11 +16,13 @@ from kinematify.cli.table import format_table
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
+    NEXT_BEST_HEADINGS,
     alternative,
     configuration,
     family_rows,
     joint_range,
     measure,
+    next_best_rows,
     printable,
     title,
     where,
@@ -59,6 +62,7 @@ def describe(outcome: Outcome) -> str:
         "\n".join(_reasons(outcome)),
         *(_group_text(group) for group in _groups(outcome.findings)),
         _joint_table(outcome),
+        _next_best(outcome),
     ]
     return "\n\n".join(block for block in blocks if block)
 
@@ -203,6 +207,14 @@ def _joint_table(report: ValidationReport) -> str:
     ]
     headings = ("joint", "type", "declared limits", "free travel", "better alternative")
     return format_table(headings, rows) if rows else ""
+
+
+def _next_best(report: ValidationReport) -> str:
+    """What the inference would have chosen next where a joint failed; nothing if it left no record beside the model."""
+    rows = [tuple(map(printable, row)) for row in next_best_rows(report)]
+    folder = Path(report.model).parent
+    more = f"kinematify refine {folder} simulates them and chooses again."
+    return f"{format_table(NEXT_BEST_HEADINGS, rows)}\n{more}" if rows else ""
 
 
 def _brief(outcome: Outcome) -> str:

@@ -93,3 +93,9 @@ def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
         return True
     apart = float(np.linalg.norm(np.cross(candidate.pivot - joint.pivot, joint.axis)))
     return apart < 1e-9 + 1e-6 * float(np.linalg.norm(candidate.pivot))
+
+
+def score_of(joint: JointEstimate) -> float:
+    """Score of the chosen joint below that of the best candidate of its edge [log odds]; 0 where it is none of them."""
+    best = max((candidate.score for candidate in joint.alternatives), default=0.0)
+    return next((candidate.score - best for candidate in joint.alternatives if is_same(joint, candidate)), 0.0)

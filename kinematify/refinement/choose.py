@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointType
-from kinematify.refinement.candidates import is_same
+from kinematify.refinement.candidates import is_same, score_of
 from kinematify.refinement.history import Change
 from kinematify.refinement.words import described, ranged
 from kinematify.validation.feedback import feedback_from
@@ -87,7 +87,7 @@ class Chooser:
             against: What the simulation has against it, if that is known already.
         """
         best = max((candidate.score for candidate in joint.alternatives), default=0.0)
-        own = next((item.score - best for item in joint.alternatives if is_same(joint, item)), 0.0)
+        own = score_of(joint)
         found = [self.trial(plan, joint, own) if against is None else _known(joint, own, against)]
         for candidate in self._near_best(joint, best):
             if not self.in_time():

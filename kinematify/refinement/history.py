@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from typing import Any
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,41 +68,3 @@ class History:
     def as_json(self) -> dict[str, Any]:
         """JSON values."""
         return asdict(self)
-
-
-HISTORY_HEADINGS = ("round", "simulated by", "chosen anew", "failed", "blamed", "score", "time [s]")
-"""Of `history_rows`; the round that was kept has a star."""
-
-
-def history_rows(record: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    """The rounds of a history, as `inference.json` has it, as rows of a table."""
-    return [_row(item, kept=item["number"] == record["kept"]) for item in record["rounds"]]
-
-
-def _row(item: Mapping[str, Any], *, kept: bool) -> tuple[str, ...]:
-    changes = [f"{it['part']}: {it['what']} {it['before']} -> {it['after']}" for it in item["changes"]]
-    return (
-        f"{item['number']}{' *' if kept else ''}",
-        item["tier"],
-        "; ".join(changes) or ("as inferred" if item["number"] == 0 else "-"),
-        "; ".join(item["failed"]) or "nothing",
-        "; ".join(item["blamed"]) or "-",
-        f"{item['score']:.2f}",
-        f"{item['seconds']:.1f}",
-    )
-
-
-def history_words(record: Mapping[str, Any]) -> list[str]:
-    """Which round was kept, why the loop ended, and what was refused, a sentence each."""
-    rounds, kept = record["rounds"], record["kept"]
-    if not rounds:
-        return ["Nothing was simulated."]
-    chosen = next(item for item in rounds if item["number"] == kept)
-    left = f"{chosen['errors']} errors and {chosen['warnings']} warnings about motion"
-    what = "the model as it was inferred" if kept == 0 else f"round {kept}"
-    refused = [phrase for item in rounds for phrase in item["refused"]]
-    ended = f"The loop ended because {record['ended']} ({record['seconds']:.1f} s, {record['candidates']} candidates)."
-    return [
-        f"Kept: {what}, with {left}. {ended}",
-        *(f"Refused, because it would have hidden a failure: {phrase}." for phrase in dict.fromkeys(refused)),
-    ]

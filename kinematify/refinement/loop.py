@@ -1,8 +1,9 @@
 """The loop: simulate, feed back, choose again, and keep the best round (design section 5).
 
 It ends when nothing is left to act on, when a plan repeats, when the rounds or the time are used up. Each round is a
-plan of its own; the one with the fewest errors, then warnings, then the most evidence is kept, and the inference wins
-every tie, so that refining never makes a model worse by its own standards.
+plan of its own; the one with the fewest errors, then with the right parts and contacts, then with the fewest warnings,
+then with the most evidence is kept. The inference wins every tie, so that refining never makes a model worse by its
+own standards.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from kinematify.geometry.surface import part_surfaces
-from kinematify.refinement.candidates import CandidateJoints
+from kinematify.refinement.candidates import CandidateJoints, score_of
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.contacts import audit_contacts, rebuilt
 from kinematify.refinement.history import Change, History, Round
@@ -106,10 +107,14 @@ class _Done:
     feedback: Feedback
     round: Round
 
-    @property
-    def rank(self) -> tuple[float, ...]:
-        """Smaller is better: errors about motion, then warnings, then evidence; earlier rounds win ties."""
-        return (*_severities(self.verdict), -self.round.score, self.round.number)
+    def rank(self, mended: int) -> tuple[float, ...]:
+        """Smaller is better: errors about motion, wrong parts or contacts, warnings, evidence; earlier rounds win ties.
+
+        Args:
+            mended: Number of the round from which on parts and contacts are what the meshes say.
+        """
+        errors, warnings = _severities(self.verdict)
+        return errors, self.round.number < mended, warnings, -self.round.score, self.round.number
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -136,6 +141,7 @@ class _Loop:
         self.done: list[_Done] = []
         self.ended = "all rounds were used"
         self.simulated = 0
+        self.mended = 0
 
     def in_time(self) -> bool:
         """Whether there is time for one thing more."""
@@ -172,7 +178,7 @@ class _Loop:
         if not self.done:
             history = self._history(0)
             return Refinement(inference=replace(self.given, refinement=self._record(history)), history=history)
-        best = min(self.done, key=lambda done: done.rank)
+        best = min(self.done, key=lambda done: done.rank(self.mended))
         history = self._history(best.round.number)
         inference = self.given
         if best.round.number > 0:
@@ -199,7 +205,9 @@ class _Loop:
         motion_errors = _severities(verdict)[0]
         if self.tier != GEOMETRY:
             verdict = dear_verdict(plan, verdict, tier=self.tier, settings=self.request.settings)
-        feedback = feedback_from(verdict.findings, verdict.joints, plan.declared, self.config.feedback)
+        feedback = feedback_from(
+            verdict.findings, verdict.joints, plan.declared, self.config.feedback, placements=verdict.placements
+        )
         self.memory.add(plan.assembly, feedback.edges)
         errors, warnings = _severities(verdict)
         return _Done(
@@ -230,6 +238,7 @@ class _Loop:
         if done.round.number == 0:
             rebuilt_plan = self._rebuilt(done)
             if rebuilt_plan is not None:
+                self.mended = 1
                 return (*rebuilt_plan, [])
         plan = done.plan
         changes: list[Change] = []
@@ -320,6 +329,6 @@ def _blamed(feedback: Feedback) -> list[str]:
 
 def _score(plan: Plan, feedback: Feedback) -> float:
     """Evidence for the chosen joints, less what speaks against them [log odds]."""
-    scores = [joint.evidence.get("chosen_score", 0.0) for joint in plan.joints]
+    scores = [score_of(joint) for joint in plan.joints]
     against = [feedback.against(plan.assembly.names[joint.child]) for joint in plan.joints]
     return sum(scores) - sum(against) - sum(signal.weight for signal in feedback.edges)

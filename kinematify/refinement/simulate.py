@@ -6,7 +6,7 @@ of joints that did not change since an earlier plan are not repeated.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +24,7 @@ from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import OpenCheck
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from kinematify.assembly.part import FloatArray
     from kinematify.model.kinematic_model import Joint, KinematicModel
@@ -50,6 +50,8 @@ class Verdict:
     findings: tuple[Finding, ...]
     joints: tuple[JointSummary, ...]
     """With the free travel of each joint that moves."""
+    placements: Mapping[str, float] = field(default_factory=dict)
+    """How many places of the robot were tried for each joint, if there was a task."""
     complete: bool = True
     """False where time ran out before all joints were moved."""
 

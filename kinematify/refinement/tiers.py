@@ -13,12 +13,15 @@ from kinematify.validation.task.request import PULL, TaskRequest
 
 if TYPE_CHECKING:
     from kinematify.refinement.plan import Plan
+    from kinematify.validation.report import ValidationReport
     from kinematify.validation.settings import ValidationSettings
 
 GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"
 TIERS = (GEOMETRY, ENGINES, TASK)
 """From cheap to dear; each includes those before it."""
 
+_TRIED = " tried"
+"""After the name of a joint, in what KV705 measures."""
 _OWN = ("KV30", "KV31", "KV32")
 """Checks that the cheap tier has told already."""
 
@@ -38,4 +41,15 @@ def dear_verdict(plan: Plan, cheap: Verdict, *, tier: str, settings: ValidationS
     told = tuple(finding for finding in report.counted if not finding.check.startswith(_OWN))
     if report.environment.get("interrupted"):
         raise KeyboardInterrupt
-    return Verdict(findings=(*cheap.findings, *told), joints=cheap.joints, complete=cheap.complete)
+    return Verdict(
+        findings=(*cheap.findings, *told),
+        joints=cheap.joints,
+        placements=_placements(report),
+        complete=cheap.complete,
+    )
+
+
+def _placements(report: ValidationReport) -> dict[str, float]:
+    """How many places of the robot were tried for each joint."""
+    measured = next((check.measured for check in report.checks if check.check == "KV705"), {})
+    return {name.removesuffix(_TRIED): value for name, value in measured.items() if name.endswith(_TRIED)}

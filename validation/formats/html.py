@@ -14,15 +14,18 @@ from kinematify.validation.formats.html_motion import curves, show_button, viewe
 from kinematify.validation.formats.html_pairs import pair_matrix
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
+    NEXT_BEST_HEADINGS,
     alternative,
     configuration,
     family_rows,
     figures,
     joint_range,
     measure,
+    next_best_rows,
     title,
     where,
 )
+from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
 from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
@@ -117,6 +120,8 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         "<h3>Findings</h3>",
         _findings(index, outcome, with_viewer=bool(scene)),
         _joints(index, outcome),
+        _next_best(index, outcome),
+        _rounds(index, outcome),
         curves(outcome),
         pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
@@ -211,6 +216,23 @@ def _joints(index: int, report: ValidationReport) -> str:
     ]
     headings = ("joint", "type", "declared limits", "free travel", "better alternative")
     return "<h3>Joints</h3>" + table(headings, rows, name=f"joints-{index}")
+
+
+def _next_best(index: int, report: ValidationReport) -> str:
+    """What the inference would have chosen next where a joint failed; nothing if it left no record."""
+    rows = [tuple(map(text, row)) for row in next_best_rows(report)]
+    if not rows:
+        return ""
+    return "<h3>Next best joints</h3>" + table(NEXT_BEST_HEADINGS, rows, name=f"next-{index}")
+
+
+def _rounds(index: int, report: ValidationReport) -> str:
+    """How the model was refined."""
+    if report.refinement is None:
+        return ""
+    rows = [tuple(map(text, row)) for row in round_rows(report.refinement)]
+    words = "".join(f"<p>{text(line)}</p>" for line in round_words(report.refinement))
+    return "<h3>Rounds of refinement</h3>" + table(ROUND_HEADINGS, rows, name=f"rounds-{index}") + words
 
 
 def _pairs(index: int, report: ValidationReport) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify.validation.catalogue import CATALOGUE, FAMILIES
 from kinematify.validation.finding import Status
@@ -69,11 +69,26 @@ def joint_range(joint: JointSummary, limits: tuple[float, float] | None) -> str:
     return f"{low} to {high} {'deg' if turning else 'mm'}"
 
 
+NEXT_BEST_HEADINGS = ("joint", "next best by the inference", "from")
+"""Headings of `next_best_rows`."""
+
+
+def next_best_rows(report: ValidationReport) -> list[tuple[str, ...]]:
+    """What the inference would have chosen next for every joint that failed, best first."""
+    return [
+        (joint.joint, _candidate(candidate), str(candidate.get("source", "")))
+        for joint in report.joints
+        for candidate in joint.next_best
+    ]
+
+
 def alternative(joint: JointSummary) -> str:
     """The joint that would explain the geometry better, in a few words; a dash if there is none."""
     better = joint.best_alternative
-    if not better:
-        return "-"
+    return _candidate(better) if better else "-"
+
+
+def _candidate(better: Mapping[str, Any]) -> str:
     places = [
         f"{key} ({', '.join(number(float(item)) for item in better[key])})"
         for key in ("axis", "pivot")

@@ -1,0 +1,319 @@
+"""Refining: it mends what simulation shows to be wrong, leaves alone what is right, and cannot win by cheating."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+import trimesh
+
+import kinematify
+from kinematify.assembly.part import Assembly, Part
+from kinematify.benchmark.perturb import PERTURBATIONS, perturbed, without_pieces
+from kinematify.benchmark.prediction import PredictedJoint, Prediction
+from kinematify.cli.app import run
+from kinematify.config import load_config
+from kinematify.errors import InputError
+from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.pipeline import Inference, infer, write_inference
+from kinematify.refinement import loop, refine
+from kinematify.refinement.folder import open_model_folder
+from kinematify.refinement.plan import Plan
+from kinematify.refinement.simulate import Simulator
+from kinematify.validation.finding import Severity
+from kinematify.validation.inferred import round_rows
+from kinematify.validation.settings import load_settings
+from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CONFIG = load_config()
+SETTINGS = load_settings()
+
+
+@cache
+def inferred(name: str) -> Inference:
+    return infer(BUILDERS[name]().assembly, config=CONFIG)
+
+
+def joint_above(inference: Inference, child: str) -> JointEstimate:
+    number = inference.assembly.names.index(child)
+    return next(joint for joint in inference.joints if joint.child == number)
+
+
+def with_joint(inference: Inference, child: str, **changes: object) -> Inference:
+    """The inference as if it had chosen otherwise for one part; the right candidate stays among its alternatives."""
+    wrong = replace(joint_above(inference, child), **changes)
+    joints = tuple(wrong if joint.child == wrong.child else joint for joint in inference.joints)
+    return replace(inference, joints=joints)
+
+
+def mistaken(inference: Inference, child: str, axis: tuple[float, float, float], lead: float = 0.5) -> Inference:
+    """A slide along another axis, which its evidence prefers by `lead`."""
+    right = joint_above(inference, child)
+    candidate = JointCandidate(
+        kind=JointType.PRISMATIC, axis=np.array(axis), pivot=right.pivot, score=right.alternatives[0].score + lead,
+        source="planted",
+    )  # fmt: skip
+    return with_joint(
+        inference, child, kind=JointType.PRISMATIC, axis=candidate.axis, lower=-0.2, upper=0.2,
+        alternatives=(candidate, *right.alternatives),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["drawer", "edge_door", "lever", "parallel_gripper"])
+def test_what_is_right_stays_as_it_is(name: str) -> None:
+    before = inferred(name)
+    after = refine(before)
+    assert after.history.kept == 0
+    assert after.inference.joints == before.joints
+    assert after.inference.trees == before.trees
+    assert not after.interrupted
+
+
+def test_a_drawer_along_the_wrong_axis_finds_the_right_one_again() -> None:
+    right = joint_above(inferred("drawer"), "drawer")
+    refinement = refine(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), seconds=60.0)
+    found = joint_above(refinement.inference, "drawer")
+    assert refinement.history.rounds[0].errors > 0
+    assert refinement.history.rounds[refinement.history.kept].errors == 0
+    assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
+    (change,) = refinement.history.changed
+    assert (change.part, change.what) == ("drawer", "axis")
+
+
+def test_evidence_of_shape_can_outweigh_the_simulation() -> None:
+    sure = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=50.0)
+    assert joint_above(refine(sure, seconds=60.0).inference, "drawer").kind is JointType.PRISMATIC
+    assert refine(sure, seconds=60.0).history.changed == ()
+
+
+def test_a_range_beyond_the_free_travel_ends_there_and_not_far_below() -> None:
+    right = joint_above(inferred("edge_door"), "door")
+    wide = with_joint(inferred("edge_door"), "door", upper=4.5)
+    found = joint_above(refine(wide, seconds=60.0).inference, "door")
+    assert right.upper <= found.upper < 4.5
+    assert found.upper > 2.25
+
+
+def test_no_range_is_cut_below_half_to_hide_a_failure() -> None:
+    nailed = Assembly(parts=(*BUILDERS["edge_door"]().parts, _stop()), source="test")
+    model = infer(nailed, config=CONFIG)
+    forced = with_joint(model, "door", upper=2.0)
+    refinement = refine(forced, seconds=60.0)
+    found = joint_above(refinement.inference, "door")
+    assert found.kind is not JointType.FIXED
+    assert found.upper - found.lower >= 1.0
+
+
+def _stop() -> Part:
+    """A block before the closed door that stops it after a few degrees."""
+    known = BUILDERS["edge_door"]()
+    lower, upper = known.assembly.bounds
+    corner = np.array([upper[0] - 0.03, lower[1] - 0.12, lower[2]])
+    shape = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    faces = np.array(
+        [[0, 1, 3], [0, 3, 2], [4, 7, 5], [4, 6, 7], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+         [1, 5, 7], [1, 7, 3]]
+    )  # fmt: skip
+    return Part(name="stop", vertices=corner + shape * [0.03, 0.06, 0.5], faces=faces)
+
+
+def test_nothing_is_fixed_to_silence_a_finding_while_another_joint_is_free() -> None:
+    refinement = refine(mistaken(inferred("drawer"), "drawer", (0.0, 0.0, 1.0)), seconds=60.0)
+    assert all(joint.kind is not JointType.FIXED for joint in refinement.inference.joints)
+
+
+def cell() -> Inference:
+    """A cube in a closed box that leaves it a tenth of a millimetre on every side."""
+    wall, room = 0.02, 0.0501
+    walls = [
+        trimesh.creation.box(extents=np.where(np.arange(3) == axis, wall, 2 * (room + wall))).apply_translation(
+            sign * (room + 0.5 * wall) * np.eye(3)[axis]
+        )
+        for axis in range(3)
+        for sign in (-1.0, 1.0)
+    ]
+    shell, core = trimesh.util.concatenate(walls), trimesh.creation.box(extents=[0.1] * 3)
+    parts = [Part(name=name, vertices=m.vertices, faces=m.faces) for name, m in (("shell", shell), ("core", core))]
+    return infer(Assembly(parts=tuple(parts), source="cell"), config=CONFIG, base="shell")
+
+
+def test_what_no_near_best_joint_can_move_is_fixed_with_its_evidence() -> None:
+    middle = np.zeros(3)
+    slide, turn = (
+        JointCandidate(kind=kind, axis=np.eye(3)[axis], pivot=middle, score=-0.1 * axis, source="planted")
+        for axis, kind in enumerate((JointType.PRISMATIC, JointType.REVOLUTE))
+    )
+    loose = with_joint(
+        cell(), "core", kind=JointType.PRISMATIC, axis=slide.axis, pivot=middle, lower=-0.1, upper=0.1,
+        alternatives=(slide, turn),
+    )  # fmt: skip
+    refinement = refine(loose, seconds=60.0)
+    assert joint_above(refinement.inference, "core").kind is JointType.FIXED
+    (change,) = refinement.history.changed
+    assert (change.part, change.what) == ("core", "fixed")
+    assert "blocked to both sides" in change.why
+
+
+def test_collision_geometry_is_never_touched() -> None:
+    before = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    after = refine(before, seconds=60.0).inference
+    for one, other in zip(before.model.links, after.model.links, strict=True):
+        assert one.part is other.part
+        assert len(one.collision_parts) == len(other.collision_parts)
+
+
+def test_the_best_round_is_kept_even_if_later_ones_are_worse(monkeypatch: pytest.MonkeyPatch) -> None:
+    good = inferred("drawer")
+    worse = mistaken(good, "drawer", (1.0, 0.0, 0.0))
+
+    def choose_badly(self: loop._Loop, done: loop._Done) -> object:
+        plan = Plan(assembly=good.assembly, config=good.config, tree=good.trees[0], joints=worse.joints)
+        change = loop.Change(part="drawer", what="axis", before="a", after="b", why="planted")
+        return plan, done.contacts, [change], []
+
+    monkeypatch.setattr(loop._Loop, "_choose", choose_badly)
+    refinement = refine(good, rounds=1)
+    assert [item.errors > 0 for item in refinement.history.rounds] == [False, True]
+    assert refinement.history.kept == 0
+    assert refinement.inference.joints == good.joints
+
+
+def test_ctrl_c_leaves_the_best_so_far() -> None:
+    def stop(stage: str, share: float) -> None:
+        if stage.startswith("round 1: simulating"):
+            raise KeyboardInterrupt
+
+    start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    refinement = refine(start, seconds=60.0, progress=stop)
+    assert refinement.interrupted
+    assert len(refinement.history.rounds) == 1
+    assert refinement.inference.joints == start.joints
+
+
+def test_time_and_rounds_are_bounded() -> None:
+    start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    assert len(refine(start, rounds=0).history.rounds) == 1
+    hurried = refine(start, seconds=1e-6)
+    assert len(hurried.history.rounds) <= 2
+    assert hurried.history.candidates == 0
+
+
+def test_a_part_whose_contact_was_missed_is_hung_on_what_it_touches_again() -> None:
+    known = BUILDERS["toilet"]()
+    right = inferred("toilet")
+    edges = [edge for edge in right.graph.edges if (edge.a, edge.b) != (0, 2)]
+    wrong = infer(known.assembly, config=CONFIG, graph=replace(right.graph, edges=tuple(edges)))
+    assert wrong.trees[0].parents != right.trees[0].parents
+    refinement = refine(wrong, seconds=60.0)
+    assert refinement.inference.trees[0].parents == right.trees[0].parents
+    assert {"contacts", "parent"} <= {change.what for change in refinement.history.changed}
+
+
+def test_pieces_of_one_part_are_fixed_to_each_other_because_their_rims_coincide() -> None:
+    whole = BUILDERS["toilet"]().assembly
+    base = inferred("toilet").trees[0].root
+    number = next(index for index in range(len(whole.parts)) if index != base)
+    part = whole.parts[number]
+    side = part.vertices[part.faces].mean(axis=1)[:, 0] > np.median(part.vertices[part.faces].mean(axis=1)[:, 0])
+    pieces = [replace(part, faces=part.faces[~side]), replace(part, name="piece", faces=part.faces[side])]
+    parts = [item for item in whole.parts if item is not part]
+    refinement = refine(infer(Assembly(parts=(*parts, *pieces), source="cut"), config=CONFIG), seconds=60.0)
+    names = refinement.inference.assembly.names
+    fixed = {
+        frozenset((names[joint.parent], names[joint.child]))
+        for joint in refinement.inference.joints
+        if joint.kind is JointType.FIXED
+    }
+    assert fixed == {frozenset((part.name, "piece"))}
+    whys = [change.why for change in refinement.history.changed if change.what == "fixed"]
+    assert whys
+    assert all("rims coincide" in why for why in whys)
+
+
+def test_unknown_tier_is_refused() -> None:
+    with pytest.raises(ValueError, match="no tier dear"):
+        refine(inferred("drawer"), tier="dear")
+
+
+def test_history_is_written_and_a_second_refinement_goes_on_from_the_first(tmp_path: Path) -> None:
+    refined = refine(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), seconds=60.0)
+    write_inference(refined.inference, tmp_path / "out", preview=False)
+    record = json.loads((tmp_path / "out" / "inference.json").read_text())
+    assert record["refinement"]["kept"] == 1
+    assert [row[0] for row in round_rows(record["refinement"])] == ["0", "1 *"]
+    assembly, config = open_model_folder(tmp_path / "out")
+    assert assembly.names == refined.inference.assembly.names
+    for one, other in zip(assembly.parts, refined.inference.assembly.parts, strict=True):
+        assert np.abs(one.bounds - other.bounds).max() < 1e-6
+    assert config == CONFIG
+
+
+def test_refine_command_and_its_refusals(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    write_inference(inferred("drawer"), out, preview=False)
+    (out / "notes.txt").write_text("mine")
+    assert run(["refine", str(out), "--no-preview", "--json", "-"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["passes"]
+    assert answer["refinement"]["kept"] == 0
+    assert (out / "notes.txt").read_text() == "mine"
+    assert run(["refine", str(out), "--no-preview"]) == 0
+    assert "Kept: the model as it was inferred" in capsys.readouterr().out
+    assert run(["refine", str(out), "--budget", "0"]) == 2
+    assert run(["refine", str(out), "--base", "nobody"]) == 2
+    assert run(["refine", str(tmp_path)]) == 2
+    assert "There is no inference.json" in capsys.readouterr().err
+    urdf = out / "model.urdf"
+    urdf.write_text(urdf.read_text().replace("prismatic", "revolute"))
+    assert run(["refine", str(out)]) == 2
+    assert "was changed or removed since" in capsys.readouterr().err
+
+
+def test_a_folder_of_an_older_version_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "inference.json").write_text('{"schema": 1}')
+    with pytest.raises(InputError, match="older version"):
+        open_model_folder(tmp_path)
+
+
+def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
+    bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    mine = Simulator(bad.model, SETTINGS.geometry).judge(bad.model).findings
+    write_inference(bad, tmp_path / "out", preview=False)
+    checks = ["KV301", "KV302", "KV303", "KV310", "KV311", "KV312", "KV320", "KV321"]
+    report = kinematify.validate(tmp_path / "out" / "model.urdf", selected=checks, engines=())
+    theirs = [item for item in report.findings if item.check in checks]
+    assert sorted((item.check, item.joint) for item in mine) == sorted((item.check, item.joint) for item in theirs)
+    assert any(item.severity is Severity.ERROR for item in mine)
+
+
+@pytest.mark.parametrize("name", PERTURBATIONS)
+def test_perturbations_are_seeded_and_leave_the_truth_alone(name: str) -> None:
+    assembly = BUILDERS["nested_drawer"]().assembly
+    one, same = (perturbed(name, assembly, CONFIG, seed=3) for _ in range(2))
+    assert [part.mesh_hash for part in one.assembly.parts] == [part.mesh_hash for part in same.assembly.parts]
+    assert set(assembly.names) <= set(one.assembly.names)
+
+
+def test_a_fixed_piece_is_one_part_again_when_scored() -> None:
+    def joint(parent: int, child: int, kind: JointType) -> PredictedJoint:
+        return PredictedJoint(
+            parent=parent, child=child, kind=kind, axis=np.eye(3)[2], pivot=np.zeros(3), lower=0.0, upper=1.0
+        )
+
+    above = Prediction(
+        parents={0: -1, 2: 0, 1: 2}, joints=(joint(0, 2, JointType.REVOLUTE), joint(2, 1, JointType.FIXED))
+    )
+    merged = without_pieces(above, {2: 1})
+    assert dict(merged.parents) == {0: -1, 1: 0}
+    assert [(item.parent, item.child, item.kind) for item in merged.joints] == [(0, 1, JointType.REVOLUTE)]
+    loose = Prediction(
+        parents={0: -1, 1: 0, 2: 1}, joints=(joint(0, 1, JointType.REVOLUTE), joint(1, 2, JointType.REVOLUTE))
+    )
+    assert dict(without_pieces(loose, {2: 1}).parents) == dict(loose.parents)

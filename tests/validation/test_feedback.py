@@ -1,0 +1,177 @@
+"""Each kind of failure, on an object made to fail in just that way, blames the decision that it should and no other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kinematify.config import load_config
+from kinematify.validation.feedback import DeclaredJoint, Feedback, feedback_from
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity
+from kinematify.validation.geometry.stage import run
+from kinematify.validation.report import JointSummary
+from kinematify.validation.stage import Recorder
+from tests.validation.engine_models import Box, Model, Part, cabinet
+from tests.validation.test_geometry import SELECTED, beam, block, request_for
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CONFIG = load_config().refine.feedback
+
+
+def declared(model: Model) -> dict[str, DeclaredJoint]:
+    """The joints of a model as the mapping knows them."""
+    return {
+        f"{part.name}_joint": DeclaredJoint(
+            parent=part.parent, child=part.name, kind=part.kind, lower=part.limits[0], upper=part.limits[1]
+        )
+        for part in model.parts
+        if part.parent is not None
+    }
+
+
+def fed_back(model: Model, folder: Path, *more: Finding, tried: int = 0) -> Feedback:
+    """What the checks by geometry say of a model, and some findings of engines, as feedback."""
+    told: list[CheckResult | JointSummary] = []
+    run(request_for(model, folder), Recorder(told.append, SELECTED))
+    findings = [finding for item in told if isinstance(item, CheckResult) for finding in item.findings]
+    summaries = [item for item in told if isinstance(item, JointSummary)]
+    places = {"drawer_joint": float(tried)}
+    return feedback_from([*findings, *more], summaries, declared(model), CONFIG, placements=places)
+
+
+def engine(check: str, joint: str = "drawer_joint", **changes: object) -> Finding:
+    """A finding of an engine or a task about the drawer of the cabinet."""
+    known = Finding(
+        check=check, severity=Severity.ERROR, blame=Blame.KINEMATICS, message="m", remedy="r", joint=joint,
+        engine="mujoco",
+    )  # fmt: skip
+    return replace(known, **changes)
+
+
+def test_a_good_model_has_nothing_to_feed_back(tmp_path: Path) -> None:
+    assert not fed_back(cabinet(), tmp_path)
+
+
+def test_blocked_to_both_sides_blames_line_and_type_and_no_range(tmp_path: Path) -> None:
+    model = cabinet().with_part("drawer", axis=(0.0, 1.0, 0.0), limits=(-0.3, 0.3))
+    feedback = fed_back(model, tmp_path)
+    assert {signal.child for signal in feedback.lines} == {"drawer"}
+    assert {(signal.child, signal.kind) for signal in feedback.types} == {("drawer", "prismatic")}
+    assert feedback.ranges == ()
+    assert feedback.against("drawer") == pytest.approx(CONFIG.blocked_line + CONFIG.blocked_type)
+
+
+def test_blocked_to_one_side_turns_the_joint_round_and_blames_no_line(tmp_path: Path) -> None:
+    feedback = fed_back(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    assert feedback.lines == feedback.types == ()
+    (signal,) = feedback.ranges
+    assert (signal.child, signal.check) == ("drawer", "KV310")
+    assert signal.lower is not None
+    assert signal.lower <= -0.19
+    assert signal.upper is not None
+    assert signal.upper < 0.01
+
+
+def test_a_range_beyond_the_free_travel_ends_there(tmp_path: Path) -> None:
+    feedback = fed_back(cabinet().with_part("door", limits=(0.0, 5.2)), tmp_path)
+    assert feedback.lines == feedback.types == ()
+    (signal,) = feedback.ranges
+    assert signal.lower is None
+    assert signal.upper == pytest.approx(3.14, abs=0.06)
+
+
+def test_what_runs_into_a_stranger_blames_its_parent_for_that_stranger(tmp_path: Path) -> None:
+    slider = block("slider", -0.3, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.3))
+    post = Part(name="post", boxes=(Box(size=(0.1, 0.1, 0.3)),), parent="beam", kind="revolute",
+                at=(0.0, 0.0, 0.2), axis=(0.0, 0.0, 1.0), limits=(-0.1, 0.1))  # fmt: skip
+    feedback = fed_back(beam(slider, post), tmp_path)
+    (signal,) = feedback.edges
+    assert (signal.parent, signal.child, signal.better) == ("beam", "slider", "post")
+    assert signal.weight == pytest.approx(CONFIG.warning_share * CONFIG.sibling_edge)
+    assert feedback.lines == ()
+
+
+def test_what_leaves_its_parent_blames_line_and_type(tmp_path: Path) -> None:
+    model = cabinet().with_part(
+        "door", at=(0.205, 1.0, 0.0), boxes=(Box(size=(0.02, 0.3, 0.4), at=(0.01, -0.83, 0.0)),), axis=(0.0, 0.0, 1.0)
+    )
+    feedback = fed_back(model, tmp_path)
+    assert [(signal.child, signal.check) for signal in feedback.lines] == [("door", "KV320")]
+    assert [(signal.child, signal.kind) for signal in feedback.types] == [("door", "revolute")]
+
+
+def test_what_hangs_in_the_air_blames_its_parent(tmp_path: Path) -> None:
+    feedback = fed_back(beam(block("block", 0.0, z=0.2)), tmp_path)
+    assert [(signal.parent, signal.child, signal.check) for signal in feedback.edges] == [("beam", "block", "KV303")]
+
+
+def test_a_slide_out_of_its_guide_ends_before(tmp_path: Path) -> None:
+    feedback = fed_back(cabinet().with_part("drawer", limits=(0.0, 0.45)), tmp_path)
+    (signal,) = feedback.ranges
+    assert signal.check == "KV321"
+    assert signal.upper is not None
+    assert 0.1 < signal.upper < 0.45
+    assert feedback.lines == feedback.types == ()
+
+
+def test_hulls_in_the_way_are_not_the_search_s_to_mend(tmp_path: Path) -> None:
+    fat = (Box(size=(0.15, 0.3, 0.4), at=(-0.05, -0.15, 0.0)),)
+    feedback = fed_back(cabinet().with_part("door", limits=(0.0, 2.9), collision=fat), tmp_path)
+    assert feedback.lines == feedback.types == feedback.ranges == ()
+    assert {item.blame for item in feedback.left} == {"physics"}
+
+
+def test_overlap_at_rest_is_allowed_with_its_reason_and_blames_no_axis(tmp_path: Path) -> None:
+    feedback = fed_back(beam(block("left", 0.0), block("right", 0.05)), tmp_path)
+    (allowance,) = feedback.allowances
+    assert set(allowance.pair) == {"left", "right"}
+    assert allowance.depth == pytest.approx(0.05, rel=0.1)
+    assert allowance.reason
+    assert not feedback
+
+
+@pytest.mark.parametrize("check", ["KV402", "KV502", "KV601", "KV606", "KV204"])
+def test_disagreeing_engines_and_files_are_reported_and_not_acted_on(tmp_path: Path, check: str) -> None:
+    feedback = fed_back(cabinet(), tmp_path, engine(check, blame=Blame.ENGINE))
+    assert not feedback
+    assert [item.check for item in feedback.left] == [check]
+
+
+def test_a_drive_that_gets_stuck_blames_the_line_unless_hulls_explain_it(tmp_path: Path) -> None:
+    stuck = engine("KV405")
+    assert [signal.check for signal in fed_back(cabinet(), tmp_path, stuck).lines] == ["KV405"]
+    explained = fed_back(cabinet(), tmp_path, stuck, engine("KV332", blame=Blame.PHYSICS, engine=None))
+    assert explained.lines == ()
+    assert {item.check for item in explained.left} == {"KV405", "KV332"}
+
+
+def test_explosions_blame_masses_first_and_the_line_only_after_that(tmp_path: Path) -> None:
+    unstable = engine("KV407", blame=Blame.PHYSICS)
+    first = fed_back(cabinet(), tmp_path, unstable, engine("KV205", blame=Blame.PHYSICS, engine=None))
+    assert first.lines == ()
+    (signal,) = fed_back(cabinet(), tmp_path, unstable).lines
+    assert 0.0 < signal.weight < CONFIG.blocked_line / 2
+
+
+def test_sinking_speaks_only_weakly(tmp_path: Path) -> None:
+    (signal,) = fed_back(cabinet(), tmp_path, engine("KV404", blame=Blame.PHYSICS)).lines
+    assert 0.0 < signal.weight <= CONFIG.blocked_line / 5
+
+
+@pytest.mark.parametrize(("placements", "blamed"), [(1, False), (CONFIG.placements, True)])
+def test_no_way_to_pull_speaks_only_if_several_places_failed(tmp_path: Path, placements: int, blamed: bool) -> None:
+    finding = engine("KV704", blame=Blame.TASK, engine=None)
+    assert bool(fed_back(cabinet(), tmp_path, finding, tried=placements).lines) is blamed
+
+
+def test_suppressed_findings_do_not_count(tmp_path: Path) -> None:
+    assert not fed_back(cabinet(), tmp_path, engine("KV405", suppressed="accepted"))
+
+
+def test_feedback_is_plain_data(tmp_path: Path) -> None:
+    feedback = fed_back(cabinet().with_part("drawer", axis=(0.0, 1.0, 0.0), limits=(-0.3, 0.3)), tmp_path)
+    assert feedback.as_json()["lines"][0]["child"] == "drawer"
