@@ -20,8 +20,6 @@ from multiprocessing import connection, forkserver, resource_tracker
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from kinematify.validation.stage import Recorder
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from multiprocessing.connection import Connection
@@ -30,7 +28,7 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.report import Summary
-    from kinematify.validation.stage import StageRequest
+    from kinematify.validation.stage import Recorder, StageRequest
 
 _SHOWN = 200
 """Characters of a failed stage's last words."""
@@ -40,6 +38,8 @@ _VARIABLES = {
 }
 """Of the workers: one thread per library, as there are as many workers as cores, and no search for a display."""
 _PRELOADED = (
+    "kinematify.validation.isolation",
+    "kinematify.validation.stage",
     "kinematify.validation.settings",
     "kinematify.validation.task.request",
     "kinematify.validation.asset.stage",
@@ -148,6 +148,9 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
         _silence(_log(stage, request))
     except FileNotFoundError:
         return  # the run was stopped meanwhile, and its folder is gone
+    # Imported here, and by the server: the sooner the caller starts that, the sooner everything ends.
+    from kinematify.validation.stage import Recorder  # noqa: PLC0415
+
     module, function = stage.function.split(":")
     run: Callable[[StageRequest, Recorder], None] = getattr(importlib.import_module(module), function)
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
