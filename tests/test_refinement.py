@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 
 import kinematify
+from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
 from kinematify.benchmark.perturb import PERTURBATIONS, perturbed, without_pieces
 from kinematify.benchmark.prediction import PredictedJoint, Prediction
@@ -29,9 +30,7 @@ from kinematify.validation.inferred import round_rows
 from kinematify.validation.settings import load_settings
 from tests.objects import BUILDERS
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
+ROOT = Path(__file__).resolve().parent.parent
 CONFIG = load_config()
 SETTINGS = load_settings()
 
@@ -235,6 +234,23 @@ def test_pieces_of_one_part_are_fixed_to_each_other_because_their_rims_coincide(
     whys = [change.why for change in refinement.history.changed if change.what == "fixed"]
     assert whys
     assert all("rims coincide" in why for why in whys)
+
+
+def test_a_twin_follows_what_the_evidence_of_all_twins_is_for() -> None:
+    cabinet = infer(load_assembly(ROOT / "examples" / "cabinet"), config=CONFIG)
+    right = joint_above(cabinet, "drawer_left")
+    top = max(item.score for item in right.alternatives)
+    turn = JointCandidate(
+        kind=JointType.REVOLUTE, axis=np.eye(3)[2], pivot=right.pivot, score=top + 0.2, source="planted"
+    )
+    others = [item for item in right.alternatives if not item.kind.turns]
+    wrong = with_joint(
+        cabinet, "drawer_left", kind=JointType.REVOLUTE, axis=turn.axis, lower=0.0, upper=1e-3,
+        alternatives=(turn, *others),
+    )  # fmt: skip
+    refinement = refine(wrong, seconds=60.0)
+    assert joint_above(refinement.inference, "drawer_left").kind is JointType.PRISMATIC
+    assert any("move alike" in change.why for change in refinement.history.changed)
 
 
 def test_unknown_tier_is_refused() -> None:

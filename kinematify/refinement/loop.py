@@ -23,7 +23,7 @@ from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.split import infer_joined
 from kinematify.refinement.tiers import GEOMETRY, TIERS, dear_verdict
 from kinematify.refinement.topology import Contacts, EdgeMemory, replanned, search_again
-from kinematify.refinement.twins import vote
+from kinematify.refinement.twins import TWINS, vote
 from kinematify.validation.feedback import feedback_from
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.settings import load_settings
@@ -329,6 +329,6 @@ def _blamed(feedback: Feedback) -> list[str]:
 
 def _score(plan: Plan, feedback: Feedback) -> float:
     """Evidence for the chosen joints, less what speaks against them [log odds]."""
-    scores = [score_of(joint) for joint in plan.joints]
+    scores = [score_of(joint) + joint.evidence.get(TWINS, 0.0) for joint in plan.joints]
     against = [feedback.against(plan.assembly.names[joint.child]) for joint in plan.joints]
     return sum(scores) - sum(against) - sum(signal.weight for signal in feedback.edges)

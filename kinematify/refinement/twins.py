@@ -6,11 +6,15 @@ the sum leads by the configured margin and they have a candidate of that type.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.joints.candidate import JointType
 from kinematify.refinement.history import Change
 from kinematify.refinement.words import described
+
+TWINS = "twins"
+"""What the evidence of the other twins is for a joint that followed them [log odds], in `JointEstimate.evidence`."""
 
 if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph
@@ -37,7 +41,8 @@ def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[
         if abs(lean) <= chooser.config.twin_lead or not chooser.in_time():
             continue
         for joint in members:
-            plan, change = _follow(plan, joint, turns=lean > 0.0, chooser=chooser, votes=len(members))
+            others = abs(lean - _lean(joint))
+            plan, change = _follow(plan, joint, turns=lean > 0.0, chooser=chooser, votes=len(members), others=others)
             changes += [change] if change is not None else []
     return plan, changes
 
@@ -64,7 +69,7 @@ def _lean(joint: JointEstimate) -> float:
 
 
 def _follow(
-    plan: Plan, joint: JointEstimate, *, turns: bool, chooser: Chooser, votes: int
+    plan: Plan, joint: JointEstimate, *, turns: bool, chooser: Chooser, votes: int, others: float
 ) -> tuple[Plan, Change | None]:
     """The best candidate of the type that the twins agree on, unless the simulation is against it."""
     if joint.kind.turns == turns:
@@ -82,4 +87,5 @@ def _follow(
         why=f"{votes} congruent parts on {plan.assembly.names[joint.parent]} move alike, and their evidence together "
         f"is for {'turning' if turns else 'sliding'}",
     )
-    return plan.with_joint(trial.joint), change
+    told = replace(trial.joint, evidence={**trial.joint.evidence, TWINS: others})
+    return plan.with_joint(told), change
