@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from kinematify.config.base import StageConfig
@@ -119,15 +120,86 @@ class KindConfig(StageConfig):
     """Weight of each cue of `joints/kind.py`; positive for sliding."""
 
 
+class JournalConfig(StageConfig):
+    """Pins in bores and barrels in knuckles: round surfaces of both parts that face each other."""
+
+    faces: int
+    """Faces of a part that are looked at, at most."""
+    straight: float
+    """Cosine: the other surface lies straight before a face and looks back."""
+    pairs: int
+    """Pairs of neighbouring faces that propose lines."""
+    neighbours: int
+    """Nearest faces among which the second of a pair is drawn."""
+    least_sine: float
+    """Sine of the angle between two normals below which they propose nothing."""
+    largest: float
+    """Largest radius as a fraction of the child's longest side."""
+    normal_deg: float
+    """Largest angle between a face's normal and the radius [deg]."""
+    radius_tolerance: float
+    """Largest deviation of a face from the radius, as a fraction of it."""
+    sectors: int
+    """Into which a full turn is divided."""
+    coverage: float
+    """Share of the sectors that must be held."""
+
+    @property
+    def normal_tolerance(self) -> float:
+        """`normal_deg` [rad]."""
+        return math.radians(self.normal_deg)
+
+
+class PlayConfig(StageConfig):
+    """How far the surface of a contact can turn or slide before it is stopped."""
+
+    least_samples: int
+    """Fewer samples of a contact say nothing."""
+    samples: int
+    """Samples that are followed, at most about."""
+    inset: float
+    """Samples are drawn into their own material by this fraction of the child's diagonal."""
+    turn_deg: float
+    """Angle that counts as free [deg]."""
+    slide: float
+    """Travel that counts as free, fraction of the child's diagonal."""
+    share: float
+    """The contact is stopped when more than this share of its samples has hit."""
+    journal_share: float
+    """The same for a contact with a journal."""
+    least: float
+    """Shorter travels are clearance, fraction of the child's diagonal."""
+    candidates: int
+    """Best lines of turning among which those at one edge are looked for."""
+    lines: int
+    """Lines at the best edge that are tried."""
+    edge: float
+    """Lines within this distance are at one edge, fraction of the child's diagonal."""
+    ratio: float
+    """One motion is free and the other is not where it goes so many times farther."""
+
+
 class LimitsConfig(StageConfig):
     """Limits from sweeps: an upper bound of the designed range."""
 
     panel_deg: float
     """Largest opening of a panel [deg]."""
+    held_deg: float
+    """A panel that turns less far is shut in by something, or its mesh overlaps its frame [deg]."""
+    square_deg: float
+    """A panel within this angle of square to its body is closed [deg]."""
+    closer: float
+    """Closing an open panel brings it so much nearer to its body, ratio of mean distances."""
+    unstopped_deg: float
+    """A lever that turns farther both ways is stopped inside, where it cannot be seen [deg]."""
+    lever_deg: float
+    """Travel of a lever that is pressed down [deg]; about an upright axis twice this both ways."""
     drawer: float
     """Travel of a drawer as a fraction of its own length."""
+    ajar: float
+    """A drawer whose front stands out by more than this fraction of its length is open."""
     button: float
-    """Travel of a button as a fraction of its own thickness."""
+    """Travel of a button as a fraction of what stands out of the surface around it."""
     least_deg: float
     """A turning joint keeps at least this range [deg]."""
     least_slide: float
@@ -186,3 +258,5 @@ class JointsConfig(StageConfig):
     kind: KindConfig
     rails: RailsConfig
     limits: LimitsConfig
+    journal: JournalConfig
+    play: PlayConfig

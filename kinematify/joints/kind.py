@@ -14,12 +14,13 @@ import numpy as np
 
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
+from kinematify.joints.play import contact_play
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
     from kinematify.joints.panels import RankedTurns
     from kinematify.joints.scene import JointScene
@@ -64,9 +65,16 @@ def decide_kind(
         **_room_cues(scene, turns, slides),
         **_shape_cues(scene, turns),
         **_twin_cues(scene, siblings),
+        **_play_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, config),
     }
-    cues["panel"] *= 1.0 - cues["blocked_turn"]  # a plate that cannot turn is no door
+    cues["panel"] *= 1.0 - max(cues["blocked_turn"], cues["keyed"])  # a plate that cannot turn is no door
+    hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
+    for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
+        cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
+    cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
+    for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
+        cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
     if _stuck(scene, turns, slides, config):
@@ -84,12 +92,49 @@ def _held_rail(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> f
     return 0.0 if along and turn > config.rails.held_deg else scene.railed
 
 
+def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
+    """What the contact itself lets go: a key, skirt or groove stops turning, a bead, barrel or fork stops sliding."""
+    play = None
+    if not scene.serial:
+        few = _near_best(scene, turns, config)
+        play = contact_play(scene, turns.lines.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    if play is None:
+        return {"keyed": 0.0, "retained": 0.0}
+    least = config.play.least * scene.frame.diagonal
+    # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
+    guided = scene.gated or np.isinf(play.slide)
+    return {
+        "keyed": float(guided and play.slides_only(least, config.play.ratio)),
+        "retained": float(play.turns_only(least, config.play.ratio)) * (1.0 - scene.smallness * (not scene.gated)),
+    }
+
+
+def _shafted(scene: JointScene) -> float:
+    """1 for a head on a thinner shaft that the parent holds all around, as knobs are made; caps of buttons are not."""
+    if scene.journal is None:
+        return 0.0
+    offset = scene.cache.samples(scene.child).points - scene.journal.pivot
+    head = float(np.linalg.norm(np.cross(offset, scene.journal.axis), axis=1).max())
+    return float(scene.journal.radius < 0.7 * head)
+
+
+def _near_best(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> IntArray:
+    """The best line, and where it is no bearing the next ones along the same edge, which may fit the hinge better."""
+    if scene.gated:
+        return np.zeros(1, dtype=np.int64)
+    axes, pivots = turns.lines.axes[: config.play.candidates], turns.lines.pivots[: config.play.candidates]
+    offset = pivots - pivots[0]
+    apart = np.linalg.norm(np.cross(offset, axes[0]), axis=1)
+    same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.play.edge * scene.frame.diagonal)
+    return np.flatnonzero(same)[: config.play.lines]
+
+
 def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> dict[str, float]:
     """Where the part can go: a drawer leaves one way and stops the other; a lift cannot turn at all."""
     own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
     level = float(1.0 - abs(float(slides.axes[0] @ UP)))
-    box = float(_is_box(scene))
+    box = float(_is_box(scene)) * _depth(scene, slides)
     large = 1.0 - scene.smallness
     furniture = large * (1.0 - scene.mechanism)
     one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
@@ -103,6 +148,14 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> d
         "blocked_turn": large * blocked,
         "guided": large * float(scene.gated) * _guided(scene, slides),
     }
+
+
+def _depth(scene: JointScene, slides: RankedSlides) -> float:
+    """1 for a part that reaches far along its best slide, as a drawer has a body behind its front; 0 for a leaf."""
+    along = np.abs(scene.frame.axes @ slides.axes[0])
+    extents = scene.frame.upper - scene.frame.lower
+    face = np.sort(extents[np.argsort(-along)[1:]])
+    return float(np.clip((float(along @ extents) / max(float(face[0]), 1e-12) - 0.25) / 0.25, 0.0, 1.0))
 
 
 def _channel(scene: JointScene, slides: RankedSlides) -> float:

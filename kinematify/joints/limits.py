@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.assembly.robot import rotation_about
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
@@ -58,47 +59,179 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
 
 
 def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
-    points = moving_points(scene.cache, scene.child, config.sweep)
-    obstacles = (scene.parent, *scene.others)
-    sweep = sweep_turns(scene.cache, points, axis[None], pivot[None], obstacles, limit=np.pi, config=config.sweep)
-    free = sweep.free(config.sweep.share)[0]
-    if free.min() >= np.pi and _turns_freely(scene, axis):
+    free = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
+    if free.min() >= np.pi and _turns_freely(scene, axis, pivot):
         return Range(
             kind=JointType.CONTINUOUS,
-            sign=_neutral_sign(scene, axis),
+            sign=_clockwise_sign(scene, axis),
             lower=-np.inf,
             upper=np.inf,
             free_forward=np.pi,
             free_backward=np.pi,
         )
+    furniture = scene.mechanism <= 0.5
+    if furniture and scene.panel:
+        return _panel_range(scene, axis, pivot, free, config)
+    if (
+        not scene.serial
+        and scene.gated
+        and free.min() > np.radians(config.limits.unstopped_deg)
+        and _is_lever(scene, axis)
+    ):
+        return _lever_range(scene, axis, free, config)
     sign = _turn_sign(scene, axis, pivot, free)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
-    least = np.radians(config.limits.least_deg)
-    door = scene.panel and scene.mechanism <= 0.5
-    if (scene.gated and not door) or scene.mechanism > 0.5:
+    if scene.gated or not furniture:
         lower, upper = -float(backward), float(forward)
     else:
-        lower = -float(backward) if backward < least else 0.0
+        lower = -float(backward) if backward < np.radians(config.limits.least_deg) else 0.0
         upper = min(float(forward), np.radians(config.limits.panel_deg))
+    return _range(sign, lower, upper, free, config)
+
+
+def _free_turn(
+    scene: JointScene, axis: FloatArray, pivot: FloatArray, obstacles: tuple[int, ...], config: JointsConfig
+) -> FloatArray:
+    """Free angle towards + and - [rad], shape (2,)."""
+    points = moving_points(scene.cache, scene.child, config.sweep)
+    sweep = sweep_turns(scene.cache, points, axis[None], pivot[None], obstacles, limit=np.pi, config=config.sweep)
+    return np.asarray(sweep.free(config.sweep.share)[0])
+
+
+def _range(sign: float, lower: float, upper: float, free: FloatArray, config: JointsConfig) -> Range:
+    forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
     return Range(
         kind=JointType.REVOLUTE,
         sign=sign,
         lower=lower,
-        upper=max(upper, least),
+        upper=max(upper, np.radians(config.limits.least_deg)),
         free_forward=float(forward),
         free_backward=float(backward),
     )
 
 
-def _turns_freely(scene: JointScene, axis: FloatArray) -> bool:
-    """A knob or wheel: a bearing through the part whose mass is spread evenly about it."""
-    if not scene.gated or (scene.mechanism >= 1.0 and scene.smallness < 1.0):
+# ---- panels --------------------------------------------------------------------------------------------------------
+
+
+def _panel_range(
+    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig
+) -> Range:
+    """A door or lid: it opens away from where it lies on its body, to a right angle beyond that place."""
+    limits = config.limits
+    if free.max() < np.radians(limits.held_deg):
+        # Something lies on it or stands before it, which is moved away first (a lid on a seat).
+        free = _free_turn(scene, axis, pivot, (scene.parent,), config)
+    ajar = closing_turn(scene, axis, pivot, free, config)
+    if ajar != 0.0:
+        sign, closing = -float(np.sign(ajar)), abs(ajar)
+        forward = float(free[0] if sign > 0 else free[1])
+        upper = min(forward, max(np.radians(limits.panel_deg) - closing, 0.0))
+        return _range(sign, -closing, upper, free, config)
+    sign = _turn_sign(scene, axis, pivot, free)
+    forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
+    if max(forward, backward) < np.radians(limits.held_deg):
+        forward = np.pi  # its mesh overlaps the frame: no door is made to stay shut
+    lower = -backward if backward < np.radians(limits.least_deg) else 0.0
+    return _range(sign, lower, min(forward, np.radians(limits.panel_deg)), free, config)
+
+
+def closing_turn(
+    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig
+) -> float:
+    """Signed angle [rad] by which a panel that stands open must turn to lie along its body; 0 where it is closed.
+
+    An open panel touches its body at the hinge alone and stands askew; of the ways to get square to the body, the one
+    that it can go and that brings it nearer closes it.
+
+    Args:
+        scene: The pair; its child is a panel.
+        axis: Unit direction of the hinge, shape (3,).
+        pivot: Point on it [m], shape (3,).
+        free: Free angle towards + and - [rad], shape (2,).
+        config: Bounds.
+    """
+    if _held_elsewhere(scene, axis, pivot, config):
+        return 0.0
+    normal = scene.frame.axes[scene.frame.thin]
+    found: list[tuple[float, float]] = []
+    for face in scene.parent_frame.axes:
+        across = face - (face @ axis) * axis
+        if np.linalg.norm(across) < 0.9 or abs(float(normal @ axis)) > 0.3:
+            continue
+        tilt = float(np.arctan2(np.cross(normal, across) @ axis, normal @ across))
+        if min(abs(tilt), np.pi - abs(tilt)) < np.radians(config.limits.square_deg):
+            return 0.0
+        for turn in (tilt, tilt - np.copysign(np.pi, tilt)):
+            if abs(turn) < free[0 if turn > 0 else 1] + np.radians(config.limits.held_deg):
+                found.append((_closeness(scene, axis, pivot, turn), turn))
+    if not found:
+        return 0.0
+    distance, turn = min(found)
+    closer = distance < config.limits.closer * _closeness(scene, axis, pivot, 0.0)
+    return turn if closer else 0.0
+
+
+def _held_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
+    """The panel touches its body away from the hinge, as a closed one does on its frame."""
+    if len(scene.contact.points) == 0:
         return False
+    reach = np.linalg.norm(np.cross(scene.cache.samples(scene.child).points - pivot, axis), axis=1).max()
+    apart = np.linalg.norm(np.cross(scene.contact.points - pivot, axis), axis=1)
+    near = (apart < config.panels.hinge_band * reach) @ scene.contact.weights
+    return bool(near < config.panels.ajar_share)
+
+
+def _closeness(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: float) -> float:
+    """Mean distance of the turned child from its parent [m]."""
+    points = scene.cache.samples(scene.child).points[::10]
+    moved = pivot + (points - pivot) @ rotation_about(axis, turn).T
+    return float(scene.cache.distances(scene.parent, moved).mean())
+
+
+# ---- knobs and levers ----------------------------------------------------------------------------------------------
+
+
+def _turns_freely(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> bool:
+    """A knob, wheel or turntable: a bearing through the part, or a round part, whose mass is even about the axis."""
+    disc = scene.disc > 0.5 and abs(float(axis @ scene.frame.axes[scene.frame.thin])) > 0.99
+    if not (scene.gated or disc) or (scene.mechanism >= 1.0 and scene.smallness < 1.0):
+        return False
+    anchor = scene.contact.centroid if scene.gated else pivot
+    return _eccentricity(scene, axis, anchor) < 0.25
+
+
+def _clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
+    """Knobs turn up clockwise as seen by who turns them (IEC 60447): the axis points into the part that carries them.
+
+    Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
+    """
+    knob = scene.smallness > 0.0 or not scene.plate
+    return (-1.0 if knob and scene.mechanism <= 0.5 else 1.0) * _neutral_sign(scene, axis)
+
+
+def _is_lever(scene: JointScene, axis: FloatArray) -> bool:
+    """An arm on a pivot."""
+    return _eccentricity(scene, axis, scene.contact.centroid) > 0.4
+
+
+def _eccentricity(scene: JointScene, axis: FloatArray, anchor: FloatArray) -> float:
+    """Distance of the child's mean from the line over the largest distance of any of its points."""
     points = scene.cache.samples(scene.child).points
-    offset = points - scene.contact.centroid
-    lever = np.linalg.norm(np.cross(points.mean(axis=0) - scene.contact.centroid, axis))
-    reach = np.linalg.norm(np.cross(offset, axis), axis=1).max()
-    return bool(lever < 0.25 * reach)
+    lever = np.linalg.norm(np.cross(points.mean(axis=0) - anchor, axis))
+    return float(lever / max(float(np.linalg.norm(np.cross(points - anchor, axis), axis=1).max()), 1e-12))
+
+
+def _lever_range(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> Range:
+    """A handle is pressed down by its free end where that lies level; about an upright axis it goes both ways."""
+    reach = np.radians(config.limits.lever_deg)
+    arm = scene.cache.samples(scene.child).points.mean(axis=0) - scene.contact.centroid
+    falling = float(np.cross(axis, arm)[2])
+    if abs(falling) > 0.5 * float(np.linalg.norm(np.cross(axis, arm))):
+        sign = 1.0 if falling < 0.0 else -1.0
+        return _range(sign, 0.0, min(float(free[0 if sign > 0 else 1]), reach), free, config)
+    sign = _neutral_sign(scene, axis)
+    forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
+    return _range(sign, -min(float(backward), 2 * reach), min(float(forward), 2 * reach), free, config)
 
 
 def _turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
@@ -120,6 +253,9 @@ def _neutral_sign(scene: JointScene, axis: FloatArray) -> float:
     return 1.0 if apart >= 0.0 else -1.0
 
 
+# ---- slides --------------------------------------------------------------------------------------------------------
+
+
 def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
     points = moving_points(scene.cache, scene.child, config.sweep)
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
@@ -129,21 +265,46 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
     free = sweep.free(config.sweep.share)[0]
     length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
     sign = _slide_sign(scene, axis, free)
-    forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
-    least = config.limits.least_slide * scene.diagonal
-    reach = config.limits.button * length if scene.smallness > 0.5 else config.limits.drawer * length
-    upper = max(min(float(forward), reach), least)
-    if scene.smallness > 0.5:
-        upper = max(reach, least)
-    lower = -min(float(backward), reach) if scene.mechanism > 0.5 else 0.0
+    forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
+    lower, upper = 0.0, 0.0
+    if scene.mechanism > 0.5:
+        reach = config.limits.drawer * length
+        lower, upper = -min(backward, reach), min(forward, reach)
+    elif scene.smallness > 0.5:
+        upper = _press(scene, sign * axis, forward, length, config)
+    else:
+        lower = -min(backward, _standing_out(scene, sign * axis))
+        lower = lower if -lower > config.limits.ajar * length else 0.0
+        upper = min(forward, config.limits.drawer * length + lower)
     return Range(
         kind=JointType.PRISMATIC,
         sign=sign,
         lower=lower,
-        upper=upper,
-        free_forward=float(forward),
-        free_backward=float(backward),
+        upper=max(upper, config.limits.least_slide * scene.diagonal),
+        free_forward=forward,
+        free_backward=backward,
     )
+
+
+def _standing_out(scene: JointScene, way: FloatArray) -> float:
+    """How far the front of a drawer stands before the body, its own handle left out [m]; 0 if it does not."""
+    own = scene.cache.samples(scene.child).points @ way
+    body = scene.cache.samples(scene.parent).points @ way
+    return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
+
+
+def _press(scene: JointScene, way: FloatArray, free: float, length: float, config: JointsConfig) -> float:
+    """Travel of a button pressed along `way` [m]: what stands out of the surface around it, or until it is stopped."""
+    own = scene.cache.samples(scene.child).points
+    body = scene.cache.samples(scene.parent).points
+    centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
+    aside = np.linalg.norm(np.cross(body - centre, way), axis=1)
+    around = body[aside < 2.0 * float(np.linalg.norm(np.cross(own - centre, way), axis=1).max())]
+    visible = length
+    if len(around) > 10:
+        visible = min(length, max(float((around @ way).min() - (own @ way).min()), 0.0))
+    reach = config.limits.button * (visible if visible > 0.1 * length else length)
+    return min(free, reach) if free > 0.2 * reach else reach
 
 
 def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray) -> float:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import ContactEdge, ContactSamples
+from kinematify.geometry.field_source import field_source
 from kinematify.geometry.sampling import sample_surface
-from kinematify.geometry.sdf_grid import SignedDistanceCache
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.joints.cavl import cavl_scene, rank_candidates, refine, virtual_motions
 
@@ -40,7 +40,7 @@ def estimate_paper_joints(
     Returns:
         One estimate per edge, in the order given.
     """
-    cache = SignedDistanceCache(config.sdf)
+    field_of = field_source(assembly.parts, config.sdf, seed=config.seed)
     samples = [sample_surface(part, config.joints.samples, config.seed) for part in assembly.parts]
     estimates = []
     for parent, child in edges:
@@ -48,7 +48,7 @@ def estimate_paper_joints(
             _edge_between(graph, parent, child),
             parent=parent,
             child=child,
-            fields=lambda index: cache.field(assembly.parts[index]),
+            fields=lambda index: field_of(assembly.parts[index]),
             samples=samples,
             diagonal=assembly.diagonal,
             config=config.cavl,

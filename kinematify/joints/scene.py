@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.bearing import BearingLine, EdgeBearing
 from kinematify.joints.frames import UP, body_axes, box_frame
+from kinematify.joints.journal import facing_faces, find_journal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -16,8 +18,8 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig, RailsConfig
-    from kinematify.joints.bearing import BearingLine, EdgeBearing
     from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.journal import Journal
     from kinematify.joints.rooted import RootedTree
     from kinematify.joints.workspace import ContactView, PartCache
 
@@ -64,6 +66,11 @@ class JointScene:
     flat: bool
     """The thin direction points up, as in a closed lid."""
     bearing: EdgeBearing | None
+    """Its first line is the journal where there is one."""
+    journal: Journal | None
+    """The line about which the parent holds the child all around; not looked for in trees of joints in series."""
+    serial: bool
+    """The tree has several joints in series, as arms, legs and hands have."""
     gated: bool
     """The best line of the bearing passes the gate."""
     railed: float
@@ -149,6 +156,9 @@ def joint_scene(
     sides = np.sort(frame.extents)
     up = abs(float(frame.axes[frame.thin] @ UP))
     moving = _subtree(tree, child)
+    journal = None if serial else _journal(cache, parent, child, frame, config)
+    if journal is not None:
+        bearing = _with_journal(bearing, edge, journal)
     return JointScene(
         cache=cache,
         parent=parent,
@@ -167,7 +177,9 @@ def joint_scene(
         upright=up < config.upright_cosine,
         flat=up > config.flat_cosine,
         bearing=bearing,
-        gated=bearing is not None and passes_gate(bearing, contact, config),
+        journal=journal,
+        serial=serial,
+        gated=journal is not None or (bearing is not None and passes_gate(bearing, contact, config)),
         railed=_railed(bearing, config.rails),
         rounded=0.0 < _rail_lead(bearing) < config.rails.rounded_lead,
         compact=compact,
@@ -177,6 +189,38 @@ def joint_scene(
         enclosed=float(walls.mean()),
         covered=bool(walls[np.abs(np.concatenate([frame.axes, -frame.axes]) @ UP) > config.flat_cosine].all()),
         inside=_inside(cache, child, frame, body_box),
+    )
+
+
+def _journal(cache: PartCache, parent: int, child: int, frame: BoxFrame, config: JointsConfig) -> Journal | None:
+    """What the parent holds the child by, within the band of their contact."""
+    edge = cache.graph.by_pair.get((min(parent, child), max(parent, child)))
+    if edge is None:
+        return None
+    reach = edge.gap + config.contact_band * cache.diagonal
+    facing = facing_faces(cache, parent, child, reach, config.journal)
+    rng = np.random.default_rng([parent, child])
+    return find_journal(facing, float(frame.extents.max()), config.journal, rng)
+
+
+def _with_journal(bearing: EdgeBearing | None, edge: tuple[int, int], journal: Journal) -> EdgeBearing:
+    """The bearing of a contact with the journal as its first line."""
+    lines = () if bearing is None else bearing.lines
+    first = BearingLine(
+        axis=journal.axis,
+        pivot=journal.pivot,
+        score=max([line.score for line in lines], default=0.0) + journal.coverage,
+        surface_a=journal.coverage,
+        surface_b=journal.coverage,
+        circles_a=journal.coverage,
+        circles_b=journal.coverage,
+    )
+    return EdgeBearing(
+        a=min(edge),
+        b=max(edge),
+        centroid=journal.pivot if bearing is None else bearing.centroid,
+        lines=(first, *lines),
+        rail=None if bearing is None else bearing.rail,
     )
 
 

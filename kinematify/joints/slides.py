@@ -77,6 +77,7 @@ def rank_slides(
     cues = {
         **_motion_cues(scene, axes, with_parent, everything, config),
         **_shape_cues(scene, axes, twins, with_parent, config),
+        "small_way": _small_way(scene, points, axes, config),
     }
     weights = config.slides.weights
     scores = sum(
@@ -145,6 +146,19 @@ def _motion_cues(
         "flush": large * _flush(scene, axes, parent),
         "crossed": crossed,
     }
+
+
+def _small_way(scene: JointScene, points: FloatArray, axes: FloatArray, config: JointsConfig) -> FloatArray:
+    """Free travel of a small part in its own lengths, 1 at most: a pocket holds it on all sides but the open one.
+
+    Small parts move by less than the grace of other sweeps, so this one has none.
+    """
+    if scene.smallness == 0.0:
+        return np.zeros(len(axes))
+    strict = config.sweep.model_copy(update={"grace": 0.0})
+    own = np.abs(axes @ scene.frame.axes.T) @ scene.frame.extents
+    swept = sweep_slides(scene.cache, points, axes, (scene.parent,), limit=scene.frame.diagonal, config=strict)
+    return np.asarray(scene.smallness * np.minimum(1.0, swept.free(config.sweep.share).max(axis=1) / own))
 
 
 def _flush(scene: JointScene, axes: FloatArray, free: FloatArray) -> FloatArray:

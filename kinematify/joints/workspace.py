@@ -108,6 +108,25 @@ class PartCache:
         squared = tree.squared_distance(vertices, faces, np.ascontiguousarray(points))[0]
         return np.asarray(np.sqrt(np.maximum(squared, 0.0)))
 
+    def closest(self, part: int, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Nearest place on the surface of a part.
+
+        Args:
+            part: Index of the part.
+            points: World frame [m], shape (n, 3).
+
+        Returns:
+            Distances [m], shape (n,), the nearest points, shape (n, 3), and the unit normals of their faces, (n, 3).
+        """
+        if len(points) == 0:
+            return np.empty(0), np.empty((0, 3)), np.empty((0, 3))
+        tree, vertices, faces = self._tree(part)
+        squared, index, closest = tree.squared_distance(vertices, faces, np.ascontiguousarray(points))
+        corners = vertices[faces[index]]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+        return np.sqrt(np.maximum(squared, 0.0)), np.asarray(closest), normals
+
     def contact(self, parent: int, child: int, band: float) -> ContactView:
         """Contact samples of a pair that lie within `band` [m] beyond its gap."""
         edge = self.graph.by_pair.get((min(parent, child), max(parent, child)))

@@ -1,0 +1,176 @@
+"""Journals: a pin in a bore, a barrel in its knuckles, a shaft in its boss; hinge hardware where it is modelled.
+
+A bearing (`joints.bearing`) asks for round surface on both parts, which two round outlines that merely lie on each
+other have as well: a seat on its bowl, a porthole on its mouth. A journal asks for more: the two round surfaces must
+*face* each other across the clearance, nearly all around one line. However small it is beside the part, it holds it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from kinematify.joints.bearing_fit import across_axis
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JournalConfig
+    from kinematify.joints.workspace import PartCache
+
+_LEAST = 6  # faces all around: fewer are the sides of a box
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Journal:
+    """A line about which surface of a child is held by surface of its parent, world frame."""
+
+    axis: FloatArray
+    """Unit direction, shape (3,)."""
+    pivot: FloatArray
+    """Point on the line, in the middle of what is held [m], shape (3,)."""
+    radius: float
+    """Of the surface that is held [m]."""
+    coverage: float
+    """Share of the full circle of directions in which it is held, in [0, 1]."""
+    span: float
+    """How far apart along the line its ends are held [m]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Facing:
+    """Faces of a child that look at its parent across a gap."""
+
+    points: FloatArray
+    """Centroids [m], shape (n, 3)."""
+    normals: FloatArray
+    """Unit normals, shape (n, 3)."""
+    areas: FloatArray
+    """[m^2], shape (n,)."""
+
+
+def facing_faces(cache: PartCache, parent: int, child: int, reach: float, config: JournalConfig) -> Facing:
+    """Faces of the child whose nearest surface of the parent lies straight before them and looks back.
+
+    Normals may point either way: many meshes are not oriented.
+
+    Args:
+        cache: Distance trees of the parts.
+        parent: Index of the parent.
+        child: Index of the child.
+        reach: Largest gap [m].
+        config: Tolerance and the largest number of faces that are looked at.
+    """
+    part = cache.assembly.parts[child]
+    corners = part.vertices[part.faces]
+    centroids = corners.mean(axis=1)
+    lower, upper = cache.assembly.parts[parent].bounds
+    near = np.flatnonzero(((centroids > lower - reach) & (centroids < upper + reach)).all(axis=1))
+    near = near[:: max(1, -(-len(near) // config.faces))]
+    area_normals = 0.5 * np.cross(corners[near, 1] - corners[near, 0], corners[near, 2] - corners[near, 0])
+    areas = np.linalg.norm(area_normals, axis=1)
+    near, area_normals, areas = near[areas > 0], area_normals[areas > 0], areas[areas > 0]
+    points, normals = centroids[near], area_normals / areas[:, None]
+    distance, closest, other = cache.closest(parent, points)
+    ahead = np.abs(np.einsum("ij,ij->i", closest - points, normals)) > config.straight * distance
+    opposite = np.abs(np.einsum("ij,ij->i", other, normals)) > config.straight
+    keep = (distance < reach) & ahead & opposite
+    return Facing(points=points[keep], normals=normals[keep], areas=areas[keep])
+
+
+def find_journal(facing: Facing, size: float, config: JournalConfig, rng: np.random.Generator) -> Journal | None:
+    """Find the line about which the child is held all around over the longest span.
+
+    Args:
+        facing: Faces that look at the parent.
+        size: Largest extent of the child [m].
+        config: Tolerances.
+        rng: Draws the pairs of neighbouring faces whose normals propose lines.
+    """
+    if len(facing.areas) < _LEAST:
+        return None
+    axes, pivots, radii = _proposals(facing, config, rng)
+    keep = radii < config.largest * size
+    best: Journal | None = None
+    for axis, pivot, radius in zip(axes[keep], pivots[keep], radii[keep], strict=True):
+        found = _journal(facing, axis, pivot, radius, config)
+        if found is not None and (best is None or _merit(found) > _merit(best)):
+            best = found
+    return _refined(facing, best, config) if best is not None else None
+
+
+def _merit(journal: Journal) -> float:
+    return journal.coverage * journal.span
+
+
+def _proposals(
+    facing: Facing, config: JournalConfig, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Lines where the normals of neighbouring faces meet: axes (k, 3), points (k, 3), radii (k,)."""
+    tree = cKDTree(facing.points)
+    first = rng.integers(len(facing.areas), size=config.pairs)
+    neighbours = tree.query(facing.points[first], k=min(config.neighbours, len(facing.areas)))[1]
+    second = np.take_along_axis(neighbours, rng.integers(neighbours.shape[1], size=(config.pairs, 1)), axis=1)[:, 0]
+    n1, n2 = facing.normals[first], facing.normals[second]
+    cross = np.cross(n1, n2)
+    sine = np.linalg.norm(cross, axis=1)
+    good = sine > config.least_sine
+    axes = cross[good] / sine[good, None]
+    offset = facing.points[second][good] - facing.points[first][good]
+    along = np.einsum("ij,ij->i", np.cross(offset, n2[good]), axes) / sine[good]
+    return axes, facing.points[first][good] + along[:, None] * n1[good], np.abs(along)
+
+
+def _journal(
+    facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig
+) -> Journal | None:
+    """The journal about a line with surface at about this radius; None where it does not go round."""
+    fits = _fitting(facing, axis, pivot, radius, config)
+    if fits.sum() < _LEAST:
+        return None
+    offset = facing.points[fits] - pivot
+    basis = across_axis(axis)
+    angle = np.arctan2(offset @ basis[1], offset @ basis[0])
+    sectors = np.unique(np.floor((angle + np.pi) / (2.0 * np.pi) * config.sectors).astype(np.int64) % config.sectors)
+    coverage = len(sectors) / config.sectors
+    if coverage < config.coverage:
+        return None
+    height = offset @ axis
+    return Journal(
+        axis=axis,
+        pivot=pivot + 0.5 * float(height.min() + height.max()) * axis,
+        radius=radius,
+        coverage=coverage,
+        span=float(np.ptp(height)) + radius,
+    )
+
+
+def _fitting(facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float, config: JournalConfig) -> FloatArray:
+    """Which faces lie at a radius and look along it, shape (n,)."""
+    offset = facing.points - pivot
+    radial = offset - (offset @ axis)[:, None] * axis
+    length = np.linalg.norm(radial, axis=1)
+    along = np.abs(np.einsum("ij,ij->i", radial, facing.normals)) > np.cos(config.normal_tolerance) * length
+    return np.asarray(along & (np.abs(length - radius) < config.radius_tolerance * radius))
+
+
+def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal:
+    """Least squares: the direction least along the fitting normals, then the point where the normals meet."""
+    axis, pivot = journal.axis, journal.pivot
+    for _ in range(3):
+        fits = _fitting(facing, axis, pivot, journal.radius, config)
+        points, normals, weights = facing.points[fits], facing.normals[fits], facing.areas[fits]
+        if len(points) < _LEAST:
+            break
+        weights = weights / weights.sum()
+        axis = np.linalg.eigh((normals * weights[:, None]).T @ normals)[1][:, 0]
+        tangents = np.cross(axis, normals)
+        tangents /= np.maximum(np.linalg.norm(tangents, axis=1), 1e-12)[:, None]
+        system = (tangents * weights[:, None]).T @ tangents
+        aim = (tangents * weights[:, None]).T @ np.einsum("ij,ij->i", tangents, points)
+        along = float(pivot @ axis)
+        pivot = np.linalg.lstsq(system, aim, rcond=1e-6)[0]
+        pivot = pivot + (along - float(pivot @ axis)) * axis
+    return Journal(axis=axis, pivot=pivot, radius=journal.radius, coverage=journal.coverage, span=journal.span)

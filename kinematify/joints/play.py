@@ -1,0 +1,74 @@
+"""Play: how far the surface of a contact itself can turn or slide before it is stopped.
+
+Sweeps of a whole part (`joints.sweep`) skip the first steps, because meshes overlap where parts touch. The play of a
+contact is what keys, splines, skirts, grooves and beads decide: it is measured without that grace, on the samples near
+the other part alone, each drawn a little into its own material.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.sweep import sweep_slides, sweep_turns
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.joints.scene import JointScene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Play:
+    """Way that the contact can go before it is stopped, the longer of both senses."""
+
+    turn: float
+    """Length of the arc at the contact's mean radius [m]; inf where it is not stopped."""
+    slide: float
+    """Length [m]; inf where it is not stopped."""
+
+    def slides_only(self, least: float, ratio: float) -> bool:
+        """It is stopped from turning, and slides by `least` [m] and by `ratio` times as far."""
+        return bool(np.isfinite(self.turn) and self.slide > max(least, ratio * self.turn))
+
+    def turns_only(self, least: float, ratio: float) -> bool:
+        """It is stopped from sliding, and turns by `least` [m] and by `ratio` times as far."""
+        return bool(np.isfinite(self.slide) and self.turn > max(least, ratio * self.slide))
+
+
+def contact_play(
+    scene: JointScene, axes: FloatArray, pivots: FloatArray, way: FloatArray, config: JointsConfig
+) -> Play | None:
+    """Measure the play of a contact about the freest of several lines and along a direction, against the parent alone.
+
+    Args:
+        scene: The pair.
+        axes: Unit directions of the lines, shape (c, 3).
+        pivots: Points on them [m], shape (c, 3).
+        way: Unit direction of the slide, shape (3,).
+        config: `play` and the step of sweeps.
+
+    Returns:
+        The play; None where the contact has too few samples.
+    """
+    contact = scene.contact
+    if len(contact.points) < config.play.least_samples:
+        return None
+    stride = max(1, len(contact.points) // config.play.samples)
+    points = (contact.points - config.play.inset * scene.frame.diagonal * contact.normals)[::stride]
+    # A journal is modelled with its clearance, so that fewer samples are beyond doubt.
+    share = config.play.share if scene.journal is None else config.play.journal_share
+    strict = config.sweep.model_copy(update={"grace": 0.0, "hinge_zone": 0.0})
+    limit = np.radians(config.play.turn_deg)
+    turned = sweep_turns(scene.cache, points, axes, pivots, (scene.parent,), limit=limit, config=strict)
+    free = turned.free(share).max(axis=1)
+    radii = np.linalg.norm(np.cross(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
+    arcs = np.where(free >= limit, np.inf, free * radii)
+    reach = config.play.slide * scene.frame.diagonal
+    slid = sweep_slides(scene.cache, points, way[None], (scene.parent,), limit=reach, config=strict).free(share)[0]
+    return Play(
+        turn=float(arcs.max()),
+        slide=np.inf if slid.max() >= reach else float(slid.max()),
+    )
