@@ -21,7 +21,9 @@ from kinematify.errors import KinematifyError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-COMMANDS = ("generate", "infer", "refine", "validate", "explain", "export", "erase", "bench", "nightly", "doctor")
+COMMANDS = (
+    "generate", "infer", "refine", "validate", "explain", "view", "export", "erase", "bench", "nightly", "doctor",
+)  # fmt: skip
 """Each is a module of this package that defines `command`."""
 
 _INTERRUPTED = 130

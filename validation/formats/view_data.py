@@ -57,7 +57,7 @@ def view_data(robot: RobotDescription, *, faces: int) -> dict[str, Any] | None:
     return {
         "size": float(np.linalg.norm(high - low)) or 1.0,
         "center": (0.5 * (low + high)).tolist(),
-        "turn": _turn(robot, groups, meshes, rest),
+        "turn": camera_turn(robot, groups, meshes, rest),
         "bodies": bodies,
         "joints": [_joint(joint, rest[joint.name]) for joint in _moving(robot)],
     }
@@ -93,13 +93,20 @@ def _extent(
     return points.min(axis=0), points.max(axis=0)
 
 
-def _turn(
+def camera_turn(
     robot: RobotDescription,
     groups: Sequence[RigidGroup],
     meshes: Sequence[tuple[FloatArray, IntArray]],
     rest: Mapping[str, float],
 ) -> float:
-    """Azimuth of the camera [rad], so that it looks at the side towards which the parts move."""
+    """Return the turn of the camera [rad], so that it looks at the side towards which the parts move.
+
+    Args:
+        robot: As described.
+        groups: Links that are held together.
+        meshes: Of each, in the frame of its top link.
+        rest: Configuration at rest.
+    """
     limited = [j for j in robot.joints if j.mimic is None and math.isfinite(j.upper - j.lower)]
     poses = forward_kinematics(robot, rest), forward_kinematics(robot, {**rest, **{j.name: j.upper for j in limited}})
     way = np.zeros(3)

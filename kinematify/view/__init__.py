@@ -1,0 +1,1 @@
+"""A model in a browser, to move and to look at: `kinematify view`."""
