@@ -26,7 +26,7 @@ from kinematify.config.joints import (
 )
 from kinematify.config.output import ModelConfig, PreviewConfig
 from kinematify.config.refinement import FeedbackConfig, RefineConfig
-from kinematify.config.shapes import AssemblyConfig, ContactConfig, SdfConfig, SurfaceConfig
+from kinematify.config.shapes import AssemblyConfig, ContactConfig, NeuralSdfConfig, SdfConfig, SurfaceConfig
 from kinematify.config.sources import RodinConfig, SourcesConfig
 from kinematify.config.trees import BaseConfig, RewardWeights, TopologyConfig
 
@@ -49,9 +49,10 @@ __all__ = [
     "KindConfig",
     "LimitsConfig",
     "ModelConfig",
+    "NeuralSdfConfig",
     "PanelsConfig",
-    "PreviewConfig",
     "PlayConfig",
+    "PreviewConfig",
     "QualityConfig",
     "RailConfig",
     "RailsConfig",

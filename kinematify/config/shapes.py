@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from kinematify.config.base import StageConfig
 
 
@@ -48,9 +50,51 @@ class ContactConfig(StageConfig):
     """Largest Chamfer distance of congruent parts, as a fraction of the part's diagonal."""
 
 
-class SdfConfig(StageConfig):
-    """Grids of signed distances (III-B)."""
+class NeuralSdfConfig(StageConfig):
+    """Signed distances as networks (III-B); lengths in the training are half diagonals of the part."""
 
+    width: int
+    """Units of a layer."""
+    layers: int
+    """Layers with sines."""
+    frequency: float
+    """Factor before every sine."""
+    margin: float
+    """Room around the part in which it is trained, fraction of the part's diagonal."""
+    surface_samples: int
+    """Noisy surface points of a part, and as many offsets."""
+    far_samples: int
+    """Points of a part's box."""
+    noise: float
+    """Standard deviation of the first kind, fraction of the part's diagonal."""
+    offset: float
+    """Largest offset of the second kind along the normal, fraction of the part's diagonal."""
+    steps: int
+    """Of training."""
+    batch: int
+    """Points of a part in a step."""
+    rate: float
+    """Learning rate at the start; it falls to a hundredth along a cosine."""
+    near: float
+    """Points within this distance of the surface count more [half diagonals]."""
+    near_weight: float
+    """So much more at the surface."""
+    eikonal_weight: float
+    """Of the eikonal term."""
+    eikonal_batch: int
+    """Points at which it is asked for."""
+    eikonal_every: int
+    """In one of so many steps."""
+    device: Literal["auto", "cpu"]
+    """auto takes a GPU where there is one."""
+
+
+class SdfConfig(StageConfig):
+    """Fields of signed distances (III-B)."""
+
+    kind: Literal["grid", "neural"]
+    """Exact distances on a grid, or the paper's networks."""
+    neural: NeuralSdfConfig
     resolution: int
     """Cells along the longest side of a part's grid."""
     margin: float
