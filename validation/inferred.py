@@ -11,6 +11,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.outcome import counted_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -97,7 +98,7 @@ def round_words(refinement: Mapping[str, Any]) -> list[str]:
     if not rounds:
         return ["Nothing was simulated."]
     chosen = next(item for item in rounds if item["number"] == kept)
-    left = f"{chosen['errors']} errors and {chosen['warnings']} warnings about motion"
+    left = f"{counted_words(chosen['errors'], 'error')} and {counted_words(chosen['warnings'], 'warning')} about motion"
     what = "the model as it was inferred" if kept == 0 else f"round {kept}"
     refused = [phrase for item in rounds for phrase in item["refused"]]
     cost = f"{refinement['seconds']:.1f} s, {refinement['candidates']} candidates"
@@ -123,8 +124,8 @@ def _others(item: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [
         {
             "kind": candidate["type"],
-            "axis": candidate["axis"],
-            "pivot": candidate["pivot"],
+            "axis": [round(number, 6) + 0.0 for number in candidate["axis"]],
+            "pivot": [round(number, 6) + 0.0 for number in candidate["pivot"]],
             "score": candidate["score"] - best,
             "source": candidate["source"],
         }

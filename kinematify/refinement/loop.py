@@ -164,6 +164,7 @@ class _Loop:
                 return
             plan, contacts, changes, refused = self._choose(done)
             if not changes:
+                self.done[-1] = replace(done, round=replace(done.round, refused=(*done.round.refused, *refused)))
                 self.ended = "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
                 return
             if plan.signature in seen:
