@@ -76,7 +76,7 @@ def line_chart(
         f"{s.label}: {min(p[1] for p in s.points):.3g} to {max(p[1] for p in s.points):.3g}" for s in series
     )
     return (
-        f"<figure><figcaption>{text(title)}, {text(axes.y)}{text(names)}</figcaption>"
+        f"<figure><figcaption>{text(title)} {text(axes.y)}{text(names)}</figcaption>"
         f'<svg width="{width}" height="{height}" viewBox="0 0 {width} {height}" role="img" '
         f'aria-label="{text(f"{title}, {axes.y}: {told}")}">{"".join(shapes)}</svg></figure>'
     )

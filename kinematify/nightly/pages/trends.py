@@ -38,12 +38,27 @@ _EXPLAINED = (
 )
 
 
+class _History:
+    """Nights with their runs by object, which are asked for often."""
+
+    def __init__(self, nights: Sequence[Night]) -> None:
+        self.nights = nights
+        self.groups: list[dict[str | None, list[Run]]] = []
+        """Of each night; None: all runs."""
+        for night in nights:
+            groups: dict[str | None, list[Run]] = {None: list(night.runs)}
+            for run in night.runs:
+                groups.setdefault(run.object, []).append(run)
+            self.groups.append(groups)
+
+
 def trend_page(nights: Sequence[Night]) -> str:
     """Return the page of all nights.
 
     Args:
         nights: The oldest first.
     """
+    history = _History(nights)
     names = sorted({run.object for night in nights for run in night.runs})
     body = [
         f"<h1>kinematify nightly: {len(nights)} nights</h1>",
@@ -51,10 +66,10 @@ def trend_page(nights: Sequence[Night]) -> str:
         "<h2>Nights</h2>",
         _nights(nights),
         "<h2>Means over all objects</h2>",
-        f'<div class="charts">{_means(nights)}</div>',
+        f'<div class="charts">{_means(history)}</div>',
         "<h2>Objects</h2>",
-        _objects(nights, names),
-        *(_object(nights, name) for name in names),
+        _objects(history, names),
+        *(_object(history, name) for name in names),
     ]
     return page(f"kinematify nightly: {len(nights)} nights", body)
 
@@ -82,16 +97,16 @@ def _nights(nights: Sequence[Night]) -> str:
 _CLASSES = ("new", "worse", "newly skipped", "still failing", "fixed", "better", "slower", "faster", "new series")
 
 
-def _means(nights: Sequence[Night]) -> str:
+def _means(history: _History) -> str:
     """Charts over all objects; only nights over the same runs are joined by a line."""
-    return "".join(_chart(title, _points(nights, None, pick), nights, unit) for title, unit, pick in _measures())
+    return _charts(history, None)
 
 
 def _measures() -> list[tuple[str, str, Callable[[Sequence[Run]], float | None]]]:
     """Title, unit and value of everything that is drawn."""
     metrics = [(title, _metric_value(metric)) for metric, title in METRIC_TITLES.items()]
     return [
-        *((title, title, value) for title, value in metrics),
+        *((title, "", value) for title, value in metrics),
         ("inference", "time [s]", _seconds("accuracy")),
         ("findings, published model", "errors and warnings", _findings("truth")),
         ("findings, inferred model", "errors and warnings", _findings("inferred")),
@@ -122,11 +137,11 @@ def _mean(values: Sequence[float]) -> float | None:
     return fmean(values) if values else None
 
 
-def _points(nights: Sequence[Night], name: str | None, pick: Callable[[Sequence[Run]], float | None]) -> list[_Point]:
+def _points(history: _History, name: str | None, pick: Callable[[Sequence[Run]], float | None]) -> list[_Point]:
     """One point for each night with a value; the scenario is that of all runs that were looked at."""
     points = []
-    for index, night in enumerate(nights):
-        runs = [run for run in night.runs if name is None or run.object == name]
+    for index, groups in enumerate(history.groups):
+        runs = groups.get(name, ())
         value = pick(runs)
         if value is not None:
             scenario = "-".join(sorted(f"{run.object}{run.case}{run.scenario}" for run in runs))
@@ -145,6 +160,12 @@ def _series(points: Sequence[_Point]) -> list[list[_Point]]:
     return found
 
 
+def _charts(history: _History, name: str | None) -> str:
+    """All charts of an object, or of all objects together."""
+    drawn = [(title, unit, _points(history, name, pick)) for title, unit, pick in _measures()]
+    return "".join(_chart(title, points, history.nights, unit) for title, unit, points in drawn)
+
+
 def _chart(title: str, points: Sequence[_Point], nights: Sequence[Night], unit: str) -> str:
     lines = [
         Series(
@@ -159,14 +180,14 @@ def _chart(title: str, points: Sequence[_Point], nights: Sequence[Night], unit: 
     return line_chart(title, lines, Axes(x="night", y=unit, ticks=ticks), width=270, height=140, legend=False)
 
 
-def _objects(nights: Sequence[Night], names: Sequence[str]) -> str:
+def _objects(history: _History, names: Sequence[str]) -> str:
     rows: list[tuple[Cell, ...]] = [
         (
             f'<a href="#object-{text(name)}">{text(name)}</a>',
-            *(_trend_cell(nights, name, _metric_value(metric)) for metric in _COLUMNS),
-            _trend_cell(nights, name, _findings("truth")),
-            _trend_cell(nights, name, _findings("inferred")),
-            _trend_cell(nights, name, _seconds("accuracy")),
+            *(_trend_cell(history, name, _metric_value(metric)) for metric in _COLUMNS),
+            _trend_cell(history, name, _findings("truth")),
+            _trend_cell(history, name, _findings("inferred")),
+            _trend_cell(history, name, _seconds("accuracy")),
         )
         for name in names
     ]
@@ -180,17 +201,17 @@ def _objects(nights: Sequence[Night], names: Sequence[str]) -> str:
     return table(headings, rows, name="objects", classes=("", *["number"] * (len(_COLUMNS) + 3)))
 
 
-def _trend_cell(nights: Sequence[Night], name: str, pick: Callable[[Sequence[Run]], float | None]) -> Cell:
+def _trend_cell(history: _History, name: str, pick: Callable[[Sequence[Run]], float | None]) -> Cell:
     """The latest value, with the line of the series that it belongs to."""
-    points = _points(nights, name, pick)
+    points = _points(history, name, pick)
     if not points:
         return ""
     part = _series(points)[-1]
     return f"{sparkline([(p.night, p.value) for p in part])} {part[-1].value:.4g}", f"{part[-1].value:.6g}"
 
 
-def _object(nights: Sequence[Night], name: str) -> str:
-    charts = "".join(_chart(title, _points(nights, name, pick), nights, unit) for title, unit, pick in _measures())
+def _object(history: _History, name: str) -> str:
     return (
-        f'<details id="object-{text(name)}"><summary>{text(name)}</summary><div class="charts">{charts}</div></details>'
+        f'<details id="object-{text(name)}"><summary>{text(name)}</summary>'
+        f'<div class="charts">{_charts(history, name)}</div></details>'
     )

@@ -256,7 +256,11 @@ class Viewer {
   }
 }
 
-const viewers = [...document.querySelectorAll('.viewer')].map(root => new Viewer(root));
+/* The page is read before the view is there: preparing it waits until everything else stands. */
+const viewers = [];
+addEventListener('load', () => setTimeout(() => {
+  for (const root of document.querySelectorAll('.viewer')) viewers.push(new Viewer(root));
+}));
 document.addEventListener('click', event => {
   const button = event.target.closest && event.target.closest('button[data-show]');
   if (!button) return;

@@ -1,0 +1,135 @@
+"""`kinematify view`: what it shows of a model, without and with its server."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.assembly.joint_type import JointType
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.cli.app import run
+from kinematify.validation.read import read_model
+from kinematify.validation.settings import load_settings
+from kinematify.view.alternatives import Alternative, load_alternatives
+from kinematify.view.scene import ViewScene
+
+_URDF = """<robot name="door">
+<link name="frame"><collision><geometry><box size="1 0.1 2"/></geometry></collision></link>
+<link name="door"><collision><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.04 1.8"/></geometry></collision></link>
+<link name="plate"><collision><geometry><box size="0.1 0.02 0.02"/></geometry></collision></link>
+<joint name="hinge" type="revolute"><parent link="frame"/><child link="door"/><origin xyz="-0.4 -0.1 0" rpy="0 0 -0.1"/>
+<axis xyz="0 0 -1"/><limit lower="-0.5" upper="1.5" effort="1" velocity="1"/></joint>
+<joint name="glue" type="fixed"><parent link="door"/><child link="plate"/><origin xyz="0.8 -0.1 0"/></joint>
+</robot>"""
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> Path:
+    file = tmp_path / "model.urdf"
+    file.write_text(_URDF)
+    return file
+
+
+@pytest.fixture
+def scene(urdf: Path) -> ViewScene:
+    return ViewScene(read_model(urdf), load_settings())
+
+
+def test_bodies_stand_where_the_joints_put_them(scene: ViewScene) -> None:
+    for value in (-0.3, 0.0, 1.2):
+        ours, reference = scene.poses({"hinge": value}), forward_kinematics(scene.robot, {"hinge": value})
+        assert all(np.allclose(ours[link], reference[link]) for link in reference)
+    vertices, faces = scene.meshes["door"]
+    assert len(faces) == 24, "the plate is glued to the door"
+    assert vertices[:, 0].max() == pytest.approx(0.85)
+
+
+def test_collisions_are_told_apart_from_contact(scene: ViewScene) -> None:
+    assert scene.touches({"hinge": 1.0}) == []
+    (inside,) = scene.touches({"hinge": -0.5})
+    assert set(inside.pair) == {"frame", "door"}
+    assert not inside.tolerated
+    assert inside.depth > 0.01
+
+
+def test_an_alternative_replaces_axis_place_and_type(scene: ViewScene) -> None:
+    slide = Alternative(
+        title="t", kind=JointType.PRISMATIC, axis=np.array([0.0, -1.0, 0.0]), pivot=np.array([3.0, 0.0, 0.0])
+    )
+    at_zero = scene.poses({"hinge": 0.0})["door"]
+    scene.try_joint("hinge", slide)
+    assert np.allclose(scene.poses({"hinge": 0.0})["door"], at_zero)
+    moved = scene.poses({"hinge": 0.7})["door"]
+    assert np.allclose(moved[:3, 3] - at_zero[:3, 3], [0.0, -0.7, 0.0])
+    other_edge = Alternative(
+        title="t", kind=JointType.REVOLUTE, axis=np.array([0.0, 0.0, 1.0]), pivot=np.array([0.4, -0.1, 0.0])
+    )
+    scene.try_joint("hinge", other_edge)
+    still = np.array([0.4, -0.1, 0.5, 1.0])
+    in_door = np.linalg.solve(at_zero, still)
+    assert np.allclose(scene.poses({"hinge": 0.9})["door"] @ in_door, still), "points on its axis stand still"
+    scene.try_joint("hinge", None)
+    assert np.allclose(scene.poses({"hinge": 0.9})["door"], forward_kinematics(scene.robot, {"hinge": 0.9})["door"])
+
+
+def test_glyph_shows_the_range(scene: ViewScene) -> None:
+    hinge = scene.robot.joint_by_name["hinge"]
+    segments = scene.glyph(hinge)
+    assert segments.shape[1:] == (2, 3)
+    assert np.allclose(np.cross(segments[0, 1] - segments[0, 0], hinge.axis), 0.0)
+    spokes = segments[-2:, 1] - segments[-2:, 0]
+    angle = np.arccos(spokes[0] @ spokes[1] / np.linalg.norm(spokes, axis=1).prod())
+    assert angle == pytest.approx(2.0, abs=1e-6)
+
+
+def test_alternatives_of_a_record(tmp_path: Path) -> None:
+    candidate = {"type": "revolute", "axis": [0, 0, 1], "pivot": [1, 2, 3], "score": 0.5, "source": "panel"}
+    record = {"joints": [{"parent": "frame", "child": "door", "candidates": [candidate]}]}
+    (tmp_path / "inference.json").write_text(json.dumps(record))
+    (found,) = load_alternatives(tmp_path / "inference.json")["frame", "door"]
+    assert (found.kind, found.pivot.tolist()) == (JointType.REVOLUTE, [1.0, 2.0, 3.0])
+    assert "score 0.50, panel" in found.title
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["none.urdf"], "There is no file none.urdf"),
+        (["{urdf}", "--joint", "hinge"], "1 --joint and 0 --q"),
+        (["{urdf}", "--joint", "knob", "--q", "1"], "It has hinge."),
+        (["{urdf}", "--report", "{urdf}"], "is no report of one model"),
+    ],
+)
+def test_bad_arguments(urdf: Path, arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["view", *(argument.format(urdf=urdf) for argument in arguments)]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    finding = {"check": "KV310", "severity": "error", "joint": "hinge", "pair": ["frame", "door"], "link": None,
+               "q": {"hinge": -0.5}, "message": "m", "remedy": "r"}  # fmt: skip
+    (urdf.parent / "validation.json").write_text(json.dumps({"findings": [finding]}))
+    candidate = {"type": "prismatic", "axis": [0, 1, 0], "pivot": [0, 0, 0], "score": 0.5, "source": "rail"}
+    record = {"joints": [{"parent": "frame", "child": "door", "candidates": [candidate]}]}
+    (urdf.parent / "inference.json").write_text(json.dumps(record))
+    command = [sys.executable, "-m", "kinematify", "view", str(urdf.parent), "--joint", "hinge", "--q", "0.5", "--port"]
+    process = subprocess.Popen(
+        [*command, "18081"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )  # fmt: skip
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    rest, errors = process.communicate(timeout=30)
+    assert line.startswith("http://localhost:"), errors
+    assert rest == "Closed.\n"
+    assert errors == ""
+    assert process.returncode == 0
