@@ -72,6 +72,13 @@ DOUBTFUL = 0.5
     show_default=True,
     help="How far --refine simulates: exact sweeps; engines too; an arm that pulls as well.",
 )
+@click.option(
+    "--vlm",
+    default="off",
+    show_default=True,
+    metavar="off|auto|URL",
+    help="Ask a vision-language model about the joints: a chat interface, or that of KINEMATIFY_VLM_URL.",
+)
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @json_option
@@ -87,6 +94,7 @@ def command(
     seed: int | None,
     rounds: int | None,
     tier: str,
+    vlm: str,
     force: bool,
     no_preview: bool,
     json_to: str | None,
@@ -113,6 +121,7 @@ def command(
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
         inference = infer(given, config=settings, base=base, progress=progress)
+        inference, heard = _with_votes(inference, vlm, progress)
         status = 0
         if rounds is not None:
             inference, status = _refined(inference, rounds, tier, base, progress)
@@ -121,9 +130,23 @@ def command(
     if json_to:
         write_answer(_as_answer(inference, out), json_to)
     if json_to != "-":
-        told = describe_refinement(inference)
-        click.echo(f"{told}\n\n{describe(inference, out)}" if told else describe(inference, out))
+        blocks = (heard, describe_refinement(inference), describe(inference, out))
+        click.echo("\n\n".join(block for block in blocks if block))
     return status
+
+
+def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float], None]) -> tuple[Inference, str]:
+    """The joints chosen again with the votes of a model, and what it said; unchanged where none is asked."""
+    from kinematify.vision.client import oracle_of
+    from kinematify.vision.votes import with_votes
+    from kinematify.vision.words import describe_votes
+
+    oracle = oracle_of(vlm, inference.config.vision)
+    if oracle is None:
+        return inference, ""
+    progress("asking a vision model about the joints", 0.9)
+    inference, heard = with_votes(inference, oracle)
+    return inference, describe_votes(heard)
 
 
 def _refined(

@@ -26,6 +26,7 @@ from kinematify.config.joints import (
 )
 from kinematify.config.output import ModelConfig, PreviewConfig
 from kinematify.config.refinement import FeedbackConfig, RefineConfig
+from kinematify.config.services import ServiceConfig, VisionConfig
 from kinematify.config.shapes import AssemblyConfig, ContactConfig, NeuralSdfConfig, SdfConfig, SurfaceConfig
 from kinematify.config.sources import RodinConfig, SourcesConfig
 from kinematify.config.trees import BaseConfig, RewardWeights, TopologyConfig
@@ -60,12 +61,14 @@ __all__ = [
     "RewardWeights",
     "RodinConfig",
     "SdfConfig",
+    "ServiceConfig",
     "SlidesConfig",
     "SourcesConfig",
     "StageConfig",
     "SurfaceConfig",
     "SweepConfig",
     "TopologyConfig",
+    "VisionConfig",
     "load_config",
     "load_values",
     "validated",
@@ -90,6 +93,7 @@ class Config(StageConfig):
     cavl: CavlConfig
     refine: RefineConfig
     sources: SourcesConfig
+    vision: VisionConfig
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:

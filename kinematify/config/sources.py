@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from kinematify.config.base import StageConfig
+from kinematify.config.services import ServiceConfig
 
 
-class RodinConfig(StageConfig):
+class RodinConfig(ServiceConfig):
     """Hyper3D Rodin and its splitting into parts (BANG), the generator of the paper (section III-A)."""
 
     url: str
@@ -22,18 +23,8 @@ class RodinConfig(StageConfig):
     """What a shape is expected to cost."""
     parts_credits: float
     """What the splitting is expected to cost."""
-    first_pause: float
-    """Before a request is repeated for the first time, and between looks at a job at first [s]."""
-    longest_pause: float
-    """Pauses double up to this [s]."""
-    tries: int
-    """Attempts of a request before the network or the service counts as down."""
-    answer_seconds: float
-    """The service has so long to answer a request [s]."""
     job_seconds: float
     """A job has so long to be done [s]."""
-    most_bytes: int
-    """Larger files are not fetched [bytes]."""
 
 
 class SourcesConfig(StageConfig):

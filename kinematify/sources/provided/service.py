@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kinematify.config import RodinConfig
+    from kinematify.config import ServiceConfig
 
 _TOO_MANY, _BUSY = 429, 503
 _LINK_GONE = (401, 403, 404, 410)
@@ -39,19 +39,22 @@ class Service:
     name: str
     url: str
     key: str = field(repr=False)
-    settings: RodinConfig
+    settings: ServiceConfig
     key_name: str
     """Environment variable that holds the key, for messages."""
 
     def __post_init__(self) -> None:
         parts = urlsplit(self.url)
-        if parts.scheme != "https" and not _is_local(parts.hostname or ""):
+        if parts.scheme not in ("http", "https") or not parts.hostname:
+            raise InputError(f"{self.url!r} is no address of {self.name}. Give one like https://HOST/v1.")
+        if parts.scheme != "https" and self.key and not _is_local(parts.hostname):
             raise InputError(
                 f"The address {self.url} of {self.name} is not https, so that the key would be sent readably. Correct "
                 "the address."
             )
         self._client = httpx.Client(
-            timeout=httpx.Timeout(self.settings.answer_seconds), headers={"Authorization": f"Bearer {self.key}"}
+            timeout=httpx.Timeout(self.settings.answer_seconds),
+            headers={"Authorization": f"Bearer {self.key}"} if self.key else {},
         )
 
     def close(self) -> None:
@@ -192,7 +195,8 @@ class Service:
         return InputError(f"{self.name} refuses the request (status {status}): {self._excerpt(answer)}")
 
     def _excerpt(self, answer: httpx.Response) -> str:
-        text = " ".join(answer.text.split())[:_EXCERPT].replace(self.key, "***")
+        text = " ".join(answer.text.split())[:_EXCERPT]
+        text = text.replace(self.key, "***") if self.key else text
         return text or "an empty answer"
 
 
