@@ -103,7 +103,7 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
         baseline = _baseline(request, nights)
         objects = _objects(request)
         work = _Work(request, objects)
-        state = open_state(request.out, work.plan, {night.name for night in nights})
+        state = open_state(request.out, work.plan, {path.name for path in request.out.iterdir()})
         night = next((night for night in nights if night.name == state.name), None)
         if night is None:
             night = _new_night(work, state, nights, baseline, progress)

@@ -42,7 +42,7 @@ def open_state(folder: Path, plan: str, taken: Collection[str]) -> State:
     Args:
         folder: Of all nights.
         plan: Hash of what is to be run.
-        taken: Names of nights that are over.
+        taken: Names that the folder has already, of nights and of what is none.
 
     Returns:
         The state. Its name is among `taken` where the earlier process was killed right after it had finished.
