@@ -14,8 +14,12 @@ import trimesh
 import kinematify
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
+from kinematify.benchmark.metrics import JointScore, ObjectScore
 from kinematify.benchmark.perturb import PERTURBATIONS, perturbed, without_pieces
 from kinematify.benchmark.prediction import PredictedJoint, Prediction
+from kinematify.benchmark.refining import OFF, RefiningResult, TierResult
+from kinematify.benchmark.refining_report import harmed, load_refining_report, markdown
+from kinematify.benchmark.tree_metrics import TreeDistance
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import InputError
@@ -290,6 +294,63 @@ def test_refine_command_and_its_refusals(tmp_path: Path, capsys: pytest.CaptureF
     urdf.write_text(urdf.read_text().replace("prismatic", "revolute"))
     assert run(["refine", str(out)]) == 2
     assert "was changed or removed since" in capsys.readouterr().err
+
+
+def test_infer_refines_when_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["infer", str(ROOT / "examples" / "cabinet"), "-o", str(tmp_path / "out"), "--refine", "1", "--no-preview"]
+    assert run(words) == 0
+    assert "Kept: the model as it was inferred, with no errors" in capsys.readouterr().out
+
+
+def test_validate_names_the_next_best_joints_of_what_fails(tmp_path: Path) -> None:
+    bad = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    write_inference(bad, tmp_path / "out", preview=False)
+    urdf = tmp_path / "out" / "model.urdf"
+    (joint,) = kinematify.validate(urdf, selected=["KV310"], engines=()).joints
+    right = joint_above(inferred("drawer"), "drawer")
+    assert abs(float(np.dot(joint.next_best[0]["axis"], right.axis))) > 0.999
+    urdf.write_text(urdf.read_text() + "\n")
+    (joint,) = kinematify.validate(urdf, selected=["KV310"], engines=()).joints
+    assert joint.next_best == ()
+
+
+def test_bench_measures_refinement(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_inference(inferred("drawer"), tmp_path / "models" / "drawer", preview=False)
+    words = ["bench", "models", "--refine", "--perturb", "noise", "--conditions", "rest", "--jobs", "1"]
+    assert run([*words, "-o", "out", "--name", "refine"]) == 0
+    assert "Harm: none" in capsys.readouterr().out
+    results, header = load_refining_report(tmp_path / "out" / "refine.json")
+    assert [(item.object, item.perturbation, item.message) for item in results] == [
+        ("drawer", "clean", ""),
+        ("drawer", "noise", ""),
+    ]
+    assert [tier.tier for tier in results[0].tiers] == [OFF, "geometry"]
+    assert "no feedback" in markdown(results, header, "refine")
+    assert not harmed(results)
+    assert run([*words, "--tiers", "cheap"]) == 2
+
+
+def test_harm_is_told() -> None:
+    joint = JointScore(
+        joint="j", parent="a", child="b", kind="revolute", predicted_kind="revolute", gripper=False, angle_deg=0.0,
+        angle_given_type_deg=0.0, line_m=0.0, pivot_m=0.0, limit_iou=0.9, opens=True,
+    )  # fmt: skip
+    tree = TreeDistance(value=0, exact=True)
+    score = ObjectScore(
+        diagonal=1.0, joints=(joint,), ted=tree, ted_unlabelled=tree, ted_without_gripper=tree, parent_errors=0,
+        root_right=True,
+    )  # fmt: skip
+    before = TierResult(tier=OFF, score=score, seconds=1.0, errors=0, changes=())
+    for changes in ({"predicted_kind": "prismatic"}, {"angle_deg": 90.0}, {"limit_iou": 0.5}):
+        after = replace(before, tier="geometry", score=replace(score, joints=(replace(joint, **changes),)))
+        result = RefiningResult(
+            key="k", object="o", kind="other", condition="rest", perturbation="clean", message="", tiers=(before, after)
+        )
+        assert len(harmed([result])) == 1
+    assert not harmed([replace(result, tiers=(before, replace(before, tier="geometry")))])
 
 
 def test_a_folder_of_an_older_version_is_refused(tmp_path: Path) -> None:

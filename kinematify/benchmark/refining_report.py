@@ -12,7 +12,7 @@ from pydantic import TypeAdapter
 
 from kinematify.benchmark.perturb import CLEAN, GAP, MISSING, NOISE, SPURIOUS
 from kinematify.benchmark.refining import RefiningResult
-from kinematify.errors import OutputError
+from kinematify.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -125,8 +125,8 @@ def markdown(results: Sequence[RefiningResult], header: dict[str, Any], name: st
         sections.append(tier_table([result for result in own if result.perturbation == CLEAN]))
         perturbed = [result for result in own if result.perturbation != CLEAN]
         if perturbed:
-            sections += [f"## {kind}: perturbed input", _perturbation_table(perturbed)]
-    sections += ["## Where feedback did harm", _harm_table(harmed(results)), *_failures(results)]
+            sections += [f"## {kind}: perturbed input", perturbation_table(perturbed)]
+    sections += ["## Where feedback did harm", harm_table(harmed(results)), *_failures(results)]
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
@@ -147,7 +147,8 @@ def _cells(item: TierSummary) -> str:
     )
 
 
-def _perturbation_table(results: Sequence[RefiningResult]) -> str:
+def perturbation_table(results: Sequence[RefiningResult]) -> str:
+    """One line per perturbation and tier, and one per tier for all of them."""
     head = (
         "| | tier | objects | axis angle [deg] | types | limits (IoU) | TED | wrong joints | passes | time |",
         "|---|---|---|---|---|---|---|---|---|---|",
@@ -161,7 +162,8 @@ def _perturbation_table(results: Sequence[RefiningResult]) -> str:
     return "\n".join((*head, *lines))
 
 
-def _harm_table(rows: Sequence[tuple[str, ...]]) -> str:
+def harm_table(rows: Sequence[tuple[str, ...]]) -> str:
+    """What `harmed` found, a line each."""
     if not rows:
         return "Nowhere."
     head = ("| object | input | tier | what became worse | what was chosen anew |", "|---|---|---|---|---|")
@@ -192,6 +194,22 @@ def write_refining_report(
             f"The report cannot be written to {folder}: {error}. Give a folder that can be written."
         ) from error
     return paths
+
+
+def load_refining_report(path: Path) -> tuple[tuple[RefiningResult, ...], dict[str, Any]]:
+    """Read what `write_refining_report` has written: results and header.
+
+    Raises:
+        InputError: The file does not exist or is no such report.
+    """
+    try:
+        values = json.loads(path.read_text(encoding="utf-8"))
+        return _RESULTS.validate_python(values["results"]), values["header"]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"{path} is not a report of a refinement: {error}. Give a JSON file that `kinematify bench --refine` has "
+            "written."
+        ) from error
 
 
 def tier_rows(results: Sequence[RefiningResult]) -> list[tuple[str, ...]]:
