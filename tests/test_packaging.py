@@ -27,6 +27,7 @@ for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
 data = resources.files("kinematify.configs")
 print(*sorted(entry.name for entry in data.iterdir() if entry.name.endswith(".yaml")))
 print(resources.files("kinematify").joinpath("py.typed").is_file())
+print(resources.files("kinematify.validation.formats").joinpath("assets", "viewer.js").is_file())
 """
 
 
@@ -64,7 +65,7 @@ def assert_complete(python: Path, cwd: Path) -> None:
     lines = call(python, "-c", INSTALLED, cwd=cwd).splitlines()
     names = ["kinematify" + name for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model")]
     shipped = sorted(path.name for path in (ROOT / "configs").glob("*.yaml"))
-    assert lines == [*names, " ".join(shipped), "True"]
+    assert lines == [*names, " ".join(shipped), "True", "True"]
 
 
 @pytest.mark.parametrize("options", [["--wheel"], []], ids=["from the tree", "through the sdist"])
@@ -109,14 +110,14 @@ def declared(extra: str | None = None) -> set[str]:
 
 
 def test_the_doctor_knows_every_declared_package() -> None:
-    assert set(MODULES) == declared() | declared("bench")
+    assert set(MODULES) == declared() | declared("bench") | declared("view")
 
 
 def test_every_import_of_the_package_is_declared() -> None:
     providers = {module: {normalised(name) for name in names} for module, names in packages_distributions().items()}
     providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
     providers |= {"manifold3d": {"manifold3d"}}  # a bare extension module, which the metadata does not list
-    allowed = {normalised(name) for name in declared() | declared("bench")}
+    allowed = {normalised(name) for name in declared() | declared("bench") | declared("view")}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):
         for path in (Path(folder, file) for file in files if file.endswith(".py")):
