@@ -20,6 +20,7 @@ from kinematify.pipeline.generate import PARTS_FOLDER, TRUTH_FOLDER, write_parts
 from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
 from kinematify.sources.procedural.truth import ground_truth
 from kinematify.validation.finding import Severity
+from kinematify.validation.formats.picture import scene_of
 from kinematify.validation.isolation import start_server
 from kinematify.validation.outcome import severity_counts
 from kinematify.validation.run import validate
@@ -130,7 +131,7 @@ def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationRepo
     report = validate(out / MODEL_FILE, workers=os.cpu_count() or 1, progress=progress)
     pictures = {report.model: (out / PREVIEW_FILE).read_bytes()} if preview else {}
     files = ReportFiles(json=str(out / "validation.json"), junit=None, sarif=None, html=out / "validation.html")
-    files.write([report], pictures)
+    files.write([report], pictures, {report.model: scene_of(out / MODEL_FILE)})
     return report
 
 

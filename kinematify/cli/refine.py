@@ -171,11 +171,13 @@ def _report_files(html: Path | None) -> Any:
 def _write_report(files: Any, folder: Path) -> None:
     from kinematify.model.output import MODEL_FILE
     from kinematify.pipeline.record import PREVIEW_FILE
+    from kinematify.validation.formats.picture import scene_of
     from kinematify.validation.run import validate
 
     report = validate(folder / MODEL_FILE)
     picture = folder / PREVIEW_FILE
-    files.write([report], {report.model: picture.read_bytes()} if picture.is_file() else {})
+    pictures = {report.model: picture.read_bytes()} if picture.is_file() else {}
+    files.write([report], pictures, {report.model: scene_of(folder / MODEL_FILE)})
 
 
 def _describe_joints(inference: Inference, folder: Path) -> str:

@@ -85,13 +85,27 @@ def drawing_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
         )
 
 
+def scene_of(path: Path) -> str:
+    """Return the scene of a model that Kinematify wrote itself, without a process of its own.
+
+    Raises:
+        DescriptionError: It cannot be read.
+    """
+    return _scene(read_model(path).kinematics)
+
+
+def _scene(robot: RobotDescription) -> str:
+    scene = view_data(robot, faces=_FACES)
+    return "" if scene is None else json.dumps(scene, allow_nan=False)
+
+
 def run(request: StageRequest, _recorder: Recorder) -> None:
     """Draw the model of a request into its folder; body of the process."""
     robot = read_model(request.urdf, package_dirs=request.package_dirs).kinematics
-    scene = view_data(robot, faces=_FACES)
-    if scene is not None:
+    scene = _scene(robot)
+    if scene:
         aside = request.work / f".{_SCENE}"
-        aside.write_text(json.dumps(scene, allow_nan=False), encoding="utf-8")
+        aside.write_text(scene, encoding="utf-8")
         aside.replace(request.work / _SCENE)  # a process that is stopped leaves no half of it
     model = shown_model(robot)
     config = load_config("default").preview.model_copy(update=_PANEL)
