@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import math
+import struct
 from typing import TYPE_CHECKING
 
 from kinematify.validation.catalogue import CATALOGUE
@@ -148,8 +149,21 @@ def _picture(png: bytes) -> str:
         return ""
     data = base64.b64encode(png).decode("ascii")
     return (
-        f'<img class="picture" alt="The model at rest, and with every joint moved" src="data:image/png;base64,{data}">'
+        f'<img class="picture" alt="The model at rest, and with every joint moved"{_extent(png)} '
+        f'src="data:image/png;base64,{data}">'
     )
+
+
+def _extent(png: bytes) -> str:
+    """Width and height as attributes, so that the page does not jump when the picture is there."""
+    if len(png) < _PNG_SIZES.stop:
+        return ""
+    width, height = struct.unpack(">II", png[_PNG_SIZES])
+    return f' width="{width}" height="{height}"'
+
+
+_PNG_SIZES = slice(16, 24)
+"""Where the first chunk of a PNG has width and height."""
 
 
 def _family_cells(report: ValidationReport) -> list[tuple[str, ...]]:

@@ -37,6 +37,7 @@ def viewer(index: int, scene: str) -> str:
     sliders = f'<div class="sliders"><p class="status faint">{_HELP}</p>{reset}{"".join(map(_slider, joints))}</div>'
     return (
         f'<script type="application/json" id="{scene_name(index)}">{data}</script><h3>The model, to turn and move</h3>'
+        "<noscript><p>This view needs scripts; nothing else in the page does.</p></noscript>"
         f'<div class="viewer" data-scene="{scene_name(index)}">{canvas}{sliders}</div>'
     )
 
