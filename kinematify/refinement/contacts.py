@@ -74,27 +74,26 @@ def rebuilt(
     assembly: Assembly,
     surfaces: Sequence[PartSurface],
     audit: ContactAudit,
-    config: Config,
-) -> tuple[ContactGraph, dict[Pair, EdgeBearing]]:
-    """The contact graph as the meshes have it, with the bearings of its edges."""
-    contact = config.contact.model_copy(update={"tolerance": audit.tolerance})
-    graph = build_contact_graph(assembly, surfaces, config=contact, seed=config.seed)
-    return graph, fitted(assembly, surfaces, graph, {}, config)
-
-
-def fitted(
-    assembly: Assembly,
-    surfaces: Sequence[PartSurface],
-    graph: ContactGraph,
     known: Mapping[Pair, EdgeBearing],
     config: Config,
-) -> dict[Pair, EdgeBearing]:
-    """Bearings of every edge of a graph; those that are known already are taken over."""
-    if config.joints.method != "geometry":
-        return dict(known)
-    return {
-        pair: known[pair]
-        if pair in known
-        else fit_edge(surfaces, edge, diagonal=assembly.diagonal, config=config.bearing, seed=config.seed)
-        for pair, edge in graph.by_pair.items()
-    }
+) -> tuple[ContactGraph, dict[Pair, EdgeBearing]]:
+    """The contact graph as the meshes have it, with the bearings of its edges.
+
+    Args:
+        assembly: The parts.
+        surfaces: Derived geometry of each part, same order.
+        audit: What the old graph had wrong.
+        known: Bearings of the old graph; those of edges that it had right are taken over.
+        config: Of the inference.
+    """
+    contact = config.contact.model_copy(update={"tolerance": audit.tolerance})
+    graph = build_contact_graph(assembly, surfaces, config=contact, seed=config.seed)
+    wrong = {*audit.missing, *audit.spurious}
+    bearings = {pair: bearing for pair, bearing in known.items() if pair in graph.by_pair and pair not in wrong}
+    if config.joints.method == "geometry":
+        for pair, edge in graph.by_pair.items():
+            if pair not in bearings:
+                bearings[pair] = fit_edge(
+                    surfaces, edge, diagonal=assembly.diagonal, config=config.bearing, seed=config.seed
+                )
+    return graph, bearings

@@ -266,7 +266,7 @@ class _Loop:
         audit = audit_contacts(assembly, surfaces, self.given.graph, config)
         if not audit:
             return None
-        graph, bearings = rebuilt(assembly, surfaces, audit, config)
+        graph, bearings = rebuilt(assembly, surfaces, audit, self.given.bearings, config)
         contacts = Contacts(graph=graph, bearings=bearings)
         trees = search_again(assembly, contacts, self.memory, self.given.trees, config, base=self.base)
         plan, changes = replanned(done.plan, contacts, trees[0])

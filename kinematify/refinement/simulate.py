@@ -9,8 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from kinematify.refinement.world import World
 from kinematify.validation.finding import Severity
 from kinematify.validation.geometry import judge_motion
@@ -18,7 +16,6 @@ from kinematify.validation.geometry.judge_motion import MotionCase
 from kinematify.validation.geometry.judge_rest import hovering, neighbours, strangers
 from kinematify.validation.geometry.overlap import Overlap
 from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import box_corners, relative, transformed
 from kinematify.validation.geometry.sweep import Sweeper
 from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import OpenCheck
@@ -26,7 +23,6 @@ from kinematify.validation.stage import OpenCheck
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.model.kinematic_model import Joint, KinematicModel
     from kinematify.refinement.world import WorldScene
     from kinematify.validation.finding import Finding
@@ -121,32 +117,6 @@ class Simulator:
             joint=name, kind=joint.kind.value, declared_limits=(joint.lower, joint.upper), free_travel=sweep.free
         )
         return found, summary
-
-    def gaps(self, model: KinematicModel, joint: str, shares: FloatArray) -> FloatArray:
-        """How much farther from its parent a part is at shares of its range than at rest.
-
-        Args:
-            model: The plan.
-            joint: A joint that moves.
-            shares: Of the way from rest to the upper end, or to the lower one where negative, shape (n,).
-
-        Returns:
-            Growth of the gap as a fraction of how far the part's fastest corner has moved, shape (n,); 0 where the
-            two still touch, 1 where the whole motion leads away.
-        """
-        look = _Look(self._world.scene(model))
-        leader = [travel.joint for travel in look.scene.travels].index(joint)
-        travel = look.scene.travels[leader]
-        values = np.where(shares >= 0.0, shares * travel.upper, -shares * travel.lower)
-        poses = look.scene.poses(look.sweeper.rows(leader, values))
-        child = next(item.child for item in model.joints if item.name == joint)
-        body = next(index for index, item in enumerate(look.scene.bodies) if child in item.links)
-        pair = next(item.pair for item in look.scene.connections if item.child == body)
-        rest = look.overlap.gap(pair, relative(look.scene.at_rest[None], pair)[0])
-        corners = box_corners(look.scene.bodies[body].solid)
-        moved = [np.linalg.norm(transformed(corners, T) - corners, axis=1).max() for T in poses[:, body]]
-        grown = [look.overlap.gap(pair, T) - rest for T in relative(poses, pair)]
-        return np.maximum(grown, 0.0) / np.maximum(moved, 1e-12)
 
 
 class _Look:
