@@ -26,6 +26,13 @@ def _register() -> None:
             max_episode_steps=EPISODE_STEPS["open_part"],
             kwargs={"reward": reward},
         )
+    for env_id, reward in ((DRAWER_PULL, "dense"), (DRAWER_PULL_SPARSE, "sparse")):
+        register(
+            id=env_id,
+            entry_point="kinematify.envs.drawer_pull:make_drawer_pull",
+            max_episode_steps=EPISODE_STEPS["drawer_pull"],
+            kwargs={"reward": reward},
+        )
 
 
 _register()

@@ -8,12 +8,12 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import EzPickle
 
-from kinematify.assembly.robot import forward_kinematics, rigid_groups
+from kinematify.assembly.robot import forward_kinematics
 from kinematify.envs.dynamics import draw, drawing, no_draw
 from kinematify.envs.goal import Goal
 from kinematify.envs.picture import Painter, Piece, View, Window, has_screen, require_screen
 from kinematify.envs.settings import load_settings
-from kinematify.envs.thing import AUTO, open_end
+from kinematify.envs.thing import AUTO, held_links, open_end
 from kinematify.envs.verdict import require_valid
 from kinematify.envs.worlds import ENGINES, shared_target, shared_thing
 from kinematify.errors import InputError
@@ -45,6 +45,8 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     }
     _with_robot: ClassVar[bool] = False
     _world: World
+    thing: Thing
+    target: Target
 
     def _begin(
         self, *, model: str | Path | None, joint: str, open_fraction: float, engine: str, reward: str,
@@ -69,8 +71,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
         self.open_fraction = open_fraction
-        self.thing: Thing = shared_thing(model)
+        self.thing = shared_thing(model, fine=self._with_robot)
         self.validation = require_valid(self.thing, engine, allow_invalid=allow_invalid)
+        self.T_world_root = self.thing.T_world_root
         self._asked_joint = joint
         self._start_noise = np.array(self.settings.reset.start_open)
         self._draw = no_draw(*self._counts)
@@ -86,10 +89,14 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         return self.thing.suggested if self.thing.suggested != AUTO else self.thing.farthest
 
     def _aim(self, joint: str) -> None:
-        self.target: Target = shared_target(self.thing, joint)
+        self.target = self._targeted(joint)
         self.goal = Goal(self.thing, self.target, self.open_fraction, self.settings)
         self.middle = self._rest_place()
         self.escape_distance = self.settings.task.escape * self.thing.scene.size
+
+    def _targeted(self, joint: str) -> Target:
+        """Return the joint with the point at which its part is held."""
+        return shared_target(self.thing, joint)
 
     @property
     def _counts(self) -> tuple[int, int]:
@@ -98,7 +105,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _rest_place(self) -> FloatArray:
         """The hold at rest, world frame, the object at its usual place [m], shape (3,)."""
-        link_pose = self.thing.T_world_root @ _pose_at_rest(self.thing, self.target)
+        link_pose = self.T_world_root @ _pose_at_rest(self.thing, self.target)
         return np.asarray(link_pose[:3, :3] @ self.target.point + link_pose[:3, 3])
 
     # Start of an episode.
@@ -116,15 +123,19 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._draw = draw(self._drawn_names, *self._counts, self.settings.randomize, rng, robot=self._with_robot)
         self._world.draw(self._draw)
         if "qpos" in given or "open_fraction" in given:
-            self._world.place(self._asked_start(given))
+            self._place(self._asked_start(given))
             return
         allowed = self.settings.reset.depth * self.thing.scene.size
         for _ in range(self.settings.reset.tries):
             leaders = self.thing.scene.mechanism.rest.copy()
             leaders[self.target.leader] = self.target.value(float(rng.uniform(*self._start_noise)))
-            if self._world.place(leaders) <= allowed:
+            if self._place(leaders) <= allowed:
                 return
-        self._world.place(self.thing.scene.mechanism.rest)
+        self._place(self.thing.scene.mechanism.rest)
+
+    def _place(self, leaders: FloatArray) -> float:
+        """Set the joints that lead, shape (J,), and stop all; returns the depth of the deepest contact [m]."""
+        raise NotImplementedError
 
     def _retarget(self, joint: str) -> None:
         """Open another joint from now on."""
@@ -154,6 +165,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
                 raise InputError(f"reset options ask for open_fraction {fraction}, but it must be from 0 to 1.")
             leaders[self.target.leader] = self.target.value(fraction)
         return leaders
+
+    def reading(self) -> Reading:
+        """State of the object now."""
+        return self._world.reading()
 
     # After a step.
 
@@ -233,7 +248,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _pieces(self) -> Sequence[Piece]:
         kinematics = self.thing.declared.kinematics
-        held = _held_links(self.thing, self.target)
+        held = held_links(self.thing, self.target)
         colors = {name: _HELD if name in held else _OTHERS for name in self.thing.scene.mechanism.links}
         colors[kinematics.root] = _BODY
         return [
@@ -245,7 +260,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _view(self) -> View:
         """All of the object, at rest and open, from the side to which it opens."""
-        scene, T = self.thing.scene, self.thing.T_world_root
+        scene, T = self.thing.scene, self.T_world_root
         rows = np.stack([scene.mechanism.rest] * 2)
         rows[1, self.target.leader] = open_end(self.thing.travels[self.target.leader])
         corners = np.concatenate(
@@ -288,10 +303,3 @@ def _pose_at_rest(thing: Thing, target: Target) -> FloatArray:
     """Link that is moved, frame of the root link, shape (4, 4)."""
     values = {travel.joint: travel.rest for travel in thing.travels}
     return forward_kinematics(thing.declared.kinematics, values)[target.link]
-
-
-def _held_links(thing: Thing, target: Target) -> frozenset[str]:
-    """Links of the body that is moved."""
-    return frozenset(
-        next(group.links for group in rigid_groups(thing.declared.kinematics) if target.link in group.links)
-    )

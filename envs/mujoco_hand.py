@@ -61,7 +61,7 @@ def hand_facts(thing: Thing, target: Target, control: str) -> HandFacts:
     settings = load_settings()
     source = object_source(thing, settings)
     spec = world_spec(settings)
-    add_object(spec, thing, target, source)
+    add_object(spec, thing, target, source, thing.T_world_root)
     for axis, letter in enumerate("xyz"):
         hand = spec.add_actuator(name=f"kinematify hand {letter}", trntype=mujoco.mjtTrn.mjTRN_SITE, target=HOLD)
         hand.refsite = WORLD

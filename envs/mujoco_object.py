@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
     from kinematify.envs.thing import Target, Thing
+    from kinematify.validation.engines.mechanism import Mechanism
     from kinematify.validation.engines.mujoco_model import Source
     from kinematify.validation.engines.touching import Touching
+    from kinematify.validation.prepare.prepared import Prepared
 
 PREFIX = "object "
 """Before the names of the object's links, joints and shapes."""
@@ -45,31 +47,31 @@ class ObjectSource:
 
 
 def object_source(thing: Thing, settings: EnvSettings) -> ObjectSource:
-    """Parse the object and look who touches whom while it moves.
+    """Parse the object and settle its contacts (`settled_source`)."""
+    return settled_source(thing.prepared, thing.scene.mechanism, thing.scene.size, settings)
+
+
+def settled_source(prepared: Prepared, mechanism: Mechanism, size: float, settings: EnvSettings) -> ObjectSource:
+    """Parse a prepared file and look who touches whom while it moves.
 
     What touches at rest, as a drawer its runners, acts beyond the depth that it has there; where it gets no deeper over
     the whole motion it need not be looked at. Everything else acts from the first touch (`with_allowances`).
+
+    Args:
+        prepared: An object or a robot.
+        mechanism: Its tree.
+        size: Its diagonal [m].
+        settings: Samples of the motion.
     """
-    limits = load_settings().engines
-    mechanism = thing.scene.mechanism
-    source = parse(thing.prepared.urdf, mechanism, step=settings.time.step)
+    source = parse(prepared.urdf, mechanism, step=settings.time.step)
+    source.spec.compiler.balanceinertia = True
     measured = compiled(source)
-    rng = np.random.default_rng(0)
-    low, high = (np.array([getattr(travel, end) for travel in thing.travels]) for end in ("lower", "upper"))
-    rows = np.concatenate(
-        [
-            mechanism.sweep(settings.object.sweep_samples),
-            rng.uniform(low, high, (settings.object.random_rows, len(low))),
-        ]
-    )
-    swept = len(rows) - settings.object.random_rows
-    seen = measure(measured, mechanism.all_values(rows[:swept]), dynamic=0, threads=1)
-    met = touching(
-        seen.contacts, mechanism, thing.prepared, rows=swept, tolerance=limits.contact_depth * thing.scene.size
-    )
-    never = np.setdiff1d(np.arange(len(met.slack)), met.meet)
+    rows = mechanism.sweep(settings.object.sweep_samples)
+    seen = measure(measured, mechanism.all_values(rows), dynamic=0, threads=1)
+    tolerance = load_settings().engines.contact_depth * size
+    met = touching(seen.contacts, mechanism, prepared, rows=len(rows), tolerance=tolerance)
     slack = met.slack.copy()
-    slack[never] = np.inf
+    slack[np.setdiff1d(np.arange(len(slack)), met.meet)] = np.inf
     settled = replace(met, slack=slack)
     return ObjectSource(source=with_allowances(source, measured, settled, only=False), touching=settled)
 
@@ -90,12 +92,13 @@ def world_spec(settings: EnvSettings) -> mujoco.MjSpec:
     return spec
 
 
-def add_object(spec: mujoco.MjSpec, thing: Thing, target: Target, found: ObjectSource) -> None:
+def add_object(
+    spec: mujoco.MjSpec, thing: Thing, target: Target, found: ObjectSource, T_world_root: FloatArray
+) -> None:
     """Attach the object, mark the hold and the joint that is opened, and add their sensors."""
     part = found.source.spec.copy()
     part.compiler.balanceinertia = True
-    T = thing.T_world_root
-    spec.attach(part, prefix=PREFIX, frame=spec.worldbody.add_frame(pos=T[:3, 3]))
+    spec.attach(part, prefix=PREFIX, frame=spec.worldbody.add_frame(pos=T_world_root[:3, 3]))
     names = dict(zip(thing.scene.mechanism.links, found.source.names, strict=True))
     body = spec.body(PREFIX + names[target.link])
     body.add_site(name=HOLD, pos=target.point)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
     from kinematify.envs.goal import Goal
+    from kinematify.envs.mujoco_hand import HandFacts
     from kinematify.envs.reading import Reading
     from kinematify.envs.worlds import HandWorld
 
@@ -154,10 +155,13 @@ class OpenPartEnv(OpeningEnv):
         kind = MujocoHand if self.engine == "mujoco" else _pybullet_hand()
         self._world = kind(self.thing, self.target, self.control, self.settings)
 
+    def _place(self, leaders: FloatArray) -> float:
+        return self._world.place(leaders)
+
     @property
     def full_force(self) -> float:
         """Force of a full action, or of the spring at most [N]."""
-        return float(self._world.facts.force)
+        return self.hand_facts.force
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -179,6 +183,11 @@ class OpenPartEnv(OpeningEnv):
         """Draw and place the object; what is left of `reset` is to look at it."""
         super().reset(seed=seed)
         self._start(options)
+
+    @property
+    def hand_facts(self) -> HandFacts:
+        """What the hand can do."""
+        return self._world.facts
 
     @property
     def hand(self) -> MujocoHand:

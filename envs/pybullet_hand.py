@@ -28,7 +28,7 @@ class PybulletHand:
     def __init__(self, thing: Thing, target: Target, control: str, settings: EnvSettings) -> None:
         """Connect to a world of its own; `close` frees it."""
         self.facts = hand_facts(thing, target, control)
-        self.object = PybulletObject(thing, target, self.facts.dynamics, settings)
+        self.object = PybulletObject(thing, target, self.facts.dynamics, thing.T_world_root, settings)
         self.client = self.object.client
         self._close = weakref.finalize(self, partial(disconnected, self.client))
         self._control, self._substeps = control, settings.time.substeps

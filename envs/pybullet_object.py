@@ -34,7 +34,9 @@ _FOLLOWER_FORCE = 1e3  # holds a joint that follows another one [N m or N]
 class PybulletObject:
     """One object in a world of its own."""
 
-    def __init__(self, thing: Thing, target: Target, dynamics: JointDynamics, settings: EnvSettings) -> None:
+    def __init__(
+        self, thing: Thing, target: Target, dynamics: JointDynamics, T_world_root: FloatArray, settings: EnvSettings
+    ) -> None:
         """Load the prepared file; pairs that always touch do not collide, as in MuJoCo."""
         self.thing, self.target, self._dynamics = thing, target, dynamics
         mechanism = thing.scene.mechanism
@@ -52,9 +54,9 @@ class PybulletObject:
         self._followers = [k for k in range(len(names)) if k not in self._leaders]
         self._link = int(self._loaded.link[mechanism.links.index(target.link)])
         self._axis = thing.declared.kinematics.joint_by_name[target.joint].axis
-        self._T_base = _pose(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
+        self._T_base = pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
         self._links = {index: self._info(index) for index in self._loaded.link.tolist()}
-        self._T_root = thing.T_world_root
+        self._T_usual = self._T_root = T_world_root
         self._saved: int | None = None
         self.look()
 
@@ -76,6 +78,10 @@ class PybulletObject:
             if k not in free:
                 members = [np.flatnonzero(mechanism.body_of_link == body).tolist() for body in pair]
                 loaded.act([(a, b) for a in members[0] for b in members[1]], on=False)
+
+    def link_index(self, name: str) -> int:
+        """PyBullet's index of a link."""
+        return int(self._loaded.link[self.thing.scene.mechanism.links.index(name)])
 
     def _info(self, index: int) -> tuple[float, list[float], float]:
         """Mass [kg], principal moments [kg m^2] and friction of a link."""
@@ -106,9 +112,9 @@ class PybulletObject:
                     body, index, bullet.VELOCITY_CONTROL, targetVelocity=0.0, force=float(friction_of[k]),
                     physicsClientId=client,
                 )  # fmt: skip
-        self._T_root = drawn.T_root @ self.thing.T_world_root
+        self._T_root = drawn.T_root @ self._T_usual
         T = self._T_root @ self._T_base
-        bullet.resetBasePositionAndOrientation(body, T[:3, 3].tolist(), _quaternion(T[:3, :3]), physicsClientId=client)
+        bullet.resetBasePositionAndOrientation(body, T[:3, 3].tolist(), quaternion(T[:3, :3]), physicsClientId=client)
         if self._saved is not None:
             bullet.removeState(self._saved, physicsClientId=client)
         self._saved = None
@@ -159,13 +165,13 @@ class PybulletObject:
         return state
 
     def _at_hold(self, state: tuple[tuple[float, ...], ...]) -> FloatArray:
-        return np.asarray(_pose(state[4], state[5])[:3] @ np.append(self.target.point, 1.0))
+        return np.asarray(pose_of(state[4], state[5])[:3] @ np.append(self.target.point, 1.0))
 
     def look(self) -> None:
         """Take the state of now for `reading`."""
         states = bullet.getJointStates(self.body, self._leader_indices, physicsClientId=self.client)
         state = self._link_state()
-        T = _pose(state[4], state[5])
+        T = pose_of(state[4], state[5])
         self._reading = Reading(
             values=np.array([s[0] for s in states]),
             speeds=np.array([s[1] for s in states]),
@@ -198,13 +204,14 @@ def disconnected(client: int) -> None:
         bullet.disconnect(physicsClientId=client)
 
 
-def _pose(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
+def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
+    """Pose from a place [m] and a quaternion x, y, z, w, shape (4, 4)."""
     T = np.eye(4)
     T[:3, :3] = np.array(bullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
     T[:3, 3] = place
     return T
 
 
-def _quaternion(rotation: FloatArray) -> list[float]:
+def quaternion(rotation: FloatArray) -> list[float]:
     """Quaternion x, y, z, w of a rotation matrix (3, 3)."""
     return [float(value) for value in Rotation.from_matrix(rotation).as_quat()]

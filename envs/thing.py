@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics
+from kinematify.assembly.robot import forward_kinematics, rigid_groups
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
+from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
 from kinematify.model.output import MODEL_FILE
 from kinematify.validation.geometry.scene import read_scene, transformed
@@ -126,11 +127,12 @@ class Target:
         return self.way / abs(self.range)
 
 
-def load_thing(model: str | Path | None) -> Thing:
+def load_thing(model: str | Path | None, *, fine: bool = False) -> Thing:
     """Read the object that a `model` keyword names.
 
     Args:
         model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY``, or None for the default.
+        fine: Cut concave parts so finely that fingers can go around handles.
 
     Raises:
         InputError: There is no such model, it cannot be read, or nothing of it moves.
@@ -138,7 +140,7 @@ def load_thing(model: str | Path | None) -> Thing:
     source = f"{PREFIX}{DEFAULT}" if model is None else str(model)
     folder = Path(tempfile.mkdtemp(prefix="kinematify-env-"))
     try:
-        thing = _read(source, folder)
+        thing = _read(source, folder, fine=fine)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
@@ -146,14 +148,15 @@ def load_thing(model: str | Path | None) -> Thing:
     return thing
 
 
-def _read(source: str, folder: Path) -> Thing:
+def _read(source: str, folder: Path, *, fine: bool) -> Thing:
     suggested = AUTO
     if source.startswith((PREFIX, FAMILY_PREFIX)):
         bundled = find_bundled(source)
         urdf, suggested = write_bundled(bundled, folder / "object"), bundled.joint
     else:
         urdf = urdf_of(source)
-    settings = load_settings()
+    settings, names = load_settings(), ("link_gap", "model_gap", "cuts", "cuts_per_link")
+    finer = {name: getattr(load_env_settings().robot, name) for name in names} if fine else {}
     declared = read_model(urdf)
     scene = read_scene(declared, settings.geometry)
     if not scene.travels:
@@ -168,7 +171,7 @@ def _read(source: str, folder: Path) -> Thing:
         urdf=urdf,
         declared=declared,
         scene=scene,
-        prepared=prepare(declared, work, settings.prepare),
+        prepared=prepare(declared, work, settings.prepare.model_copy(update=finer)),
         T_world_root=_standing(scene),
         suggested=suggested,
         folder=folder,
@@ -228,6 +231,11 @@ def find_target(thing: Thing, joint: str, hand: HandSettings) -> Target:
         point=point,
         way=way,
     )
+
+
+def held_links(thing: Thing, target: Target) -> tuple[str, ...]:
+    """Links of the rigid body that the joint moves."""
+    return next(group.links for group in rigid_groups(thing.declared.kinematics) if target.link in group.links)
 
 
 def open_end(travel: Travel) -> float:

@@ -27,16 +27,6 @@ class World(Protocol):
     def draw(self, drawn: Draw) -> None:
         """Redraw the object."""
 
-    def place(self, leaders: FloatArray) -> float:
-        """Set the object's joints that lead, shape (J,) [rad or m], everything else to its start, and stop all.
-
-        Returns:
-            How much deeper than allowed two shapes are in each other at most [m].
-        """
-
-    def act(self, action: FloatArray) -> None:
-        """Simulate until the next action; `action` is within -1 and 1."""
-
     def reading(self) -> Reading:
         """Return the state of the object."""
 
@@ -61,22 +51,55 @@ class HandWorld(World, Protocol):
 
     facts: HandFacts
 
+    def place(self, leaders: FloatArray) -> float:
+        """Set the object's joints that lead, shape (J,) [rad or m], and stop all.
+
+        Returns:
+            How much deeper than allowed two shapes are in each other at most [m].
+        """
+
+    def act(self, action: FloatArray) -> None:
+        """Simulate until the next action; `action` is within -1 and 1, shape (3,)."""
+
     def command(self) -> FloatArray:
         """From the hold to where the hand wants it [m], zero in force control, shape (3,)."""
 
 
-def shared_thing(model: str | Path | None) -> Thing:
+class ArmWorld(World, Protocol):
+    """An object and a robot."""
+
+    def place(self, leaders: FloatArray, arm: FloatArray) -> float:
+        """Set the object's joints that lead, shape (J,), and those of the arm (dof,), fingers apart, and stop all.
+
+        Returns:
+            How much deeper than allowed two shapes are in each other at most [m].
+        """
+
+    def act(self, arm: FloatArray, fingers: FloatArray) -> None:
+        """Simulate until the next action, servos told to go to these values, shapes (dof,) and (fingers,)."""
+
+    def joints(self) -> tuple[FloatArray, FloatArray]:
+        """Values and speeds of the arm's joints and then of the fingers', shape (dof + fingers,) each."""
+
+    def tool(self) -> FloatArray:
+        """World pose of the tool, shape (4, 4)."""
+
+    def touch(self) -> FloatArray:
+        """Force of each finger on the part [N], shape (fingers,)."""
+
+
+def shared_thing(model: str | Path | None, *, fine: bool = False) -> Thing:
     """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
     path = Path(model) if isinstance(model, Path) or (isinstance(model, str) and Path(model).exists()) else None
     file = path / "model.urdf" if path is not None and path.is_dir() else path
     stamp = (file.stat().st_mtime_ns, file.stat().st_size) if file is not None and file.is_file() else None
-    return _loaded(None if model is None else str(model), stamp)
+    return _loaded(None if model is None else str(model), stamp, fine)
 
 
 @lru_cache(maxsize=8)
-def _loaded(model: str | None, stamp: tuple[int, int] | None) -> Thing:
+def _loaded(model: str | None, stamp: tuple[int, int] | None, fine: bool) -> Thing:
     del stamp
-    return load_thing(model)
+    return load_thing(model, fine=fine)
 
 
 @lru_cache(maxsize=32)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,16 @@ def run(env: Any, policy: Any, *, seed: int, options: dict[str, Any] | None = No
     return total, info
 
 
-def write_slider(path: Path, *, kind: str = "prismatic", extra: str = "") -> Path:
+def documented_rows(cls: type) -> list[tuple[int, int, float, float]]:
+    """First and last index, lowest and highest of every row of the table of observations."""
+    text = (cls.__doc__ or "").split("## Observation space")[1].split("## Reward")[0]
+    rows = re.findall(
+        r"^ *\| (\d+)(?: to (\d+))? \| .* \| (-?[\d.]+) \| (-?[\d.]+) \| \S+ \|$", text, flags=re.MULTILINE
+    )
+    return [(int(a), int(b or a), float(low), float(high)) for a, b, low, high in rows]
+
+
+def write_slider(path: Path, *, kind: str = "prismatic", thick: float = 0.02, extra: str = "") -> Path:
     """A box in front of another one, with a joint between them."""
     path.write_text(
         f"""<robot name="slider">
@@ -37,9 +47,10 @@ def write_slider(path: Path, *, kind: str = "prismatic", extra: str = "") -> Pat
     <collision><geometry><box size="0.4 0.3 0.2"/></geometry></collision></link>
   <link name="front">
     <inertial><mass value="2"/><inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
-    <visual><geometry><box size="0.4 0.02 0.2"/></geometry></visual>
-    <collision><geometry><box size="0.4 0.02 0.2"/></geometry></collision></link>
-  <joint name="front_slide" type="{kind}"><parent link="body"/><child link="front"/><origin xyz="0 -0.162 0"/>
+    <visual><geometry><box size="0.4 {thick} 0.2"/></geometry></visual>
+    <collision><geometry><box size="0.4 {thick} 0.2"/></geometry></collision></link>
+  <joint name="front_slide" type="{kind}">
+    <parent link="body"/><child link="front"/><origin xyz="0 {-0.152 - thick / 2} 0"/>
     <axis xyz="0 -1 0"/><limit lower="0" upper="0.25" effort="50" velocity="1"/>
     <dynamics damping="4" friction="1"/></joint>
   {extra}

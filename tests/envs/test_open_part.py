@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-import re
 import subprocess
 import sys
 import warnings
@@ -17,16 +16,7 @@ from gymnasium.utils.env_checker import check_env
 from kinematify.envs.bundled import BUNDLED
 from kinematify.envs.open_part import OpenPartEnv
 from kinematify.errors import EnvironmentFault, InputError
-from tests.envs.hands import OPEN_PART, run, steady, write_slider
-
-
-def documented_rows(cls: type) -> list[tuple[int, int, float, float]]:
-    """First and last index, lowest and highest of every row of the table of observations."""
-    text = (cls.__doc__ or "").split("## Observation space")[1].split("## Reward")[0]
-    rows = re.findall(
-        r"^ *\| (\d+)(?: to (\d+))? \| .* \| (-?[\d.]+) \| (-?[\d.]+) \| \S+ \|$", text, flags=re.MULTILINE
-    )
-    return [(int(a), int(b or a), float(low), float(high)) for a, b, low, high in rows]
+from tests.envs.hands import OPEN_PART, documented_rows, run, steady, write_slider
 
 
 def test_the_documented_spaces_are_the_spaces() -> None:

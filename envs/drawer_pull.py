@@ -1,0 +1,320 @@
+"""DrawerPull: an arm with a gripper reaches for a drawer, grips it and pulls it open."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.utils import EzPickle
+
+from kinematify.envs.base import OpeningEnv, one_of
+from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
+from kinematify.envs.mujoco_arm import ROBOT, MujocoArm
+from kinematify.envs.picture import Piece
+from kinematify.envs.robot_plan import env_robot, robot_plan
+from kinematify.envs.thing import AUTO
+from kinematify.envs.worlds import shared_target
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping, Sequence
+    from pathlib import Path
+
+    from gymnasium import spaces
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.reading import Reading
+    from kinematify.envs.robot_plan import EnvRobot, RobotPlan
+    from kinematify.envs.thing import Target
+    from kinematify.envs.worlds import ArmWorld
+
+    Space = spaces.Space[NDArray[np.float32]]
+
+TOOL, JOINT = "tool", "joint"
+ARM_BOUND = 7.0
+"""Ends of observed joint values [rad or m]."""
+_ARM_COLOR, _HAND_COLOR = (0.80, 0.83, 0.88), (0.96, 0.58, 0.20)
+
+
+class DrawerPullEnv(OpeningEnv):
+    """Reach for a drawer with a robot's arm, grip it, pull it open, and leave it open and at rest.
+
+    The arm is the package's own, with seven joints and a parallel gripper, or a robot of yours. It stands where a
+    plan of `kinematify validate --task pull` lets it open the joint. Servos move its joints with the effort of the
+    file; what the fingers hold, they hold by contact and friction, on the convex pieces of the object. Any joint can
+    be asked for; ``auto`` takes a drawer if there is one. Episodes are truncated after 240 steps of 0.05 s.
+
+    ## Action space
+
+    `Box(-1, 1, (7,), float32)` with ``control="tool"``, `Box(-1, 1, (8,), float32)` with ``control="joint"`` for an
+    arm of 7 joints:
+
+    | tool | joint | what |
+    |---|---|---|
+    | 0 to 2 | | motion of the tool along the world's axes, in shares of 0.02 m per step |
+    | 3 to 5 | | turn of the tool about the world's axes, in shares of 0.1 rad per step |
+    | | 0 to 6 | motion of each joint, in shares of 0.08 rad per step |
+    | 6 | 7 | wanted opening of the gripper, -1 closed, 1 open, in 0.4 s at the fastest |
+
+    ## Observation space
+
+    `Box((86,), float32)` for an arm of 7 joints and models of up to 16 joints:
+
+    | index | what | lowest | highest | unit |
+    |---|---|---|---|---|
+    | 0 to 15 | where each joint is in its range; slot 0 is the one that is opened, 0 closed, 1 open | -2 | 2 | 1 |
+    | 16 to 31 | their speeds, in ranges per second | -20 | 20 | 1/s |
+    | 32 to 47 | 1 for slots with a joint | 0 | 1 | 1 |
+    | 48 to 54 | joints of the arm | -7 | 7 | rad |
+    | 55 to 61 | their speeds | -20 | 20 | rad/s |
+    | 62 to 62 | gap between the pads, share of the widest | -2 | 2 | 1 |
+    | 63 to 65 | tool, from the robot's root link, world axes | -10 | 10 | m |
+    | 66 to 68 | direction in which the tool approaches | -1 | 1 | 1 |
+    | 69 to 71 | direction in which its fingers close | -1 | 1 | 1 |
+    | 72 to 74 | from the tool to the hold | -10 | 10 | m |
+    | 75 to 77 | direction in which the planned grasp approaches | -1 | 1 | 1 |
+    | 78 to 80 | direction in which its fingers close | -1 | 1 | 1 |
+    | 81 to 83 | unit direction in which the hold moves when the part opens | -1 | 1 | 1 |
+    | 84 to 85 | force of each finger on the part, share of 60 N | 0 | 2 | 1 |
+
+    ## Reward
+
+    Dense, in [0, 1]: 0.15 times 1 - tanh(5 d) for a distance of d m between tool and hold; 0.15 while both fingers
+    press on the part with at least 0.5 N; 0.35 times the share of `open_fraction` that is open, and 0.35 for success,
+    both as in `OpenPartEnv`: nothing is paid for a part that was thrown. Sparse (``reward="sparse"``): 1 for success,
+    else 0.
+
+    ## Success, the end, start, info and randomisation
+
+    As in `OpenPartEnv`. The arm starts in the posture of its plan, each joint off by up to 0.02 rad, fingers apart.
+    The object is moved by ``pose`` by up to 0.02 m along x and y, and 0.08 rad. ``max_penetration`` counts the robot
+    too. Info also has ``grip``: whether both fingers press on the part.
+    """
+
+    _with_robot = True
+    _world: ArmWorld
+
+    def __init__(
+        self,
+        model: str | Path | None = None,
+        *,
+        joint: str = AUTO,
+        open_fraction: float = 0.9,
+        engine: str = "mujoco",
+        robot: str | Path | None = None,
+        tool: str | None = None,
+        control: str = TOOL,
+        reward: str = "dense",
+        randomize: bool | str | Collection[str] = False,
+        terminate_on_success: bool = False,
+        allow_invalid: bool = False,
+        render_mode: str | None = None,
+    ) -> None:
+        """Make the environment.
+
+        Args:
+            model: URDF, folder with it, ``bundled:NAME`` or ``procedural:FAMILY``; a chest of drawers if None.
+            joint: Joint that is opened; ``auto`` takes the drawer that goes farthest, else the farthest joint.
+            open_fraction: Share of the way that counts as open, above 0 and at most 1.
+            engine: ``mujoco`` or ``pybullet``.
+            robot: URDF of a robot with a gripper of two fingers; the package's own arm if None.
+            tool: Link of the robot that carries the fingers.
+            control: ``tool`` or ``joint``.
+            reward: ``dense`` or ``sparse``.
+            randomize: What is drawn anew in each episode.
+            terminate_on_success: End the episode on success.
+            allow_invalid: Take a model that fails `kinematify validate`.
+            render_mode: None, ``rgb_array`` or ``human``.
+
+        Raises:
+            InputError: A keyword is impossible, the model cannot be used, or the robot cannot open the joint.
+            EnvironmentFault: The validation itself failed.
+        """
+        EzPickle.__init__(
+            self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, tool=tool,
+            control=control, reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
+            allow_invalid=allow_invalid, render_mode=render_mode,
+        )  # fmt: skip
+        one_of("control", control, (TOOL, JOINT))
+        self.control, self._robot_words = control, (None if robot is None else str(robot), tool)
+        self._begin(
+            model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
+            terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
+        )  # fmt: skip
+        self._make_world()
+        self._dof = len(self.robot.robot.arm_joints)
+        self._count = len(self.robot.robot.finger_joints)
+        self.action_space: Space = Box(-1.0, 1.0, (7 if control == TOOL else self._dof + 1,), np.float32)
+        self.observation_space: Space = self._space()
+
+    def _choose(self, joint: str) -> str:
+        if joint == AUTO and self.thing.suggested == AUTO and self.thing.drawers:
+            return self.thing.drawers[0]
+        return super()._choose(joint)
+
+    def _targeted(self, joint: str) -> Target:
+        """Plan with the robot; the hold is where the plan grips."""
+        found = shared_target(self.thing, joint)
+        self.robot: EnvRobot = env_robot(self.thing, *self._robot_words)
+        self.plan: RobotPlan = robot_plan(self.thing, joint, self.robot)
+        self.T_world_root = self.plan.T_world_object
+        return _held_at(found, self.plan)
+
+    def _make_world(self) -> None:
+        kind = MujocoArm if self.engine == "mujoco" else _pybullet_arm()
+        self._world = kind(self.thing, self.target, self.robot, self.plan, self.settings)
+
+    def _place(self, leaders: FloatArray) -> float:
+        for name, value in self.plan.first.items():
+            leaders[self.thing.leader(name)] = value
+        noise = self.settings.robot.start_noise
+        arm = self.robot.arm
+        drawn = self.plan.reach[0] + self.np_random.uniform(-noise, noise, len(self.plan.reach[0]))
+        self.wanted = np.clip(drawn, arm.lower, arm.upper)
+        self._gap = 1.0
+        return self._world.place(leaders, self.wanted)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin an episode.
+
+        Raises:
+            InputError: An option does not exist or is out of range.
+        """
+        super().reset(seed=seed)
+        self._start(options)
+        reading = self._world.reading()
+        self._progress = self.goal.begin(reading)
+        self._last = self._observe(reading)
+        if self.render_mode == "human":
+            self.render()
+        return self._last, self._info(is_success=False, escaped=False)
+
+    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Move with an action for 0.05 s; actions beyond -1 and 1 are clipped."""
+        self._command(np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0))
+        self._world.act(self.wanted, self.robot.finger_values(self._gap))
+        if not self._world.stable():
+            return self._failed(self._last)
+        reading = self._world.reading()
+        self._last = self._observe(reading)
+        reward, ended, info = self._outcome(reading, self._helped())
+        if self.render_mode == "human":
+            self.render()
+        return self._last, reward, ended, False, info
+
+    def _command(self, action: FloatArray) -> None:
+        """Move what the servos are told: never far from where the joints are, so that nothing winds up."""
+        values, arm = self.settings.robot, self.robot.arm
+        step = values.joint_step * action[:-1] if self.control == JOINT else self._joint_step(action[:6])
+        now = self._world.joints()[0][: self._dof]
+        wanted = np.clip(self.wanted + step, now - values.lead, now + values.lead)
+        self.wanted = np.clip(wanted, arm.lower, arm.upper)
+        rate = self.settings.time.control_step / values.finger_seconds
+        self._gap += float(np.clip(0.5 * (action[-1] + 1.0) - self._gap, -rate, rate))
+
+    def _joint_step(self, action: FloatArray) -> FloatArray:
+        """Joint motion that moves the tool along and about the world's axes, shape (dof,)."""
+        values, arm = self.settings.robot, self.robot.arm
+        turn = (self.plan.T_world_base[:3, :3] @ arm.pose(self.wanted)[:3, :3]).T
+        twist = np.concatenate([turn @ (values.tool_step * action[:3]), turn @ (values.turn_step * action[3:])])
+        jacobian = arm.jacobian(self.wanted)
+        return damped_step(jacobian, twist, values.damping)
+
+    def _helped(self) -> float:
+        """Reward for being near and for gripping."""
+        weights = self.settings.reward
+        near = 1.0 - float(np.tanh(weights.reach_scale * self._distance))
+        return weights.reach * near + weights.grip * self._grips
+
+    def _info(self, *, is_success: bool, escaped: bool) -> dict[str, Any]:
+        return {**super()._info(is_success=is_success, escaped=escaped), "grip": self._grips}
+
+    def _observe(self, reading: Reading) -> NDArray[np.float32]:
+        found = np.zeros(self.observation_space.shape or ())
+        self.goal.fill_joints(reading, found)
+        tool, (values, speeds), touch = self._world.tool(), self._world.joints(), self._world.touch()
+        planned = self._link_turn() @ self.plan.T_link_tool[:3, :3]
+        away = reading.hold - tool[:3, 3]
+        self._distance = float(np.sqrt(away @ away))
+        self._grips = bool((touch >= self.settings.robot.touch_force).all())
+        found[3 * self.goal.slots :] = np.concatenate([
+            values[: self._dof], speeds[: self._dof], [self._opening(values[self._dof :])],
+            tool[:3, 3] - self.plan.T_world_base[:3, 3], tool[:3, 2], tool[:3, 1], away, planned[:, 2], planned[:, 1],
+            self.goal.direction(reading), touch / self.settings.robot.grip_force,
+        ])  # fmt: skip
+        box = self.observation_space
+        assert isinstance(box, Box)
+        return np.minimum(np.maximum(found, box.low), box.high).astype(np.float32)
+
+    def _link_turn(self) -> FloatArray:
+        """Orientation of the link that is opened, shape (3, 3)."""
+        return self._world.link_poses()[self.target.link][:3, :3]
+
+    def _opening(self, fingers: FloatArray) -> float:
+        """Gap between the pads, share of the widest."""
+        closed, opened = self.robot.finger_values(0.0), self.robot.finger_values(1.0)
+        return float(np.mean((fingers - closed) / (opened - closed)))
+
+    def _space(self) -> Space:
+        slots, dof, touch = self.goal.slots, self._dof, 2.0
+        bounds = [
+            OPEN_BOUND,
+            SPEED_BOUND,
+            1.0,
+            ARM_BOUND,
+            SPEED_BOUND,
+            OPEN_BOUND,
+            PLACE_BOUND,
+            1.0,
+            PLACE_BOUND,
+            1.0,
+            touch,
+        ]
+        high = np.repeat(bounds, [slots, slots, slots, dof, dof, 1, 3, 6, 3, 9, self._count]).astype(np.float32)
+        low = -high
+        low[2 * slots : 3 * slots] = low[len(low) - self._count :] = 0.0
+        return Box(low, high, dtype=np.float32)
+
+    def _pieces(self) -> Sequence[Piece]:
+        hand = {*self.robot.finger_links, self.robot.robot.tool}
+        robot = [
+            Piece(
+                link=ROBOT + link.name, vertices=mesh.vertices, faces=mesh.faces,
+                color=np.array(_HAND_COLOR if link.name in hand else _ARM_COLOR),
+            )
+            for link in self.robot.arm.declared.kinematics.links
+            for mesh in link.meshes
+            if len(mesh.faces)
+        ]  # fmt: skip
+        return [*super()._pieces(), *robot]
+
+    @property
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the object's links, and of the robot's under ``robot `` and their names, shape (4, 4) each."""
+        return self._world.link_poses()
+
+
+def damped_step(jacobian: FloatArray, twist: FloatArray, damping: float) -> FloatArray:
+    """Joint motion for a twist by damped least squares, shape (dof,)."""
+    gram = jacobian @ jacobian.T + damping**2 * np.eye(6)
+    return np.asarray(jacobian.T @ np.linalg.solve(gram, twist))
+
+
+def _held_at(target: Target, plan: RobotPlan) -> Target:
+    """Return the target with the hold of the plan."""
+    return replace(target, point=plan.T_link_tool[:3, 3])
+
+
+def _pybullet_arm() -> type:
+    from kinematify.envs.pybullet_arm import PybulletArm  # noqa: PLC0415 - it takes a second to load
+
+    return PybulletArm
+
+
+def make_drawer_pull(**keywords: Any) -> DrawerPullEnv:
+    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself."""
+    return DrawerPullEnv(**keywords)

@@ -1,0 +1,151 @@
+"""Policies written by hand: what a learned one is compared with, and where demonstrations come from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.robot import forward_kinematics
+from kinematify.envs.drawer_pull import JOINT
+from kinematify.envs.mujoco_hand import POSITION
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.drawer_pull import DrawerPullEnv
+    from kinematify.envs.open_part import OpenPartEnv
+
+_SPEED = 0.5  # of opening [ways/s]
+_REACH_SPEED = 0.6  # share of the fastest that actions allow
+_PULL_SPEED = 0.35  # [ways/s]
+_PULL_ROWS = 40
+_GRIP_SECONDS = 0.6
+_AHEAD = 0.04  # the part is taken so far beyond what counts as open
+_GAIN, _SUM = 0.7, 0.35  # shares of an error of speed that are made good in a step
+_SETTLE = 0.35  # speed wanted per share of the way that is left, over 0.05 s
+
+
+class HandExpert:
+    """Opens a part in OpenPart: a speed along the way out, less near its end, and a force that keeps it."""
+
+    def __init__(self, env: OpenPartEnv) -> None:
+        """Take what the observation does not tell: control and goal."""
+        self._control, self._goal = env.control, min(env.open_fraction + _AHEAD, 0.995)
+        self._slots, self._stride = env.goal.slots, env.settings.hand.speed
+        self._push = 0.0
+        facts, target = env.hand_facts, env.target
+        # Change of speed by a full action [ways/s]: heavy lids have weak hands, light ones strong hands.
+        change = facts.force * target.path_ratio / facts.inertia * env.settings.time.control_step / abs(target.range)
+        self._gain, self._sum = min(_GAIN / change, 1.0), min(_SUM / change, 0.5)
+
+    def begin(self) -> None:
+        """Forget the episode before."""
+        self._push = 0.0
+
+    def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the action for what is seen."""
+        share, speed = float(observation[0]), float(observation[self._slots])
+        direction = observation[3 * self._slots + 6 : 3 * self._slots + 9]
+        wanted = float(np.clip((self._goal - share) / _SETTLE, -_SPEED, _SPEED))
+        if self._control == POSITION:
+            return np.asarray(np.clip(wanted / self._stride * direction, -1.0, 1.0), dtype=np.float32)
+        # The force that keeps the speed is found on the way; weight, friction and damping are not known.
+        self._push = float(np.clip(self._push + self._sum * (wanted - speed), -1.0, 1.0))
+        action = (self._push + self._gain * (wanted - speed)) * direction
+        return np.asarray(np.clip(action, -1.0, 1.0), dtype=np.float32)
+
+
+class ArmExpert:
+    """Opens a part in DrawerPull: along the plan to the hold, fingers together, along the joint's motion, and stay.
+
+    It knows what a policy does not: the plan, and where the object was drawn.
+    """
+
+    def __init__(self, env: DrawerPullEnv) -> None:
+        """Take the plan."""
+        self._env, self._step, self._way = env, 0, np.empty((0, 0))
+
+    def begin(self) -> None:
+        """Lay out the way of an episode that has just begun."""
+        env = self._env
+        reach, pull = self._reach(), self._pull()
+        closing = round(_GRIP_SECONDS / env.settings.time.control_step)
+        settling = np.tile(pull[-1], (1, 1))
+        self._way = np.concatenate([reach, np.tile(reach[-1], (closing, 1)), pull, settling])
+        self._grips_from, self._step = len(reach), 0
+
+    def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the action for this moment; what is seen plays no part."""
+        del observation
+        env = self._env
+        row = self._way[min(self._step, len(self._way) - 1)]
+        gripper = -1.0 if self._step >= self._grips_from else 1.0
+        self._step += 1
+        values, wanted = env.settings.robot, env.wanted
+        if env.control == JOINT:
+            motion = (row - wanted) / values.joint_step
+        else:
+            turn = env.plan.T_world_base[:3, :3] @ env.robot.arm.pose(wanted)[:3, :3]
+            twist = env.robot.arm.error(wanted, env.robot.arm.pose(row))
+            motion = np.concatenate([turn @ twist[:3] / values.tool_step, turn @ twist[3:] / values.turn_step])
+        return np.asarray(np.clip(np.append(motion, gripper), -1.0, 1.0), dtype=np.float32)
+
+    def _reach(self) -> FloatArray:
+        """Arm joints from where they are to the hold, rows of one step each."""
+        env, plan = self._env, self._env.plan
+        now, planned = env.link_poses[env.target.link], plan.T_world_object @ self._link_at(env.target.closed)
+        shift = now @ np.linalg.inv(planned)
+        rows = [env.wanted]
+        for row in plan.reach[1:]:
+            target = shift @ plan.T_world_base @ env.robot.arm.pose(row)
+            rows.append(self._solved(target, row))
+        return _paced(np.array(rows), _REACH_SPEED * env.settings.robot.joint_step)
+
+    def _pull(self) -> FloatArray:
+        """Arm joints from the hold to the open end."""
+        env, plan = self._env, self._env.plan
+        root = env.link_poses[env.thing.declared.kinematics.root]
+        start = float(env.goal.fraction(env.reading()))
+        end = min(env.open_fraction + _AHEAD, plan.fraction, 0.995)
+        shares = np.linspace(start, end, _PULL_ROWS)
+        values = env.target.closed + shares * env.target.range
+        sign = np.sign(env.target.range)
+        guesses = np.stack([np.interp(sign * values, sign * plan.opened, column) for column in plan.pull.T], axis=1)
+        targets = [root @ self._link_at(value) @ plan.T_link_tool for value in values.tolist()]
+        rows = np.array([self._solved(T, guess) for T, guess in zip(targets, guesses, strict=True)])
+        least = (end - start) / _PULL_ROWS / (_PULL_SPEED * env.settings.time.control_step)
+        return _paced(rows, _REACH_SPEED * env.settings.robot.joint_step, least)
+
+    def _solved(self, target: FloatArray, guess: FloatArray) -> FloatArray:
+        """Arm joints that bring the tool to a pose of the world, near a guess; the guess where there are none."""
+        arm = self._env.robot.arm
+        found = arm.solve(np.linalg.inv(self._env.plan.T_world_base) @ target, guess, center=False)
+        return guess if found is None else found
+
+    def _link_at(self, value: float) -> FloatArray:
+        """Link that is opened, frame of the object's root, shape (4, 4)."""
+        env = self._env
+        leaders = {travel.joint: travel.rest for travel in env.thing.travels} | env.plan.first
+        kinematics = env.thing.declared.kinematics
+        return forward_kinematics(kinematics, {**leaders, env.target.joint: value})[env.target.link]
+
+
+def _paced(rows: FloatArray, step: float, least: float = 1e-9) -> FloatArray:
+    """Rows on the same way, none farther from the one before than `step` in any joint, with a smooth start and end.
+
+    Args:
+        rows: Arm joints [rad or m], shape (n, dof).
+        step: [rad or m].
+        least: Time from row to row at least, in steps.
+    """
+    times = np.maximum(np.abs(np.diff(rows, axis=0)).max(axis=1) / step, least)
+    along = np.concatenate([[0.0], np.cumsum(times)])
+    count = max(2, int(np.ceil(1.5 * along[-1])))
+    at = along[-1] * _eased(np.linspace(0.0, 1.0, count))
+    return np.stack([np.interp(at, along, column) for column in rows.T], axis=1)
+
+
+def _eased(share: FloatArray) -> FloatArray:
+    return share * share * (3.0 - 2.0 * share)

@@ -1,0 +1,165 @@
+"""DrawerPull in PyBullet: robot, object and floor in one world; motors move the robot, contacts the rest."""
+
+from __future__ import annotations
+
+import weakref
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pybullet as bullet
+
+from kinematify.assembly.robot import rest_configuration
+from kinematify.envs.mujoco_arm import ROBOT, arm_facts
+from kinematify.envs.pybullet_object import PybulletObject, disconnected, pose_of, quaternion
+from kinematify.envs.thing import held_links
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.dynamics import Draw
+    from kinematify.envs.reading import Reading
+    from kinematify.envs.robot_plan import EnvRobot, RobotPlan
+    from kinematify.envs.settings import EnvSettings
+    from kinematify.envs.thing import Target, Thing
+
+_BASE = -1
+_MARGIN = 1e-3  # Bullet inflates convex hulls by it [m]
+_STRONG = 1e4  # holds joints that are neither of the arm nor of the fingers [N m or N]
+_GAIN = 0.3  # share of an error of position that a motor makes good in a step
+
+
+class PybulletArm:
+    """One world; see `kinematify.envs.worlds.ArmWorld`."""
+
+    def __init__(self, thing: Thing, target: Target, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings) -> None:
+        """Connect to a world of its own; `close` frees it."""
+        facts = arm_facts(thing, target, robot, plan)
+        self.object = PybulletObject(thing, target, facts.dynamics, plan.T_world_object, settings)
+        self.client = self.object.client
+        self._close = weakref.finalize(self, partial(disconnected, self.client))
+        self._thing, self._robot, self._substeps = thing, robot, settings.time.substeps
+        self._load(plan, settings)
+        self._held = [self.object.link_index(name) for name in held_links(thing, target)]
+        forces = np.full(len(robot.robot.finger_joints), settings.robot.grip_force)
+        self._forces = np.concatenate([robot.strongest, forces]).tolist()
+        self._wanted = np.zeros(len(self._forces))
+
+    def _load(self, plan: RobotPlan, settings: EnvSettings) -> None:
+        T, client, names = plan.T_world_base, self.client, self._robot.robot
+        self.body = bullet.loadURDF(
+            str(self._robot.prepared.urdf), basePosition=T[:3, 3].tolist(), baseOrientation=quaternion(T[:3, :3]),
+            useFixedBase=True, flags=bullet.URDF_USE_INERTIA_FROM_FILE | bullet.URDF_USE_SELF_COLLISION,
+            physicsClientId=client,
+        )  # fmt: skip
+        infos = [bullet.getJointInfo(self.body, k, client) for k in range(bullet.getNumJoints(self.body, client))]
+        joints = {info[1].decode(): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
+        self._links = {self._robot.mechanism.description.root: _BASE, **{info[12].decode(): info[0] for info in infos}}
+        driven = (*names.arm_joints, *names.finger_joints)
+        self._joints = [joints[name] for name in driven]
+        for index in self._links.values():
+            bullet.changeDynamics(self.body, index, lateralFriction=settings.robot.friction, physicsClientId=client)
+        rest = rest_configuration(self._robot.mechanism.description)
+        for name, index in joints.items():
+            if name not in driven:
+                bullet.resetJointState(self.body, index, rest.get(name, 0.0), physicsClientId=client)
+                bullet.setJointMotorControl2(
+                    self.body, index, bullet.POSITION_CONTROL, targetPosition=rest.get(name, 0.0), force=_STRONG,
+                    physicsClientId=client,
+                )  # fmt: skip
+        self._lay_floor()
+
+    def _lay_floor(self) -> None:
+        """The robot meets the floor, the object stands on it."""
+        shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=self.client)
+        floor = bullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        for name in self._thing.scene.mechanism.links:
+            bullet.setCollisionFilterPair(
+                floor, self.object.body, _BASE, self.object.link_index(name), 0, physicsClientId=self.client
+            )
+
+    def draw(self, drawn: Draw) -> None:
+        """Redraw the object."""
+        self.object.apply(drawn)
+
+    def place(self, leaders: FloatArray, arm: FloatArray) -> float:
+        """Set the object's joints and those of the arm, fingers apart, and stop all."""
+        self.object.place(leaders)
+        self._wanted = np.concatenate([arm, self._robot.finger_values(1.0)])
+        for index, value in zip(self._joints, self._wanted.tolist(), strict=True):
+            bullet.resetJointState(self.body, index, value, physicsClientId=self.client)
+        self._drive(self._wanted)
+        bullet.performCollisionDetection(physicsClientId=self.client)
+        return self.depth()
+
+    def act(self, arm: FloatArray, fingers: FloatArray) -> None:
+        """Simulate until the next action, motors led smoothly to these values."""
+        before, wanted = self._wanted, np.concatenate([arm, fingers])
+        for step in range(1, self._substeps + 1):
+            self._drive(before + step / self._substeps * (wanted - before))
+            self.object.follow()
+            bullet.stepSimulation(physicsClientId=self.client)
+        self._wanted = wanted
+        self.object.look()
+
+    def _drive(self, values: FloatArray) -> None:
+        count = len(self._joints)
+        bullet.setJointMotorControlArray(
+            self.body, self._joints, bullet.POSITION_CONTROL, targetPositions=values.tolist(), forces=self._forces,
+            positionGains=[_GAIN] * count, velocityGains=[1.0] * count, physicsClientId=self.client,
+        )  # fmt: skip
+
+    def reading(self) -> Reading:
+        """Return the state of the object."""
+        return self.object.reading()
+
+    def joints(self) -> tuple[FloatArray, FloatArray]:
+        """Values and speeds of the arm's joints and then of the fingers'."""
+        states = bullet.getJointStates(self.body, self._joints, physicsClientId=self.client)
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def tool(self) -> FloatArray:
+        """Pose of the tool, shape (4, 4)."""
+        return self._pose(self._robot.robot.tool)
+
+    def touch(self) -> FloatArray:
+        """Force of each finger on the part [N], shape (fingers,)."""
+        forces = np.zeros((len(self._robot.finger_links), 3))
+        rows = {self._links[link]: row for row, link in enumerate(self._robot.finger_links)}
+        for point in bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client) or ():
+            if point[3] in rows and point[4] in self._held:
+                forces[rows[point[3]]] += point[9] * np.array(point[7])
+        return np.asarray(np.linalg.norm(forces, axis=1))
+
+    def depth(self) -> float:
+        """Deepest contact of the object with itself or the robot [m]."""
+        points = bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client)
+        return max([self.object.depth(), *(float(-point[8]) - _MARGIN for point in points or ())])
+
+    def stable(self) -> bool:
+        """True if all numbers are finite."""
+        values, speeds = self.joints()
+        seen = self.object.reading()
+        return all(bool(np.isfinite(item).all()) for item in (values, speeds, seen.values, seen.speeds))
+
+    def warnings(self) -> dict[str, int]:
+        """PyBullet has none."""
+        return {}
+
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the links of object and robot."""
+        return {**self.object.link_poses(), **{ROBOT + name: self._pose(name) for name in self._links}}
+
+    def _pose(self, link: str) -> FloatArray:
+        index = self._links[link]
+        if index == _BASE:
+            T = pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
+            local = bullet.getDynamicsInfo(self.body, _BASE, physicsClientId=self.client)
+            return np.asarray(T @ np.linalg.inv(pose_of(local[3], local[4])))
+        state = bullet.getLinkState(self.body, index, computeForwardKinematics=1, physicsClientId=self.client)
+        return pose_of(state[4], state[5])
+
+    def close(self) -> None:
+        """Free the world."""
+        self._close()

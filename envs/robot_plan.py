@@ -1,0 +1,147 @@
+"""Where the robot of DrawerPull stands, how it would hold the part, and a way on which it can open it.
+
+The plan is that of `kinematify validate --task pull`. It is kept between runs, since it takes seconds.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.envs.settings import load_settings as load_env_settings
+from kinematify.envs.verdict import content_digest, keep, kept
+from kinematify.errors import InputError
+from kinematify.validation.engines.mechanism import Mechanism
+from kinematify.validation.prepare.stage import prepare
+from kinematify.validation.settings import load_settings
+from kinematify.validation.task.kinematics import Arm
+from kinematify.validation.task.planning import plan_pull
+from kinematify.validation.task.robot import builtin_robot, user_robot
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.thing import Thing
+    from kinematify.validation.prepare.prepared import Prepared
+    from kinematify.validation.task.robot import TaskRobot
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EnvRobot:
+    """A robot as the engines load it."""
+
+    robot: TaskRobot
+    arm: Arm
+    prepared: Prepared
+    mechanism: Mechanism
+
+    @property
+    def strongest(self) -> FloatArray:
+        """Effort limits of the arm joints [N m or N], shape (dof,)."""
+        joints = [self.arm.declared.joint_by_name[name] for name in self.robot.arm_joints]
+        usual = load_settings().task.execution.effort
+        return np.array([joint.effort if joint.effort and joint.effort > 0.0 else usual for joint in joints])
+
+    @property
+    def finger_links(self) -> tuple[str, ...]:
+        """Links of the fingers."""
+        return tuple(self.arm.declared.kinematics.joint_by_name[name].child for name in self.robot.finger_joints)
+
+    def finger_values(self, share: float) -> FloatArray:
+        """Values of the finger joints, 0 with the pads together, 1 apart, shape (fingers,)."""
+        closed, opened = np.array(self.robot.fingers_closed), np.array(self.robot.fingers_open)
+        return np.asarray(closed + share * (opened - closed))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RobotPlan:
+    """World frame, floor at z = 0, the object at its usual place."""
+
+    T_world_base: FloatArray
+    """Root link of the robot, shape (4, 4)."""
+    T_world_object: FloatArray
+    """Root link of the object, shape (4, 4)."""
+    T_link_tool: FloatArray
+    """Tool at the grasp, frame of the link that the joint moves, shape (4, 4)."""
+    width: float
+    """Of what is held [m]."""
+    spread: float
+    """Gap between the pads on the way in [m]."""
+    reach: FloatArray
+    """Arm joints from the start to the grasp [rad or m], shape (n, dof)."""
+    pull: FloatArray
+    """Arm joints from the grasp on [rad or m], shape (m, dof)."""
+    opened: FloatArray
+    """Value of the object's joint in each row of `pull` [rad or m], shape (m,)."""
+    fraction: float
+    """Share of the joint's range that the pull opens."""
+    first: dict[str, float]
+    """Joints of the object that stand open from the start, since they are in the way [rad or m]."""
+
+
+@lru_cache(maxsize=8)
+def env_robot(thing: Thing, robot: str | None, tool: str | None) -> EnvRobot:
+    """Read a robot, the built-in arm if None; its files lie beside those of the object.
+
+    Raises:
+        InputError: There is no such robot, tool or gripper.
+    """
+    if robot is not None and tool is None:
+        raise InputError(
+            f"robot={robot!r} needs tool= with the link that carries the fingers, such as tool='gripper_link'."
+        )
+    folder = thing.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
+    (folder / "prepared").mkdir(parents=True, exist_ok=True)
+    found = builtin_robot(folder) if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
+    settings = load_settings()
+    arm = Arm(found, settings.task.plan)
+    prepared = prepare(arm.declared, folder / "prepared", settings.prepare)
+    return EnvRobot(robot=found, arm=arm, prepared=prepared, mechanism=Mechanism(description=arm.declared.kinematics))
+
+
+@lru_cache(maxsize=16)
+def robot_plan(thing: Thing, joint: str, robot: EnvRobot) -> RobotPlan:
+    """Plan, or take the plan of an earlier run.
+
+    Raises:
+        InputError: The robot cannot open the joint; the message says why.
+    """
+    urdf = robot.robot.urdf.read_bytes()
+    digest = hashlib.sha256(f"{content_digest(thing)} {joint} {robot.robot.tool}".encode() + urdf).hexdigest()
+    known = kept("plans", digest)
+    if known is None:
+        known = _planned(thing, joint, robot)
+        keep("plans", digest, known)
+    facts: dict[str, Any] = {
+        name: np.array(value) if isinstance(value, list) else value for name, value in known.items()
+    }
+    return RobotPlan(**facts)
+
+
+def _planned(thing: Thing, joint: str, robot: EnvRobot) -> dict[str, object]:
+    settings = load_settings().task
+    seconds = {"seconds": load_env_settings().robot.plan_seconds}
+    settings = settings.model_copy(update={"plan": settings.plan.model_copy(update=seconds)})
+    plan = plan_pull(robot.arm, thing.scene, joint, settings)
+    if plan.place is None or plan.reach is None or plan.pull is None or plan.opened is None:
+        raise InputError(
+            f"The robot cannot open {joint} of the model {thing.source}: {plan.words} (kinematify validate --task pull "
+            "tells more). Give another joint, or make kinematify/OpenPart-v0, which needs no robot."
+        )
+    grasp = plan.place.grasp
+    return {
+        "T_world_base": plan.place.T_world_base.tolist(),
+        "T_world_object": plan.T_world_object.tolist(),
+        "T_link_tool": plan.place.T_link_tool.tolist(),
+        "width": grasp.width,
+        "spread": grasp.spread,
+        "reach": plan.reach.tolist(),
+        "pull": plan.pull.tolist(),
+        "opened": plan.opened.tolist(),
+        "fraction": plan.fraction,
+        "first": dict(plan.first),
+    }
