@@ -94,6 +94,8 @@ class RangeSignal:
     lower: float | None
     """[rad or m], about the declared axis."""
     upper: float | None
+    lost: bool
+    """Beyond the end the part has left its parent; otherwise it is blocked there."""
     check: str
     reason: str
 
@@ -216,7 +218,15 @@ class _Case:
             TypeSignal(child=joint.child, kind=joint.kind, weight=weight, check=finding.check, reason=reason)
         )
 
-    def end(self, finding: Finding, joint: DeclaredJoint, ends: tuple[float | None, float | None], reason: str) -> None:
+    def end(
+        self,
+        finding: Finding,
+        joint: DeclaredJoint,
+        ends: tuple[float | None, float | None],
+        reason: str,
+        *,
+        lost: bool = False,
+    ) -> None:
         """Add a signal about where the range of a joint ends."""
         lower, upper = ends
         self.ranges.append(
@@ -224,6 +234,7 @@ class _Case:
                 child=joint.child,
                 lower=lower,
                 upper=upper,
+                lost=lost,
                 check=finding.check,
                 reason=reason,
             )
@@ -334,7 +345,8 @@ def _derailed(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
     if joint.kind == "prismatic" and finding.value is not None and finding.limit is not None:
         upwards, share = _upwards(finding), finding.limit / max(finding.value, finding.limit)
         end = share * (joint.upper if upwards else joint.lower)
-        case.end(finding, joint, (None, end) if upwards else (end, None), "beyond it it has left its parent")
+        ends = (None, end) if upwards else (end, None)
+        case.end(finding, joint, ends, "beyond it it has left its parent", lost=True)
 
 
 def _out_of_guide(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
@@ -346,13 +358,13 @@ def _out_of_guide(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
     way = joint.upper - joint.lower
     upwards = _upwards(finding)
     back = low if upwards else high
-    stands_open = abs(back) >= case.config.open_share * way
+    stands_open = abs(back) >= case.config.back_share * way
     reason = "beyond it the guide has ended" + ("; it stands open, and the way back is free" if stands_open else "")
     other = min(abs(back), way) if stands_open else None
     if upwards:
-        case.end(finding, joint, (None if other is None else -other, end), reason)
+        case.end(finding, joint, (None if other is None else -other, end), reason, lost=True)
     else:
-        case.end(finding, joint, (-end, other), reason)
+        case.end(finding, joint, (-end, other), reason, lost=True)
 
 
 def _upwards(finding: Finding) -> bool:

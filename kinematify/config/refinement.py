@@ -12,6 +12,8 @@ class FeedbackConfig(StageConfig):
     """Weight of a warning, as a share of that of an error."""
     open_share: float
     """A side that is free over this share of the range is the one that opens."""
+    back_share: float
+    """A slide that leaves its guide, and whose way back is free over this share of its range, stands open."""
     full_turn: float
     """Ranges of turning joints count up to this [rad]."""
     blocked_line: float
@@ -58,7 +60,9 @@ class RefineConfig(StageConfig):
     lead: float
     """A candidate replaces the chosen one if it leads by more [log odds]."""
     least_travel: float
-    """A range may not be cut below this share of what the inference saw free."""
+    """A range that is blocked may not be cut below this share of what the inference saw free."""
+    least_kept: float
+    """The same of a range beyond which the part has left its parent."""
     contact_tolerance: float
     """Gap up to which two parts are held to touch when contacts are measured again, fraction of the diagonal."""
     hovering_share: float

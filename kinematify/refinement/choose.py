@@ -151,7 +151,8 @@ class Chooser:
         new = shortened(old, signal)
         if new is None:
             return plan, None
-        if new.upper - new.lower < self.config.least_travel * (old.upper - old.lower):
+        share = self.config.least_kept if signal.lost else self.config.least_travel
+        if new.upper - new.lower < share * (old.upper - old.lower):
             self.refused.append(
                 f"{signal.child}: {signal.check} asked for a range of {ranged(new)} in place of {ranged(old)}, too "
                 "little of it to be told from hiding the failure"
