@@ -214,7 +214,7 @@ class _Run:
             checks=checks,
             joints=with_next_best(self._joints.values(), checks, inferred),
             refinement=None if inferred is None else inferred.refinement,
-            curves=tuple(self._curves),
+            curves=tuple(sorted(self._curves, key=lambda curve: curve.engine)),  # they come in as stages end
             pairs=self._pairs,
             environment=facts,
         )

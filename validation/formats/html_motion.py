@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 _STYLES = {"mujoco": "first", "pybullet": "second"}
 _TITLES = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
+_LINES = {"first": "solid line", "second": "dashed line"}
+_WIDTH = 275
+"""Of a chart [px]: four stand side by side."""
 _STEPS = 200
 """Positions of a slider."""
 
@@ -74,6 +77,8 @@ def curves(report: ValidationReport) -> str:
     """Return four charts per joint with the engines over each other; empty if none was driven."""
     if not report.curves:
         return ""
+    engines = dict.fromkeys(curve.engine for curve in report.curves)
+    lines = ", ".join(f"{_TITLES.get(engine, engine)}: {_LINES[_style(engine)]}" for engine in engines)
     names = dict.fromkeys(curve.joint for curve in report.curves)
     known = {joint.joint: joint for joint in report.joints}
     charts = "".join(
@@ -81,7 +86,7 @@ def curves(report: ValidationReport) -> str:
     )
     return (
         "<h3>How the engines drove the joints</h3>"
-        '<p class="faint">From rest to both ends by a servo, all other joints held. Shaded: free travel by exact '
+        f'<p class="faint">From rest to both ends by a servo, all other joints held. {lines}. Shaded: free travel by exact '
         f"geometry; dotted: declared limits.</p>{charts}"
     )
 
@@ -96,7 +101,7 @@ def _joint_charts(name: str, driven: Sequence[JointCurve], joint: JointSummary |
         ("deeper than allowed", "mm", lambda c: [1000.0 * value for value in c.depth]),
     )
     charts = "".join(
-        line_chart(title, _series(driven, scale, pick), _axes(joint, scale, unit, words))
+        line_chart(title, _series(driven, scale, pick), _axes(joint, scale, unit, words), width=_WIDTH, legend=False)
         for title, words, pick in measures
     )
     return f'<h4>{text(name)}</h4><div class="charts">{charts}</div>'
@@ -111,9 +116,12 @@ def _series(driven: Sequence[JointCurve], scale: float, pick: Callable[[JointCur
             way = [(scale * x, y) for x, y in zip(curve.commanded, pick(curve), strict=True) if math.isfinite(y)]
             points += way if curve.upper else way[::-1]
         if points:
-            style = _STYLES.get(engine, "first")
-            found.append(Series(label=_TITLES.get(engine, engine), points=tuple(points), style=style))
+            found.append(Series(label=_TITLES.get(engine, engine), points=tuple(points), style=_style(engine)))
     return found
+
+
+def _style(engine: str) -> str:
+    return _STYLES.get(engine, "first")
 
 
 def _axes(joint: JointSummary | None, scale: float, unit: str, y: str) -> Axes:
