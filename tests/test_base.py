@@ -203,6 +203,16 @@ def test_base_does_not_depend_on_yaw_scale_or_place(name: str) -> None:
     assert ranked[0].part == 0
 
 
+def test_what_alone_stands_on_the_ground_is_the_base_however_small_it_is() -> None:
+    """A globe: a small foot, and on it a ball that is twenty times as large."""
+    machine = Machine()
+    machine.add((0, 0, 0.02), (0.2, 0.2, 0.04))
+    machine.add((0, 0, 0.4), (0.5, 0.5, 0.5), 0, Z)
+    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence, CONFIG)
+    assert ranked[0].part == 0
+    assert "alone" in ranked[0].reason
+
+
 def test_degree_rule_takes_the_lowest_index_on_a_tie() -> None:
     graph = graph_of(4, {(0, 1): 0.1, (1, 2): 0.1, (2, 3): 0.1})
     assert [item.part for item in base_by_degree(graph)] == [1, 2, 0, 3]

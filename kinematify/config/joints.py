@@ -198,6 +198,8 @@ class LimitsConfig(StageConfig):
     """Travel of a drawer as a fraction of its own length."""
     ajar: float
     """A drawer whose front stands out by more than this fraction of its length is open."""
+    room: float
+    """A round part with this much room behind it is pressed, fraction of its diagonal."""
     button: float
     """Travel of a button as a fraction of what stands out of the surface around it."""
     least_deg: float

@@ -14,6 +14,12 @@ class BaseConfig(StageConfig):
     """A part this many powers of ten smaller than the largest has no bulk left."""
     vertical: float
     """Axes with a larger vertical component stand upright [cosine]."""
+    stand_band: float
+    """Parts that begin this far above the lowest point do not stand on the ground, in diagonals."""
+    stand_flat: float
+    """Share of its footprint with which what stands alone must lie on the ground."""
+    stand_weight: float
+    """Score of what alone stands on the ground."""
     body_share: float
     """Share of all other parts that the largest part must carry directly to be the body of an object."""
     body_weight: float

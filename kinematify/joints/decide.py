@@ -173,7 +173,7 @@ def _gripping(scene: JointScene, tree: RootedTree, twin: BoxFrame) -> bool:
     closing = abs(float(apart_line @ scene.frame.axes[scene.frame.thin]))
     parallel = abs(float(apart_line @ twin.axes[twin.thin]))
     facing = min(closing, parallel) > np.cos(np.radians(3.0)) and not scene.plate and scene.smallness < 1.0
-    chain_end = tree.depths[scene.child] >= 2 or facing
+    chain_end = (tree.depths[scene.child] >= 2 and scene.smallness < 1.0) or facing  # buttons of a door are no fingers
     stands_out = scene.inside < 0.8
     apart = float(np.linalg.norm(twin.centre - scene.centre)) < 2.0 * float(scene.parent_frame.extents.max())
     return bool(chain_end and stands_out and apart and not scene.gated and not scene.rounded)

@@ -94,18 +94,21 @@ def _held_rail(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> f
 
 def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
     """What the contact itself lets go: a key, skirt or groove stops turning, a bead, barrel or fork stops sliding."""
-    play = None
-    if not scene.serial:
-        few = _near_best(scene, turns, config)
-        play = contact_play(scene, turns.lines.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    few = _near_best(scene, turns, config)
+    play = contact_play(scene, turns.lines.axes[few], turns.lines.pivots[few], slides.axes[0], config)
     if play is None:
         return {"keyed": 0.0, "retained": 0.0}
     least = config.play.least * scene.frame.diagonal
     # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
     guided = scene.gated or np.isinf(play.slide)
+    if scene.serial:
+        # Links of machines overlap where they meet; only one that cannot turn as a whole either is guided.
+        guided = guided and float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
     return {
         "keyed": float(guided and play.slides_only(least, config.play.ratio)),
-        "retained": float(play.turns_only(least, config.play.ratio)) * (1.0 - scene.smallness * (not scene.gated)),
+        "retained": float(play.turns_only(least, config.play.ratio))
+        * (1.0 - scene.smallness * (not scene.gated))
+        * (not scene.serial),
     }
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from kinematify.assembly.robot import rotation_about
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
+from kinematify.joints.play import slide_play
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
@@ -205,7 +206,7 @@ def _clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
 
     Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
     """
-    knob = scene.smallness > 0.0 or not scene.plate
+    knob = scene.smallness > 0.0 or not (scene.plate and scene.flat)
     return (-1.0 if knob and scene.mechanism <= 0.5 else 1.0) * _neutral_sign(scene, axis)
 
 
@@ -264,13 +265,13 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
     sweep = sweep_slides(scene.cache, points, axis[None], obstacles, limit=limit, config=config.sweep)
     free = sweep.free(config.sweep.share)[0]
     length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
-    sign = _slide_sign(scene, axis, free)
+    sign = _slide_sign(scene, axis, free, config)
     forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
     lower, upper = 0.0, 0.0
     if scene.mechanism > 0.5:
         reach = config.limits.drawer * length
         lower, upper = -min(backward, reach), min(forward, reach)
-    elif scene.smallness > 0.5:
+    elif scene.smallness > 0.5 or (scene.gated and sign * _outwards(scene, axis) < 0.0):
         upper = _press(scene, sign * axis, forward, length, config)
     else:
         lower = -min(backward, _standing_out(scene, sign * axis))
@@ -307,12 +308,24 @@ def _press(scene: JointScene, way: FloatArray, free: float, length: float, confi
     return min(free, reach) if free > 0.2 * reach else reach
 
 
-def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray) -> float:
-    """Drawers and lids leave by the longer way, outwards if both are alike; buttons go in."""
-    body = scene.parent_frame.centre
-    outwards = 1.0 if float((scene.centre - body) @ axis) >= 0.0 else -1.0
+def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:
+    """Drawers and lids leave by the longer way, outwards if both are alike; buttons go in.
+
+    What sits in a bore and has room behind it is pressed in, as a button that stands out before its pocket; a stopper
+    or cap has none, for it is in as far as it goes.
+    """
+    outwards = _outwards(scene, axis)
+    if scene.gated and scene.mechanism <= 0.5:
+        play = slide_play(scene, outwards * axis, config)
+        if play is not None and config.limits.room * scene.frame.diagonal < play[1] < np.inf:
+            return -outwards
     if scene.smallness > 0.5 and not scene.mechanism > 0.5:
         return -outwards
     if abs(free[0] - free[1]) > 0.02 * scene.diagonal:
         return 1.0 if free[0] > free[1] else -1.0
     return outwards
+
+
+def _outwards(scene: JointScene, axis: FloatArray) -> float:
+    """+1 where the axis points from the middle of the parent to the child, -1 where it points back."""
+    return 1.0 if float((scene.centre - scene.parent_frame.centre) @ axis) >= 0.0 else -1.0

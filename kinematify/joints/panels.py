@@ -333,7 +333,8 @@ def _handle_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[
         return {"handle_distance": np.zeros(n), "handle_parallel": np.zeros(n)}
     distance = lengths_of(_arms(scene.handle.centre, lines)) / _reach(scene, lines)
     parallel = np.abs(lines.axes @ scene.handle.direction)
-    tall = scene.upright and _tallness(scene) > config.panels.tall
+    # Handles of tall doors are mounted either way; one that lies level in the middle is that of a door that drops.
+    tall = scene.upright and _tallness(scene) > config.panels.tall and not _handle_in_the_middle(scene)
     return {
         "handle_distance": np.minimum(distance, 1.0),
         "handle_parallel": parallel * (config.panels.tall_handle if tall else 1.0),
@@ -369,6 +370,20 @@ def _handle_off_centre(scene: JointScene) -> bool:
     frame = scene.frame
     shift = np.abs((scene.handle.centre - scene.centre) @ frame.axes.T) / np.maximum(frame.extents, 1e-12)
     return bool(np.delete(shift, frame.thin).max() > 0.25)
+
+
+def _handle_in_the_middle(scene: JointScene) -> bool:
+    """A long level handle, centred between the sides of an upright panel that is as wide as its body.
+
+    One of two doors side by side does not drop, whatever its handle.
+    """
+    if scene.handle is None or not scene.handle.direction.any():
+        return False
+    level = scene.handle.direction
+    shift = abs(float((scene.handle.centre - scene.centre) @ level))
+    width = float(np.abs(scene.frame.axes @ level) @ scene.frame.extents)
+    body = float(np.abs(scene.frame.axes @ level) @ (scene.body_box[1] - scene.body_box[0]))
+    return abs(float(level @ UP)) < 0.1 and shift < 0.1 * width and width > 0.8 * body
 
 
 def _tallness(scene: JointScene) -> float:

@@ -16,7 +16,7 @@ from kinematify.joints.sweep import sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
-    from kinematify.config import JointsConfig
+    from kinematify.config import JointsConfig, SweepConfig
     from kinematify.joints.scene import JointScene
 
 
@@ -53,22 +53,43 @@ def contact_play(
     Returns:
         The play; None where the contact has too few samples.
     """
+    points = _followed(scene, config)
+    if points is None:
+        return None
+    limit = np.radians(config.play.turn_deg)
+    turned = sweep_turns(scene.cache, points, axes, pivots, (scene.parent,), limit=limit, config=_strict(config))
+    free = turned.free(_share(scene, config)).max(axis=1)
+    radii = np.linalg.norm(np.cross(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
+    arcs = np.where(free >= limit, np.inf, free * radii)
+    return Play(turn=float(arcs.max()), slide=float(_slid(scene, points, way, config).max()))
+
+
+def slide_play(scene: JointScene, way: FloatArray, config: JointsConfig) -> FloatArray | None:
+    """How far the contact slides along + and - `way` [m], shape (2,), inf where it is not stopped; None as above."""
+    points = _followed(scene, config)
+    return None if points is None else _slid(scene, points, way, config)
+
+
+def _slid(scene: JointScene, points: FloatArray, way: FloatArray, config: JointsConfig) -> FloatArray:
+    reach = config.play.slide * scene.frame.diagonal
+    swept = sweep_slides(scene.cache, points, way[None], (scene.parent,), limit=reach, config=_strict(config))
+    free = swept.free(_share(scene, config))[0]
+    return np.where(free >= reach, np.inf, free)
+
+
+def _followed(scene: JointScene, config: JointsConfig) -> FloatArray | None:
+    """Samples of the contact, drawn into the child [m], shape (n, 3); None where there are too few."""
     contact = scene.contact
     if len(contact.points) < config.play.least_samples:
         return None
     stride = max(1, len(contact.points) // config.play.samples)
-    points = (contact.points - config.play.inset * scene.frame.diagonal * contact.normals)[::stride]
-    # A journal is modelled with its clearance, so that fewer samples are beyond doubt.
-    share = config.play.share if scene.journal is None else config.play.journal_share
-    strict = config.sweep.model_copy(update={"grace": 0.0, "hinge_zone": 0.0})
-    limit = np.radians(config.play.turn_deg)
-    turned = sweep_turns(scene.cache, points, axes, pivots, (scene.parent,), limit=limit, config=strict)
-    free = turned.free(share).max(axis=1)
-    radii = np.linalg.norm(np.cross(points[None] - pivots[:, None], axes[:, None]), axis=2).mean(axis=1)
-    arcs = np.where(free >= limit, np.inf, free * radii)
-    reach = config.play.slide * scene.frame.diagonal
-    slid = sweep_slides(scene.cache, points, way[None], (scene.parent,), limit=reach, config=strict).free(share)[0]
-    return Play(
-        turn=float(arcs.max()),
-        slide=np.inf if slid.max() >= reach else float(slid.max()),
-    )
+    return np.asarray((contact.points - config.play.inset * scene.frame.diagonal * contact.normals)[::stride])
+
+
+def _strict(config: JointsConfig) -> SweepConfig:
+    return config.sweep.model_copy(update={"grace": 0.0, "hinge_zone": 0.0})
+
+
+def _share(scene: JointScene, config: JointsConfig) -> float:
+    """A journal is modelled with its clearance, so that fewer samples are beyond doubt."""
+    return config.play.share if scene.journal is None else config.play.journal_share

@@ -1,7 +1,7 @@
 """Which part is the base link: the paper's degree rule, and a scored rule that knows how machines stand.
 
 No single cue finds the base (feasibility.md 3): it is the end of an arm, the hub of a hand, the junction of legs.
-The scored rule therefore asks five physical questions, each a function that returns one value in [0, 1] per part,
+The scored rule therefore asks six physical questions, each a function that returns one value in [0, 1] per part,
 and ranks the parts by their best answer. Only the vertical direction of the world is used.
 """
 
@@ -68,6 +68,7 @@ def rank_bases(
     """
     skeleton = Skeleton(edges, stats, clusters, evidence, config)
     cues = (
+        ("It alone stands on the ground.", stand(skeleton)),
         ("It carries most other parts directly and is the largest.", body(skeleton)),
         ("It is the standing end of a chain.", pedestal(skeleton)),
         ("It joins the limbs that stand lowest.", limb_junction(skeleton)),
@@ -132,6 +133,14 @@ class Skeleton:
         """Share of a part's joints whose axis is vertical."""
         axes = [item.axis for other in self.neighbours[part] if (item := evidence.get(pair(part, other))) is not None]
         return float(np.mean([axis is not None and abs(axis[2]) > self.config.vertical for axis in axes] or [0.0]))
+
+
+def stand(skeleton: Skeleton) -> FloatArray:
+    """Globes, taps, lamps, staplers: what alone reaches the ground, and lies flat on it, carries all the rest."""
+    grounded = skeleton.rise <= skeleton.config.stand_band
+    flat = skeleton.flat > skeleton.config.stand_flat
+    alone = grounded & flat & ~skeleton.twin & (grounded.sum() == 1)
+    return np.where(alone, skeleton.config.stand_weight, 0.0)
 
 
 def body(skeleton: Skeleton) -> FloatArray:
