@@ -21,6 +21,7 @@ from trimesh.transformations import euler_matrix
 from kinematify.assembly.robot import forward_kinematics
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.convex import ConvexPiece, convex_piece, surface_points
+from kinematify.validation.prepare.boards import convex_chunks, taken_apart
 from kinematify.validation.prepare.cache import cache_folder
 from kinematify.validation.prepare.cut import Concave, Surface, cut_worst_first, split
 from kinematify.validation.prepare.document import roll_pitch_yaw
@@ -240,6 +241,15 @@ def carcass() -> Surface:
     return solid(board((1, 1, 1), (0, 0, 0)) - inside + board((1, 0.96, 0.04), (0, -0.02, 0.1)))
 
 
+def chest() -> Surface:
+    """A carcass in one closed mesh with six compartments: no single cut makes the largest hollow smaller."""
+    shape = board((1, 0.5, 1.2), (0, 0, 0))
+    for x in (-0.245, 0.245):
+        for z in (-0.385, 0.0, 0.385):
+            shape -= board((0.45, 0.5, 0.345), (x, -0.02, z))
+    return solid(shape)
+
+
 def frame() -> Surface:
     """A ring of four bars: no single cut makes it less concave."""
     return solid(board((1, 0.05, 1), (0, 0, 0)) - board((0.8, 0.1, 0.8), (0, 0, 0)))
@@ -263,6 +273,11 @@ def cuts(surface: Surface, most: int = 48, tolerance: float = 0.03) -> list[Conv
     return [chunk.piece for chunk in cut_worst_first([body], most)[0]]
 
 
+def pieces_of(surface: Surface) -> list[ConvexPiece]:
+    body = Concave(surface=surface, tolerance=0.03, thickness=1e-3)
+    return [chunk.piece for chunk in convex_chunks([body], 48)[0]]
+
+
 def distance(pieces: list[ConvexPiece], points: np.ndarray) -> np.ndarray:
     """Signed distance from the pieces together, a little too small outside near edges."""
     found = []
@@ -282,10 +297,28 @@ def test_boards_of_furniture_come_out_exact() -> None:
     assert sum(piece.volume for piece in pieces) == pytest.approx(1 - 0.96 * 0.96 * 0.96 + 0.96 * 0.92 * 0.04, rel=0.02)
 
 
+def test_a_chest_of_many_compartments_is_taken_apart_board_by_board() -> None:
+    surface = chest()
+    pieces = pieces_of(surface)
+    assert len(pieces) <= 16
+    middles = [(x, 0.0, z) for x in (-0.245, 0.245) for z in (-0.385, 0.0, 0.385)]
+    assert distance(pieces, np.array(middles)).min() > 0.15, "all compartments are free"
+    assert sum(piece.volume for piece in pieces) == pytest.approx(1.2 * 0.5 - 6 * 0.45 * 0.48 * 0.345, rel=0.02)
+
+
+def test_what_is_not_made_of_boards_is_cut_worst_first() -> None:
+    assert taken_apart(Concave(surface=bowl(), tolerance=0.03, thickness=1e-3), 40) is None
+    both = [Concave(surface=make(), tolerance=0.03, thickness=1e-3) for make in (bowl, chest)]
+    bowls, chests = convex_chunks(both, 48)
+    assert len(bowls) == len(cut_worst_first(both[:1], 48)[0])
+    assert len(chests) == len(pieces_of(chest()))
+
+
+@pytest.mark.parametrize("how", [cuts, pieces_of])
 @pytest.mark.parametrize("make", [carcass, frame, shell, bowl])
-def test_pieces_cover_the_surface_and_leave_hollows_free(make) -> None:
+def test_pieces_cover_the_surface_and_leave_hollows_free(make, how) -> None:
     surface = make()
-    pieces = cuts(surface)
+    pieces = how(surface)
     on_surface = surface_points(surface.vertices, surface.faces, 2000)
     assert distance(pieces, on_surface).max() < 0.03  # many faces are simplified first
     body = Concave(surface=surface, tolerance=0.03, thickness=1e-3)

@@ -13,7 +13,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from kinematify.validation.convex import ConvexPiece
-from kinematify.validation.prepare.cut import cut_worst_first
+from kinematify.validation.prepare.boards import convex_chunks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from kinematify.validation.prepare.cut import Concave
     from kinematify.validation.settings import PrepareSettings
 
-_VERSION = b"2"
+_VERSION = b"3"
 """Changes whenever the same input would be cut differently."""
 
 
 def cached_cuts(bodies: Sequence[Concave], cuts: int, settings: PrepareSettings) -> list[list[ConvexPiece]]:
-    """Return the pieces that `cut_worst_first` makes of the surfaces, from an earlier run where there was one.
+    """Return the pieces that `convex_chunks` makes of the surfaces, from an earlier run where there was one.
 
     Args:
         bodies: The surfaces.
@@ -39,7 +39,7 @@ def cached_cuts(bodies: Sequence[Concave], cuts: int, settings: PrepareSettings)
     known = _load(path, len(bodies)) if settings.cached_files else None
     if known is not None:
         return known
-    found = [[chunk.piece for chunk in chunks] for chunks in cut_worst_first(bodies, cuts)]
+    found = [[chunk.piece for chunk in chunks] for chunks in convex_chunks(bodies, cuts)]
     if settings.cached_files:
         with suppress(OSError):  # a full or read-only disk costs time only
             _store(path, found, settings.cached_files)
