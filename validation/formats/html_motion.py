@@ -86,8 +86,8 @@ def curves(report: ValidationReport) -> str:
     )
     return (
         "<h3>How the engines drove the joints</h3>"
-        f'<p class="faint">From rest to both ends by a servo, all other joints held. {lines}. Shaded: free travel by exact '
-        f"geometry; dotted: declared limits.</p>{charts}"
+        f'<p class="faint">From rest to both ends by a servo, all other joints held. {lines}. Shaded: free travel by '
+        f"exact geometry; dotted: declared limits.</p>{charts}"
     )
 
 
