@@ -82,6 +82,7 @@ def test_a_range_beyond_the_free_travel_ends_there(tmp_path: Path) -> None:
     (signal,) = feedback.ranges
     assert signal.lower is None
     assert signal.upper == pytest.approx(3.14, abs=0.06)
+    assert not signal.lost
 
 
 def test_what_runs_into_a_stranger_blames_its_parent_for_that_stranger(tmp_path: Path) -> None:
@@ -115,6 +116,25 @@ def test_a_slide_out_of_its_guide_ends_before(tmp_path: Path) -> None:
     assert signal.check == "KV321"
     assert signal.upper is not None
     assert 0.1 < signal.upper < 0.45
+    assert signal.lost
+    assert signal.lower is None  # the back of the drawer is right before the back of the cabinet
+
+
+def test_a_slide_that_stands_open_may_go_back(tmp_path: Path) -> None:
+    rail = Part(name="rail", boxes=(Box(size=(1.0, 0.1, 0.1)),))
+    sled = Part(
+        name="sled",
+        boxes=(Box(size=(0.3, 0.1, 0.05)),),
+        parent="rail",
+        kind="prismatic",
+        at=(0.55, 0.0, 0.075),
+        limits=(0.0, 0.5),
+    )
+    feedback = fed_back(Model(parts=(rail, sled)), tmp_path)
+    (signal,) = feedback.ranges
+    assert signal.check == "KV321"
+    assert signal.upper == pytest.approx(0.1, abs=0.01)
+    assert signal.lower == pytest.approx(-0.5, abs=0.01)
     assert feedback.lines == feedback.types == ()
 
 
