@@ -11,13 +11,14 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult
 from kinematify.validation.prepare.stage import prepare
 from kinematify.validation.read import read_model
+from kinematify.validation.report import JointCurve
 from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.validation.report import JointSummary
+    from kinematify.validation.report import Summary
     from kinematify.validation.settings import ValidationSettings
 
 Vector = tuple[float, float, float]
@@ -138,6 +139,7 @@ class Told:
 
     results: dict[str, CheckResult]
     work: Path
+    curves: tuple[JointCurve, ...] = ()
 
     def worst(self, check: str) -> list[str]:
         """Severities of the findings of a check."""
@@ -162,11 +164,12 @@ def prepared_request(
 
 def tell(run: Callable[[StageRequest, Recorder], None], request: StageRequest) -> Told:
     """Run a stage in this process."""
-    told: list[CheckResult | JointSummary] = []
+    told: list[CheckResult | Summary] = []
     run(request, Recorder(told.append, request.selected))
     results = [item for item in told if isinstance(item, CheckResult)]
     assert len({item.check for item in results}) == len(results)
-    return Told(results={item.check: item for item in results}, work=request.work)
+    curves = tuple(item for item in told if isinstance(item, JointCurve))
+    return Told(results={item.check: item for item in results}, work=request.work, curves=curves)
 
 
 def engine_settings(**changes: Any) -> ValidationSettings:

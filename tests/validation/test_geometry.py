@@ -15,7 +15,7 @@ from kinematify.validation.engine_results import EXACT
 from kinematify.validation.engines.configurations import read_poses
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.geometry.stage import run
-from kinematify.validation.report import JointSummary
+from kinematify.validation.report import JointSummary, PairTable
 from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
@@ -67,6 +67,20 @@ def test_free_travel_is_measured_beyond_the_declared_range(tmp_path: Path) -> No
     low, high = drawer.free_travel or (0.0, 0.0)
     assert low == pytest.approx(-0.005, abs=1e-3)  # the back of the drawer has 5 mm to the back of the cabinet
     assert high == pytest.approx(0.2)  # one more range, and nothing was in the way
+
+
+def test_every_pair_that_meets_is_told_with_its_reason(tmp_path: Path) -> None:
+    told: list[object] = []
+    model = cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0))
+    run(request_for(model, tmp_path), Recorder(told.append, SELECTED))
+    (table,) = [item for item in told if isinstance(item, PairTable)]
+    assert table.bodies == ("body", "drawer", "door")
+    (pair,) = [item for item in table.pairs if item.meets]
+    assert pair.pair == ("body", "drawer")
+    ((joint, value, depth),) = pair.meets
+    assert joint == "drawer_joint"
+    assert value == pytest.approx(0.005, abs=1e-3)
+    assert depth > pair.tolerated
 
 
 def beam(*parts: Part) -> Model:

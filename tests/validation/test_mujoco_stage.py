@@ -95,6 +95,11 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     assert finding.value == pytest.approx(0.01, abs=0.01)  # 5 mm of room, and what a contact gives way by
     assert finding.limit == 0.3
+    curve = next(curve for curve in result.curves if curve.joint == "drawer_joint" and curve.upper)
+    assert curve.engine == "mujoco"
+    assert curve.commanded[-1] == pytest.approx(0.3)
+    assert max(curve.reached) < 0.05 < curve.commanded[-1], "it stays where the wall is"
+    assert max(map(abs, curve.force)) > 0.0
 
 
 def test_stop_at_a_part_that_can_move_itself_is_a_note(tmp_path: Path) -> None:

@@ -76,11 +76,17 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
 
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
-    finding = only(told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path), "KV505")
+    result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    finding = only(result, "KV505")
     assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     assert finding.value == pytest.approx(0.005, abs=0.012)  # the room behind it
     assert finding.limit == 0.3
+    curve = next(curve for curve in result.curves if curve.joint == "drawer_joint" and curve.upper)
+    assert curve.engine == "pybullet"
+    assert curve.commanded[-1] == pytest.approx(0.3)
+    assert max(curve.reached) < 0.05 < curve.commanded[-1], "it stays where the wall is"
+    assert max(map(abs, curve.force)) > 0.0
 
 
 def test_pair_that_touches_at_rest_stops_a_joint_although_it_does_not_act(tmp_path: Path) -> None:
