@@ -32,6 +32,7 @@ DOUBTFUL = 0.5
     epilog=examples(
         "kinematify infer examples/cabinet -o out/cabinet",
         "kinematify infer robot.glb -o out/robot --up z --base torso",
+        "kinematify infer examples/cabinet -o out/cabinet --hint knob=prismatic --hint door_left:axis=z",
         "kinematify infer scan.ply --labels labels.npy -o out/scan --scale 0.001",
         "kinematify infer parts.zip -o out/parts --config paper --seed 7",
         "kinematify infer parts/ -o out/parts --refine 3 --tier engines",
@@ -54,6 +55,13 @@ DOUBTFUL = 0.5
     help="NPY or JSON file with the part of every face, if ASSEMBLY is one mesh.",
 )
 @click.option("--base", metavar="NAME", help="Part that the tree is rooted at, if the choice made is wrong.")
+@click.option(
+    "--hint",
+    "hints",
+    multiple=True,
+    metavar="PART=TYPE|PART:axis=x",
+    help="What you know of a joint: its type, or the direction of its axis. It decides. Several may be given.",
+)
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
 )
@@ -90,6 +98,7 @@ def command(
     scale: float,
     labels: Path | None,
     base: str | None,
+    hints: tuple[str, ...],
     config: str,
     seed: int | None,
     rounds: int | None,
@@ -113,6 +122,7 @@ def command(
     from kinematify.config import load_config
     from kinematify.model.output import check_output
     from kinematify.pipeline import infer, write_inference
+    from kinematify.refinement.hints import parse_hints, with_hints
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
@@ -120,11 +130,13 @@ def command(
         use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
+        told = parse_hints(hints, given.names)
         inference = infer(given, config=settings, base=base, progress=progress)
         inference, heard = _with_votes(inference, vlm, progress)
         status = 0
         if rounds is not None:
             inference, status = _refined(inference, rounds, tier, base, progress)
+        inference = with_hints(inference, told) if told else inference
         progress("writing the model", 1.0)
         write_inference(inference, out, overwrite=force, preview=not no_preview)
     if json_to:
@@ -246,7 +258,8 @@ def _describe_doubts(inference: Inference) -> list[str]:
     lines += [f"Note: {warning}" for warning in inference.warnings]
     if doubtful:
         names = ", ".join(joint.name for joint in doubtful)
-        lines.append(f"Look first at the joints that the geometry says least about: {names}.")
+        count = f"{len(doubtful)} joint{'s' if len(doubtful) > 1 else ''} to look at"
+        lines.append(f"{count}, of which the geometry says least: {names}. What you know, tell with --hint.")
     return [*lines, ""] if lines else []
 
 

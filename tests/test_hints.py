@@ -1,0 +1,94 @@
+"""Hints decide; what they leave open comes from the geometry, and what cannot be is said with the choices."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from kinematify.config import load_config
+from kinematify.errors import InputError
+from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.pipeline import Inference, infer
+from kinematify.refinement.hints import Hint, parse_hints, with_hints
+from tests.objects import BUILDERS
+
+PARTS = ("body", "door_1", "door_2", "lid")
+
+
+@cache
+def inferred(name: str) -> Inference:
+    return infer(BUILDERS[name]().assembly, config=load_config())
+
+
+def joint_of(inference: Inference, part: str) -> JointEstimate:
+    return next(joint for joint in inference.joints if inference.assembly.names[joint.child] == part)
+
+
+def moving(inference: Inference) -> str:
+    return inference.assembly.names[inference.joints[0].child]
+
+
+def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
+    found = parse_hints(["door_1=prismatic", "lid:axis=x", "door_1:axis=y"], PARTS)
+    assert found == (Hint(part="door_1", kind=JointType.PRISMATIC, axis="y"), Hint(part="lid", axis="x"))
+
+
+@pytest.mark.parametrize(
+    ("texts", "said"),
+    [
+        (["door_3=prismatic"], "door_1"),
+        (["door_1=sliding"], "prismatic"),
+        (["door_1:axis=w"], "x, y, z"),
+        (["door_1"], "PART=TYPE"),
+        (["=prismatic"], "PART=TYPE"),
+        (["door_1=prismatic", "door_1=revolute"], "contradict"),
+        (["lid:axis=x", "lid:axis=z"], "both x and z"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_with_the_choices(texts: list[str], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        parse_hints(texts, PARTS)
+
+
+def test_a_type_is_obeyed_and_the_rest_is_found() -> None:
+    inference = inferred("drawer")
+    name = moving(inference)
+    hinted = with_hints(inference, [Hint(part=name, kind=JointType.REVOLUTE)])
+    joint = joint_of(hinted, name)
+    assert joint.kind is JointType.REVOLUTE
+    assert joint.confidence == 1.0
+    assert math.isfinite(joint.lower)
+    assert joint_of(inference, name).kind is JointType.PRISMATIC  # the inference that was given stays as it is
+
+
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_an_axis_is_obeyed_in_every_direction(axis: str) -> None:
+    inference = inferred("edge_door")
+    name = moving(inference)
+    joint = joint_of(with_hints(inference, [Hint(part=name, axis=axis)]), name)
+    assert abs(joint.axis["xyz".index(axis)]) > np.cos(np.radians(30.0))
+
+
+def test_a_hint_that_agrees_changes_nothing_but_the_confidence() -> None:
+    inference = inferred("edge_door")
+    before = joint_of(inference, moving(inference))
+    after = joint_of(with_hints(inference, [Hint(part=moving(inference), kind=before.kind)]), moving(inference))
+    np.testing.assert_array_equal(before.axis, after.axis)
+    assert (before.lower, before.upper) == (after.lower, after.upper)
+
+
+def test_a_hint_against_the_geometry_is_followed_and_said() -> None:
+    inference = inferred("drawer")
+    name = moving(inference)
+    hinted = with_hints(inference, [Hint(part=name, kind=JointType.PRISMATIC, axis="x")])
+    assert abs(joint_of(hinted, name).axis[0]) > 0.9
+    assert any(name in warning and "slides by" in warning for warning in hinted.warnings)
+
+
+def test_the_base_has_no_joint_to_be_hinted() -> None:
+    inference = inferred("drawer")
+    with pytest.raises(InputError, match="base link"):
+        with_hints(inference, [Hint(part=inference.model.root, kind=JointType.REVOLUTE)])
