@@ -21,6 +21,8 @@ _SPEED = 0.5  # of opening [ways/s]
 _REACH_SPEED = 0.6  # share of the fastest that actions allow
 _PULL_SPEED = 0.35  # [ways/s]
 _PULL_ROWS = 40
+_SURE = 0.01  # the part is taken so far beyond what counts as open, where fingers have slipped
+_SLIP, _MOST_SLIP = 0.005, 0.2  # shares of the way that are made good per step, and in all
 _GRIP_SECONDS = 0.6
 _AHEAD = 0.04  # the part is taken so far beyond what counts as open
 _GAIN, _SUM = 0.7, 0.35  # shares of an error of speed that are made good in a step
@@ -66,6 +68,7 @@ class ArmExpert:
     def __init__(self, env: DrawerPullEnv) -> None:
         """Take the plan."""
         self._env, self._step, self._way = env, 0, np.empty((0, 0))
+        self._end = self._beyond = 0.0
 
     def begin(self) -> None:
         """Lay out the way of an episode that has just begun."""
@@ -74,12 +77,14 @@ class ArmExpert:
         closing = round(_GRIP_SECONDS / env.settings.time.control_step)
         settling = np.tile(pull[-1], (1, 1))
         self._way = np.concatenate([reach, np.tile(reach[-1], (closing, 1)), pull, settling])
-        self._grips_from, self._step = len(reach), 0
+        self._grips_from, self._step, self._beyond = len(reach), 0, 0.0
 
     def act(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return the action for this moment; what is seen plays no part."""
-        del observation
+        """Return the action for this moment; at the end of the way, pull on as long as the part is not open."""
         env = self._env
+        if self._step >= len(self._way) and float(observation[0]) < env.open_fraction + _SURE:
+            self._beyond = min(self._beyond + _SLIP, _MOST_SLIP)
+            self._way = np.concatenate([self._way, self._posture(self._end + self._beyond, self._way[-1])[None]])
         row = self._way[min(self._step, len(self._way) - 1)]
         gripper = -1.0 if self._step >= self._grips_from else 1.0
         self._step += 1
@@ -106,17 +111,21 @@ class ArmExpert:
     def _pull(self) -> FloatArray:
         """Arm joints from the hold to the open end."""
         env, plan = self._env, self._env.plan
-        root = env.link_poses[env.thing.declared.kinematics.root]
         start = float(env.goal.fraction(env.reading()))
-        end = min(env.open_fraction + _AHEAD, plan.fraction, 0.995)
+        end = self._end = min(env.open_fraction + _AHEAD, plan.fraction, 0.995)
         shares = np.linspace(start, end, _PULL_ROWS)
         values = env.target.closed + shares * env.target.range
         sign = np.sign(env.target.range)
         guesses = np.stack([np.interp(sign * values, sign * plan.opened, column) for column in plan.pull.T], axis=1)
-        targets = [root @ self._link_at(value) @ plan.T_link_tool for value in values.tolist()]
-        rows = np.array([self._solved(T, guess) for T, guess in zip(targets, guesses, strict=True)])
+        rows = np.array([self._posture(share, guess) for share, guess in zip(shares.tolist(), guesses, strict=True)])
         least = (end - start) / _PULL_ROWS / (_PULL_SPEED * env.settings.time.control_step)
         return _paced(rows, _REACH_SPEED * env.settings.robot.joint_step, least)
+
+    def _posture(self, share: float, guess: FloatArray) -> FloatArray:
+        """Arm joints where a share of the way is open, near a guess."""
+        env = self._env
+        root = env.link_poses[env.thing.declared.kinematics.root]
+        return self._solved(root @ self._link_at(env.target.value(share)) @ env.plan.T_link_tool, guess)
 
     def _solved(self, target: FloatArray, guess: FloatArray) -> FloatArray:
         """Arm joints that bring the tool to a pose of the world, near a guess; the guess where there are none."""

@@ -150,6 +150,7 @@ class OpenPartEnv(OpeningEnv):
         self._make_world()
         self.action_space: Space = Box(-1.0, 1.0, (3,), np.float32)
         self.observation_space: Space = hand_space(self.goal)
+        self.bounds = hand_bounds(self.goal)
 
     def _make_world(self) -> None:
         kind = MujocoHand if self.engine == "mujoco" else _pybullet_hand()
@@ -208,33 +209,35 @@ class OpenPartEnv(OpeningEnv):
         return self._last, reward, ended, False, info
 
     def _observe(self, reading: Reading) -> NDArray[np.float32]:
-        found = np.zeros(self.observation_space.shape or ())
-        return observe_hand(self.goal, reading, self.middle, self._world.command(), found)
+        return observe_hand(self.goal, reading, self.middle, self._world.command(), self.bounds)
 
 
 def hand_space(goal: Goal) -> Space:
     """Space of `observe_hand`."""
+    low, high = hand_bounds(goal)
+    return Box(low.astype(np.float32), high.astype(np.float32), dtype=np.float32)
+
+
+def hand_bounds(goal: Goal) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest that `observe_hand` returns, shape (3 * slots + 9,) each."""
     slots = goal.slots
-    high = np.repeat(
-        [OPEN_BOUND, SPEED_BOUND, 1.0, PLACE_BOUND, PLACE_BOUND, 1.0], [slots, slots, slots, 3, 3, 3]
-    ).astype(np.float32)
+    high = np.repeat([OPEN_BOUND, SPEED_BOUND, 1.0, PLACE_BOUND, PLACE_BOUND, 1.0], [slots, slots, slots, 3, 3, 3])
     low = -high
     low[2 * slots : 3 * slots] = 0.0
-    return Box(low, high, dtype=np.float32)
+    return low, high
 
 
 def observe_hand(
-    goal: Goal, reading: Reading, middle: FloatArray, command: FloatArray, found: FloatArray
+    goal: Goal, reading: Reading, middle: FloatArray, command: FloatArray, bounds: tuple[FloatArray, FloatArray]
 ) -> NDArray[np.float32]:
-    """Fill an array of zeros, shape (..., 3 * slots + 9), with what is seen of an object and a hand."""
+    """Return what is seen of an object and a hand, shape (..., 3 * slots + 9), within `bounds` (`hand_space`)."""
+    found = np.zeros((*reading.hold.shape[:-1], len(bounds[0])))
     goal.fill_joints(reading, found)
     start = 3 * goal.slots
     found[..., start : start + 3] = reading.hold - middle
     found[..., start + 3 : start + 6] = command
-    places = found[..., start : start + 6]
-    np.minimum(np.maximum(places, -PLACE_BOUND, out=places), PLACE_BOUND, out=places)
     found[..., start + 6 : start + 9] = goal.direction(reading)
-    return found.astype(np.float32)
+    return np.minimum(np.maximum(found, bounds[0], out=found), bounds[1], out=found).astype(np.float32)
 
 
 def _pybullet_hand() -> type:

@@ -166,8 +166,7 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
 
     def _observe(self, reading: Reading) -> NDArray[np.float32]:
         command = self._control[:, 0] - self._sensors[:, :3] if self._envs[0].control == POSITION else 0.0
-        found = np.zeros((self.num_envs, *(self.single_observation_space.shape or ())))
-        return observe_hand(self.goal, reading, self._middle, np.asarray(command), found)
+        return observe_hand(self.goal, reading, self._middle, np.asarray(command), self._envs[0].bounds)
 
     def _info(self, success: BoolArray, escaped: BoolArray, unstable: BoolArray) -> dict[str, Any]:
         return {

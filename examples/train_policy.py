@@ -1,0 +1,51 @@
+"""Train a policy that opens a drawer, until it succeeds; needs pip install 'kinematify[rl]'.
+
+python examples/train_policy.py                          # a chest of drawers that comes with the package
+python examples/train_policy.py --model out/cabinet      # a folder that kinematify infer or generate has written
+"""
+
+from __future__ import annotations
+
+import argparse
+
+import gymnasium
+import numpy as np
+from stable_baselines3 import PPO
+from stable_baselines3.common.env_util import make_vec_env
+
+OPEN_PART = "kinematify.envs:kinematify/OpenPart-v0"
+
+
+def success_rate(policy: PPO, keywords: dict[str, object], seeds: range) -> float:
+    """Share of episodes that end open and at rest."""
+    env = gymnasium.make(OPEN_PART, **keywords)
+    ends = []
+    for seed in seeds:
+        observation, _ = env.reset(seed=seed)
+        over = False
+        while not over:
+            action, _ = policy.predict(observation, deterministic=True)
+            observation, _, terminated, truncated, info = env.step(action)
+            over = terminated or truncated
+        ends.append(info["is_success"])
+    env.close()
+    return float(np.mean(ends))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--model", default="bundled:drawers")
+    parser.add_argument("--joint", default="auto")
+    parser.add_argument("--rounds", type=int, default=30)
+    parser.add_argument("-o", "--output", default="policy.zip")
+    arguments = parser.parse_args()
+    keywords = {"model": arguments.model, "joint": arguments.joint, "randomize": True}
+    envs = make_vec_env(lambda: gymnasium.make(OPEN_PART, **keywords), n_envs=8, seed=0)
+    policy = PPO("MlpPolicy", envs, n_steps=256, batch_size=512, gamma=0.97, learning_rate=1e-3, device="cpu", seed=0)
+    for _ in range(arguments.rounds):
+        policy.learn(2048, reset_num_timesteps=False)
+        rate = success_rate(policy, keywords, range(1000, 1020))
+        print(f"{policy.num_timesteps:6d} steps: {rate:.0%} of 20 episodes end open and at rest", flush=True)
+        if rate >= 0.95:
+            break
+    policy.save(arguments.output)
