@@ -305,11 +305,14 @@ def test_the_smoke_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         "extends: nightly\nsources: [truth]\nsmoke: {sentences: [a cabinet with one drawer], engines: [mujoco]}\n"
     )
     out = tmp_path / "nights"
-    assert run_command(["nightly", "--smoke", "--config", str(small), "-o", str(out), "--json", "-"]) == 0
+    assert run_command(["nightly", "--smoke", "--pages", "--config", str(small), "-o", str(out), "--json", "-"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert (answer["schema"], answer["gate"], answer["runs"], answer["objects"]) == (1, "pass", 2, 1)
     assert answer["counts"]["new series"] == 2
     name = Path(answer["folder"]).name
+    (model,) = (out / name / "models").iterdir()
+    assert f'href="models/{model.name}"' in (out / name / "index.html").read_text()
+    assert 'class="viewer"' in model.read_text()
     assert run_command(["nightly", "-o", str(out), "--accept", name]) == 0
     assert json.loads((out / "baseline.json").read_text())["night"] == name
     assert run_command(["nightly", "-o", str(out), "--accept", "none"]) == 2

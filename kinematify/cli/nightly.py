@@ -53,6 +53,9 @@ _SHOWN = 20
 )
 @click.option("--baseline", metavar="NIGHT", help="Compare with this night instead of the accepted one.")
 @click.option("--accept", metavar="NIGHT", help="Make a night the baseline, and run nothing.")
+@click.option(
+    "--pages", is_flag=True, help="Write a page for each model too, with curves and a view of it (0.4 MB each)."
+)
 @click.option("--smoke", is_flag=True, help="Two objects of the built-in generator, in about half a minute.")
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
@@ -66,6 +69,7 @@ def command(
     patterns: tuple[str, ...],
     baseline: str | None,
     accept: str | None,
+    pages: bool,
     smoke: bool,
     jobs: int | None,
     json_to: str | None,
@@ -88,6 +92,7 @@ def command(
         only=_matching(settings, patterns),
         baseline=baseline,
         smoke=smoke,
+        pages=pages,
         workers=jobs or os.cpu_count() or 1,
     )
     with progress_reporter() as progress:

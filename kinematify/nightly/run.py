@@ -26,6 +26,7 @@ from kinematify.nightly.smoke import write_smoke_objects
 from kinematify.nightly.state import open_state
 from kinematify.nightly.store import (
     JUNIT_FILE,
+    MODELS,
     PAGE_FILE,
     UNFINISHED,
     Night,
@@ -70,6 +71,8 @@ class NightRequest:
     """Name of a night to compare with instead of the accepted one."""
     smoke: bool = False
     """Run the objects of the built-in generator instead of the data."""
+    pages: bool = False
+    """Write a page for each validated model too, 0.4 MB each."""
     workers: int = field(default_factory=lambda: os.cpu_count() or 1)
     infer: str = INFER
     """Function under test, as ``module:name``; tests plant faults with it."""
@@ -145,6 +148,7 @@ class _Work:
     def __init__(self, request: NightRequest, objects: Sequence[BenchObject]) -> None:
         self.request, self.objects, self.settings = request, objects, request.settings
         self.folder = request.out / UNFINISHED
+        self.pages = self.folder / MODELS if request.pages else None
         self.thresholds = load_settings(self.settings.validation_config)
         self.code = whole_code_version()
         self.method = digest(load_config(self.settings.infer_config).model_dump(mode="json"))
@@ -203,7 +207,7 @@ class _Work:
             scenario=scenario,
             item=item,
             source=source,
-            request=unit_request(item, source, self.settings, self.request.infer),
+            request=unit_request(item, source, self.settings, infer=self.request.infer, pages=self.pages),
         )
 
 
@@ -244,8 +248,9 @@ def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Nig
     }
     night = Night(name=state.name, header=header, runs=tuple(runs), changes=changes, baseline_changes=against_baseline)
     header["gate"] = "fail" if night.failed else "pass"
-    texts = {JUNIT_FILE: as_junit(night), PAGE_FILE: night_page(night)}
-    write_night(work.request.out, night, texts)
+    pages = {path.name for path in (work.folder / MODELS).glob("*.html")}
+    texts = {JUNIT_FILE: as_junit(night), PAGE_FILE: night_page(night, pages)}
+    write_night(work.request.out, night, texts, models=work.folder / MODELS if pages else None)
     return night
 
 

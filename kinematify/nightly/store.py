@@ -37,6 +37,8 @@ RUNS_FILE = "runs.jsonl"
 JUNIT_FILE = "junit.xml"
 PAGE_FILE = "index.html"
 BASELINE_FILE = "baseline.json"
+MODELS = "models"
+"""Folder of a night for the pages of its models."""
 UNFINISHED = ".unfinished"
 _LOCK = ".lock"
 
@@ -210,13 +212,14 @@ def accept(folder: Path, night: Night) -> None:
         raise OutputError(unwritable(folder, error)) from error
 
 
-def write_night(folder: Path, night: Night, texts: Mapping[str, str]) -> Path:
+def write_night(folder: Path, night: Night, texts: Mapping[str, str], *, models: Path | None = None) -> Path:
     """Write a night; its folder appears whole or not at all, and none is ever replaced.
 
     Args:
         folder: Of all nights.
         night: Not there yet.
         texts: Further files by name.
+        models: Folder of pages that belong to it.
 
     Raises:
         OutputError: It cannot be written.
@@ -235,6 +238,8 @@ def write_night(folder: Path, night: Night, texts: Mapping[str, str]) -> Path:
         aside.mkdir(parents=True)
         for name, text in files.items():
             (aside / name).write_text(text, encoding="utf-8")
+        if models is not None:
+            shutil.copytree(models, aside / MODELS)  # not moved: a night that is killed now does this again
         aside.rename(place)
     except OSError as error:
         raise OutputError(unwritable(folder, error)) from error

@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -27,6 +27,8 @@ from kinematify.model.urdf import write_urdf
 from kinematify.nightly.record import Problem
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.html import as_html
+from kinematify.validation.formats.picture import scene_of
 from kinematify.validation.formats.text import where
 from kinematify.validation.outcome import severity_counts, status_counts
 from kinematify.validation.run import validate
@@ -61,6 +63,10 @@ class UnitRequest:
     """Ids or patterns."""
     budget: float
     """[s]."""
+    title: str
+    """Of the model, as a page names it."""
+    page: str
+    """File for the page of the model; empty for none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +122,17 @@ def _answer(request: UnitRequest) -> UnitAnswer:
             engines=request.engines,
             workers=1,
         )
+        if request.page:
+            _write_page(request, urdf, tuple(map(Path, package_dirs)), report)
         return kept(report, time.perf_counter() - start, selected, request.engines)
+
+
+def _write_page(request: UnitRequest, urdf: Path, package_dirs: tuple[Path, ...], report: ValidationReport) -> None:
+    """Write the page that `kinematify validate --html` would, but for the picture, which takes seconds."""
+    named = replace(report, model=request.title)
+    scene = scene_of(urdf, package_dirs)
+    Path(request.page).parent.mkdir(parents=True, exist_ok=True)
+    Path(request.page).write_text(as_html([named], {}, {named.model: scene}), encoding="utf-8")
 
 
 def _inferred(request: UnitRequest, folder: Path) -> Path:

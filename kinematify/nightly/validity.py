@@ -51,8 +51,18 @@ class _Running:
     started: float
 
 
-def unit_request(item: BenchObject, source: str, settings: NightlySettings, infer: str) -> UnitRequest:
-    """What the process of a validation is told."""
+def unit_request(
+    item: BenchObject, source: str, settings: NightlySettings, *, infer: str, pages: Path | None
+) -> UnitRequest:
+    """What the process of a validation is told.
+
+    Args:
+        item: The object.
+        source: Which of its models.
+        settings: Of the night.
+        infer: Function under test.
+        pages: Folder for the page of each model; None for no pages.
+    """
     return UnitRequest(
         urdf=str(item.urdf.absolute()),
         package_dirs=tuple(str(folder) for folder in item.package_dirs),
@@ -63,7 +73,15 @@ def unit_request(item: BenchObject, source: str, settings: NightlySettings, infe
         engines=tuple(settings.engines),
         checks=tuple(settings.checks),
         budget=settings.budget,
+        title=f"{item.name}, {source} model",
+        page="" if pages is None else str((pages / page_name(item.name, source)).absolute()),
     )
+
+
+def page_name(item: str, source: str) -> str:
+    """File of the page of a model; names of objects may hold what no file name can."""
+    plain = "".join(letter if letter.isascii() and (letter.isalnum() or letter in "._-") else "-" for letter in item)
+    return f"{plain}-{source}.html"
 
 
 def run_units(units: Sequence[Unit], *, workers: int, timeout: float) -> Iterator[Run]:

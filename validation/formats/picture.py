@@ -85,13 +85,17 @@ def drawing_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
         )
 
 
-def scene_of(path: Path) -> str:
-    """Return the scene of a model that Kinematify wrote itself, without a process of its own.
+def scene_of(path: Path, package_dirs: Sequence[Path] = ()) -> str:
+    """Return the scene of a model that can be trusted, without a process of its own.
+
+    Args:
+        path: The URDF file.
+        package_dirs: Where packages lie.
 
     Raises:
         DescriptionError: It cannot be read.
     """
-    return _scene(read_model(path).kinematics)
+    return _scene(read_model(path, package_dirs=package_dirs).kinematics)
 
 
 def _scene(robot: RobotDescription) -> str:

@@ -6,11 +6,13 @@ import json
 from typing import TYPE_CHECKING
 
 from kinematify.nightly.compare import QUALITY, Class
+from kinematify.nightly.store import MODELS
+from kinematify.nightly.validity import page_name
 from kinematify.validation.catalogue import FAMILIES
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from kinematify.nightly.compare import Change
     from kinematify.nightly.record import Run
@@ -29,10 +31,15 @@ METRIC_TITLES = {
 METRIC_SCALES = {"line_m": 1000.0}
 
 
-def night_page(night: Night) -> str:
-    """Return the page of a night."""
+def night_page(night: Night, pages: Collection[str] = ()) -> str:
+    """Return the page of a night.
+
+    Args:
+        night: The night.
+        pages: Files in its folder of models.
+    """
     title = f"kinematify nightly {night.name}: {night.header['gate']}"
-    return page(title, [_head(night), *_changes(night), *_matrix(night), *_accuracy(night), *_runs(night)])
+    return page(title, [_head(night), *_changes(night), *_matrix(night, pages), *_accuracy(night), *_runs(night)])
 
 
 def _head(night: Night) -> str:
@@ -104,7 +111,7 @@ def _subject(change: Change) -> str:
     return f'<a href="#{text(anchor)}">{text(change.subject)}</a>'
 
 
-def _matrix(night: Night) -> list[str]:
+def _matrix(night: Night, pages: Collection[str]) -> list[str]:
     """Objects against families of checks, five states each."""
     runs = [run for run in night.runs if run.what == "validation"]
     if not runs:
@@ -113,7 +120,7 @@ def _matrix(night: Night) -> list[str]:
     rows = [
         (
             _linked(run),
-            text(run.case),
+            _model(run, pages),
             run.status,
             *(run.families.get(family, "") for family in families),
             f"{run.values.get('errors') or 0:.0f}",
@@ -125,6 +132,12 @@ def _matrix(night: Night) -> list[str]:
     headings = ("object", "model", "verdict", *(f"{f} {FAMILIES[f]}" for f in families), "errors", "warnings", "s")
     classes = ("", "", "state", *["state"] * len(families), "number", "number", "number")
     return ["<h2>Validation</h2>", _legend(), table(headings, rows, name="validation", classes=classes)]
+
+
+def _model(run: Run, pages: Collection[str]) -> str:
+    """Which model, leading to its page where there is one."""
+    name = page_name(run.object, run.case)
+    return f'<a href="{MODELS}/{text(name)}">{text(run.case)}</a>' if name in pages else text(run.case)
 
 
 def _legend() -> str:
