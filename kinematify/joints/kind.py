@@ -102,8 +102,8 @@ def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
     guided = scene.gated or np.isinf(play.slide)
     if scene.serial:
-        # Links of machines overlap where they meet; only one that cannot turn as a whole either is guided.
-        guided = guided and float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
+        # Links of machines overlap where they meet; only rods in bores that cannot turn as a whole either are guided.
+        guided = scene.gated and float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
     return {
         "keyed": float(guided and play.slides_only(least, config.play.ratio)),
         "retained": float(play.turns_only(least, config.play.ratio))
