@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from kinematify.benchmark.datasets import BenchObject
     from kinematify.benchmark.job import JobResult
     from kinematify.benchmark.run import BenchmarkReport
+    from kinematify.nightly.compare import Change
     from kinematify.nightly.record import Run
     from kinematify.nightly.settings import NightlySettings
     from kinematify.nightly.state import State
@@ -214,29 +215,12 @@ class _Work:
 def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Night | None, progress: Progress) -> Night:
     """Run what is missing, compare and write."""
     start = time.perf_counter()
-    report, runs = work.accuracy(progress)
-    runs = sorted([*runs, *work.validations(progress)], key=lambda run: run.place)
+    report, accuracy = work.accuracy(progress)
+    runs = sorted([*accuracy, *work.validations(progress)], key=lambda run: run.place)
     last = nights[-1] if nights else None
-    processor = report.header["processor"]
-    changes = compare(
-        runs,
-        earlier_runs(nights),
-        work.settings,
-        same_machine=last is not None and last.header.get("processor") == processor,
-        complete=not work.request.only,
-    )
-    other = baseline if baseline is not None and baseline is not last else None
-    against_baseline = (
-        compare(
-            runs,
-            earlier_runs([other]),
-            work.settings,
-            same_machine=other.header.get("processor") == processor,
-            complete=not work.request.only,
-        )
-        if other is not None
-        else ()
-    )
+    processor = str(report.header["processor"])
+    changes = _changes(work, runs, nights, processor)
+    drift = _changes(work, runs, [baseline], processor) if baseline is not None and baseline is not last else ()
     header = {
         **_facts(work, state, report),
         "seconds": round(time.perf_counter() - start, 1),
@@ -244,14 +228,25 @@ def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Nig
         "last": last.name if last else None,
         "baseline": baseline.name if baseline else None,
         "counts": counts(changes),
-        "baseline_counts": counts(against_baseline),
+        "baseline_counts": counts(drift),
+        "gate": "fail" if any(change.gate for change in (*changes, *drift)) else "pass",
     }
-    night = Night(name=state.name, header=header, runs=tuple(runs), changes=changes, baseline_changes=against_baseline)
-    header["gate"] = "fail" if night.failed else "pass"
+    night = Night(name=state.name, header=header, runs=tuple(runs), changes=changes, baseline_changes=drift)
     pages = {path.name for path in (work.folder / MODELS).glob("*.html")}
     texts = {JUNIT_FILE: as_junit(night), PAGE_FILE: night_page(night, pages)}
     write_night(work.request.out, night, texts, models=work.folder / MODELS if pages else None)
     return night
+
+
+def _changes(work: _Work, runs: Sequence[Run], nights: Sequence[Night], processor: str) -> tuple[Change, ...]:
+    """Compare with earlier nights, the oldest first; times only if the latest of them ran on the same machine."""
+    return compare(
+        runs,
+        earlier_runs(nights),
+        work.settings,
+        same_machine=bool(nights) and nights[-1].header.get("processor") == processor,
+        complete=not work.request.only,
+    )
 
 
 def _facts(work: _Work, state: State, report: BenchmarkReport) -> dict[str, Any]:
