@@ -25,7 +25,7 @@ _INTERRUPTED = 130
     "refine",
     short_help="Simulate an inferred model and choose again what its failures blame.",
     epilog=examples(
-        "kinematify infer parts/ -o out && kinematify refine out",
+        "kinematify refine out",
         "kinematify infer parts/ -o out --refine 3",
         "kinematify refine out --tier engines --rounds 5",
         "kinematify refine out --budget 20 --html out/validation.html",
