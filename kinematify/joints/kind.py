@@ -216,8 +216,22 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
+        "latch": scene.smallness * float(_bridges_a_seam(scene)),
         "on_moving_part": float(scene.parent_moves) * scene.smallness,
     }
+
+
+def _bridges_a_seam(scene: JointScene) -> bool:
+    """It touches, besides its parent, a part that is no twin of its own and does not hang on it: a hasp or catch.
+
+    Buttons sit in one part, or beside their like.
+    """
+    graph, child = scene.cache.graph, scene.child
+    cluster = graph.cluster_of[child]
+    touched = [
+        edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
+    ]
+    return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
 
 
 def _is_wheel(scene: JointScene) -> bool:

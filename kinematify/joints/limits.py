@@ -212,7 +212,7 @@ def _clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
 
 def _is_lever(scene: JointScene, axis: FloatArray) -> bool:
     """An arm on a pivot."""
-    return _eccentricity(scene, axis, scene.contact.centroid) > 0.4
+    return _eccentricity(scene, axis, scene.contact.centroid) > 0.3
 
 
 def _eccentricity(scene: JointScene, axis: FloatArray, anchor: FloatArray) -> float:
