@@ -26,7 +26,6 @@ _INTERRUPTED = 130
     short_help="Simulate an inferred model and choose again what its failures blame.",
     epilog=examples(
         "kinematify refine out",
-        "kinematify infer parts/ -o out --refine 3",
         "kinematify refine out --tier engines --rounds 5",
         "kinematify refine out --budget 20 --html out/validation.html",
         "kinematify refine out --json - > rounds.json",
