@@ -170,7 +170,7 @@ class _Loop:
             if plan.signature in seen:
                 self.ended = "the next plan had been simulated before"
                 return
-            if not self.in_time():
+            if not self.in_time() and self.mended != number + 1:  # what is known to be wrong is never kept for haste
                 self.ended = "the time was used up"
                 return
 
@@ -202,7 +202,7 @@ class _Loop:
         """One round: the plan by geometry, and by the dear tiers where they were asked for."""
         self.request.progress(f"round {number}: simulating", number / (self.rounds + 1))
         start = time.perf_counter()
-        verdict = self.simulator.judge(plan.model, in_time=lambda: number == 0 or self.in_time())
+        verdict = self.simulator.judge(plan.model)
         motion_errors = _severities(verdict)[0]
         if self.tier != GEOMETRY:
             verdict = dear_verdict(plan, verdict, tier=self.tier, settings=self.request.settings)

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.refinement.world import World
-from kinematify.validation.finding import Severity
 from kinematify.validation.geometry import judge_motion
 from kinematify.validation.geometry.judge_motion import MotionCase
 from kinematify.validation.geometry.judge_rest import hovering, neighbours, strangers
@@ -48,17 +47,6 @@ class Verdict:
     """With the free travel of each joint that moves."""
     placements: Mapping[str, float] = field(default_factory=dict)
     """How many places of the robot were tried for each joint, if there was a task."""
-    complete: bool = True
-    """False where time ran out before all joints were moved."""
-
-    def counted(self, severity: Severity) -> int:
-        """Number of findings of a severity."""
-        return sum(finding.severity is severity for finding in self.findings)
-
-    @property
-    def passes(self) -> bool:
-        """No error."""
-        return self.complete and not self.counted(Severity.ERROR)
 
 
 class Simulator:
@@ -74,21 +62,14 @@ class Simulator:
         self._world = World(model, settings)
         self._sweeps: dict[tuple[object, ...], JointSweep] = {}
 
-    def judge(self, model: KinematicModel, *, in_time: Callable[[], bool] = lambda: True) -> Verdict:
-        """Judge a whole plan.
-
-        Args:
-            model: The plan.
-            in_time: Asked before each joint; what is left out makes the verdict incomplete.
-        """
+    def judge(self, model: KinematicModel) -> Verdict:
+        """Judge a whole plan."""
         look = _Look(self._world.scene(model))
         found = list(_findings("KV301", strangers(look.scene, look.allowance, None)))
         found += _findings("KV302", neighbours(look.scene, look.overlap, look.allowance, None))
         found += _findings("KV303", hovering(look.scene, look.allowance))
         summaries: list[JointSummary] = []
         for leader, travel in enumerate(look.scene.travels):
-            if not in_time():
-                return Verdict(findings=tuple(found), joints=tuple(summaries), complete=False)
             told, summary = self._joint(look, model, leader, travel.joint)
             found += told
             summaries.append(summary)

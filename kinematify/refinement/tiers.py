@@ -45,7 +45,6 @@ def dear_verdict(plan: Plan, cheap: Verdict, *, tier: str, settings: ValidationS
         findings=(*cheap.findings, *told),
         joints=cheap.joints,
         placements=_placements(report),
-        complete=cheap.complete,
     )
 
 
