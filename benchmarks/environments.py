@@ -212,8 +212,8 @@ def _below(part: str, found: dict[str, Any]) -> str:
     if part == "random":
         total = sum(row["steps"] for row in found["rows"])
         return (
-            f"{total:,} steps in all. `depth_mm`: deepest contact beyond what touches at rest; `beyond_range`: farthest "
-            "beyond an end of the range, share of the way."
+            f"{total:,} steps in all. `depth_mm`: deepest contact beyond what touches at rest; `beyond_range`: "
+            "farthest beyond an end of the range, share of the way."
         )
     return (
         f"{found['cores']} cores, load {found['load']:.1f}, so that rates are low and ratios are what counts. `loop` "

@@ -90,8 +90,8 @@ def write(rows: list[dict[str, Any]], output: Path) -> None:
     lines = [
         "# Learning to open a part",
         "",
-        f"OpenPart-v0 with force control and `randomize=True`; PPO of Stable-Baselines3 {facts['stable-baselines3']}, 8",
-        f"environments, {facts['threads']} thread. Seconds are those of learning, on {facts['cores']} cores with other load.",
+        "OpenPart-v0 with force control and `randomize=True`; PPO of Stable-Baselines3, 8 environments, one thread.",
+        f"Seconds are those of learning, on {facts['cores']} cores with other load.",
         "The evaluation is over 100 episodes whose seeds no training has seen.",
         "",
         "| " + " | ".join(heads) + " |",
@@ -110,8 +110,8 @@ def _cells(row: dict[str, Any]) -> list[str]:
     last, final, expert, chance = row["curve"][-1], row["final"], row["expert"], row["random"]
     return [
         row["object"], row["joint"], str(row["seed"]), str(last["steps"]), f"{last['seconds']:.0f}",
-        f"{final['success']:.0%}", f"{final['open']:.2f}", f"{final['thrown']:.0%}", f"{final['return']:.1f}", f"{expert['success']:.0%}",
-        f"{expert['return']:.1f}", f"{chance['return']:.1f}",
+        f"{final['success']:.0%}", f"{final['open']:.2f}", f"{final['thrown']:.0%}", f"{final['return']:.1f}",
+        f"{expert['success']:.0%}", f"{expert['return']:.1f}", f"{chance['return']:.1f}",
     ]  # fmt: skip
 
 

@@ -263,19 +263,22 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         scene, T = self.thing.scene, self.T_world_root
         rows = np.stack([scene.mechanism.rest] * 2)
         rows[1, self.target.leader] = open_end(self.thing.travels[self.target.leader])
-        corners = np.concatenate(
-            [
-                transformed(shape, T @ pose)
-                for row in scene.poses(rows)
-                for body, pose in zip(scene.bodies, row, strict=True)
-                for shape in body.shapes
-            ]
-        )
-        low, high = corners.min(axis=0), corners.max(axis=0)
+        corners = [
+            transformed(shape, T @ pose)
+            for row in scene.poses(rows)
+            for body, pose in zip(scene.bodies, row, strict=True)
+            for shape in body.shapes
+        ]
+        points = np.concatenate([*corners, *self._beside()])
+        low, high = points.min(axis=0), points.max(axis=0)
         center = 0.5 * (low + high)
-        outward = self.middle - center
-        azimuth = float(np.arctan2(outward[1], outward[0])) + self.settings.picture.azimuth
+        # The object stands in the middle of the world: where its part is held is the side to which it opens.
+        azimuth = float(np.arctan2(self.middle[1], self.middle[0])) + self.settings.picture.azimuth
         return View(center=center, radius=0.5 * float(np.linalg.norm(high - low)), azimuth=azimuth)
+
+    def _beside(self) -> Sequence[FloatArray]:
+        """Points beside the object that are to be seen [m], shape (n, 3) each."""
+        return ()
 
     def _close_pictures(self) -> None:
         for shown in (self._painter, self._window):

@@ -16,6 +16,7 @@ from kinematify.envs.picture import Piece
 from kinematify.envs.robot_plan import env_robot, robot_plan
 from kinematify.envs.thing import AUTO
 from kinematify.envs.worlds import shared_target
+from kinematify.geometry.hull import convex_hull
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -35,7 +36,10 @@ if TYPE_CHECKING:
 TOOL, JOINT = "tool", "joint"
 ARM_BOUND = 7.0
 """Ends of observed joint values [rad or m]."""
-_ARM_COLOR, _HAND_COLOR = (0.80, 0.83, 0.88), (0.96, 0.58, 0.20)
+_ARM_COLOR, _HAND_COLOR, _COLUMN_COLOR = (0.80, 0.83, 0.88), (0.96, 0.58, 0.20), (0.55, 0.58, 0.63)
+_COLUMN_WIDTH = 0.14  # of what the robot stands on [m]
+_STANDING = 0.01  # lower robots stand on the floor [m]
+_ELBOW = 0.5  # of the reach: so high above the shoulder an elbow gets
 
 
 class DrawerPullEnv(OpeningEnv):
@@ -290,7 +294,22 @@ class DrawerPullEnv(OpeningEnv):
             for mesh in link.meshes
             if len(mesh.faces)
         ]  # fmt: skip
-        return [*super()._pieces(), *robot]
+        return [*super()._pieces(), *robot, *self._column()]
+
+    def _beside(self) -> Sequence[FloatArray]:
+        base = self.plan.T_world_base[:3, 3]
+        shoulder = base + np.array([0.0, 0.0, float(self.robot.arm.shoulder[2]) + _ELBOW * self.robot.arm.reach])
+        return (np.stack([base * [1.0, 1.0, 0.0], shoulder]),)
+
+    def _column(self) -> Sequence[Piece]:
+        """What the robot stands on, if it does not stand on the floor."""
+        height = float(self.plan.T_world_base[2, 3])
+        if height < _STANDING:
+            return ()
+        box = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-1.0, 0.0)])
+        vertices, faces = convex_hull(box * [_COLUMN_WIDTH, _COLUMN_WIDTH, height])
+        root = ROBOT + self.robot.mechanism.description.root
+        return (Piece(link=root, vertices=vertices, faces=faces, color=np.array(_COLUMN_COLOR)),)
 
     @property
     def link_poses(self) -> Mapping[str, FloatArray]:
