@@ -68,7 +68,9 @@ def decide_kind(
         **_play_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, config),
     }
-    cues["panel"] *= 1.0 - max(cues["blocked_turn"], cues["keyed"])  # a plate that cannot turn is no door
+    cues["panel"] *= 1.0 - max(
+        cues["blocked_turn"], cues["keyed"], cues["capped"]
+    )  # a plate that cannot turn is no door
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
@@ -216,9 +218,33 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
+        "capped": large * float(_is_cap(scene)),
         "latch": scene.smallness * float(_bridges_a_seam(scene)),
         "on_moving_part": float(scene.parent_moves) * scene.smallness,
     }
+
+
+def _is_cap(scene: JointScene) -> bool:
+    """A lid on top, without a hinge, whose skirt reaches over the rim of its body on all four sides: a shoe box's.
+
+    Such a lid can only be lifted: about any edge, the skirt opposite would run into the rim.
+    """
+    if not (scene.on_top and scene.flat and scene.panel) or scene.journal is not None:
+        return False
+    frame = scene.frame
+    up = int(np.argmax(np.abs(frame.axes @ UP)))
+    sense = np.sign(frame.axes[up] @ UP)
+    points = frame.local(scene.cache.samples(scene.child).points)
+    height = sense * points[:, up]
+    below = height < (sense * scene.body_box[:, up]).max() - 0.25 * np.ptp(height)
+    if below.mean() > 0.5:
+        return False  # a tray or drawer, which lies in its body
+    shares = []
+    for k in np.delete(np.arange(3), up):
+        margin = 0.05 * np.ptp(points[:, k])
+        shares += [(below & (points[:, k] < points[:, k].min() + margin)).mean()]
+        shares += [(below & (points[:, k] > points[:, k].max() - margin)).mean()]
+    return bool(min(shares) > 0.015)
 
 
 def _bridges_a_seam(scene: JointScene) -> bool:
