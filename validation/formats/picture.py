@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 _FILE = "picture.png"
 _SCENE = "scene.json"
 _FACES = 20_000
-"""Triangles of the model in a page: 250 kB, so that a page of twelve models stays below 5 MB."""
+"""Triangles of the model in a page, about: 250 kB, up to 500 kB for a robot of many small parts."""
 _PANEL = {
     "panel_width": 420,  # read on a phone too, and the report must stay small
     "panel_height": 380,

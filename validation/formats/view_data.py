@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Poses = dict[str, FloatArray]
 
-_FEWEST = 400
+_FEWEST = 1000
 """Triangles that every body keeps: a small knob must not become a wedge beside a large cabinet."""
 _STEPS = 65535
 _SMALLEST = 1e-9
