@@ -12,7 +12,8 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = (
     "errors", "versions", "config", "assembly", "geometry", "sources", "contact", "joints", "topology", "model",
-    "pipeline", "validation", "formats", "refinement", "vision", "envs", "benchmark", "batch", "nightly", "view", "cli", "__main__",
+    "pipeline", "validation", "formats", "refinement", "vision", "envs", "benchmark", "batch", "nightly",
+    "view", "cli", "__main__",
 )  # fmt: skip
 NEVER = {("validation", "topology"), ("validation", "pipeline")}  # validation knows models, never the search
 FROM_THE_TOP = {"__version__"}
