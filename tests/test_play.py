@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from kinematify.assembly.part import Part
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.sources.procedural.blueprint import Blueprint
 from kinematify.sources.procedural.families import FAMILIES
 from kinematify.sources.procedural.family import build
+from kinematify.sources.procedural.solids import box, tray
 from tests.joint_scenes import infer_joints
 from tests.known import KnownJoint, KnownObject
 
@@ -36,6 +39,41 @@ def test_a_cap_behind_a_bead_turns_and_a_stopper_slides() -> None:
 
 def test_splines_make_the_button_of_a_pen_slide() -> None:
     assert estimates("pen", mechanism="click")["button"].kind is JointType.PRISMATIC
+
+
+def test_a_lid_with_a_skirt_all_round_is_lifted_and_a_hinged_one_turns() -> None:
+    loose, hinged = estimates("box", lid="loose")["lid"], estimates("box", lid="hinged", hinge="barrel")["lid"]
+    assert loose.kind is JointType.PRISMATIC
+    assert loose.axis[2] > 0.99
+    assert hinged.kind.turns
+
+
+def test_a_plate_across_the_seam_of_lid_and_body_is_a_catch_and_one_beside_it_a_button() -> None:
+    def kind_of(low: float) -> JointType:
+        solids = {
+            "body": tray((0, 0, 0), (0.4, 0.3, 0.2), 0.01),
+            "lid": box((0, 0, 0.2005), (0.4, 0.3, 0.23)),
+            "plate": box((0.18, -0.005, low), (0.22, -0.0002, low + 0.02)),
+        }
+        parts = tuple(
+            Part(name=name, vertices=mesh.vert_properties[:, :3], faces=mesh.tri_verts)
+            for name, mesh in ((name, solid.to_mesh64()) for name, solid in solids.items())
+        )
+        at = {"kind": JointType.REVOLUTE, "axis": np.array([1.0, 0, 0]), "lower": 0.0, "upper": 1.0}
+        joints = (
+            KnownJoint(parent="body", child="lid", pivot=np.array([0, 0.3, 0.2]), **at),
+            KnownJoint(parent="body", child="plate", pivot=np.array([0, 0, low]), **at),
+        )
+        return infer_joints(KnownObject(name="chest", root="body", parts=parts, joints=joints))["plate"].kind
+
+    assert kind_of(0.19).turns
+    assert kind_of(0.1) is JointType.PRISMATIC
+
+
+def test_knobs_in_a_row_turn_although_buttons_in_a_row_are_pressed() -> None:
+    found = estimates("button_panel", buttons=3, columns=3, knobs=3, shape="square")
+    assert all(found[f"knob_{k}"].kind.turns for k in (1, 2, 3))
+    assert all(found[f"button_{k}"].kind is JointType.PRISMATIC for k in (1, 2, 3))
 
 
 @pytest.mark.parametrize("opened", [0.0, 0.4])

@@ -15,6 +15,7 @@ import numpy as np
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
 from kinematify.joints.play import contact_play
+from kinematify.joints.scene import is_cap
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
@@ -75,11 +76,12 @@ def decide_kind(
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
     cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
+    cues["retained"] *= 1.0 - cues["capped"]
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
         cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
-    if _stuck(scene, turns, slides, config):
+    if not is_cap(scene) and _stuck(scene, turns, slides, config):
         return KindDecision(kind=JointType.FIXED, odds=odds, cues=cues)
     kind = JointType.PRISMATIC if odds > 0 else JointType.REVOLUTE
     return KindDecision(kind=kind, odds=odds, cues=cues)
@@ -218,33 +220,10 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
-        "capped": large * float(_is_cap(scene)),
+        "capped": large * float(is_cap(scene)),
         "latch": scene.smallness * float(_bridges_a_seam(scene)),
         "on_moving_part": float(scene.parent_moves) * scene.smallness,
     }
-
-
-def _is_cap(scene: JointScene) -> bool:
-    """A lid on top, without a hinge, whose skirt reaches over the rim of its body on all four sides: a shoe box's.
-
-    Such a lid can only be lifted: about any edge, the skirt opposite would run into the rim.
-    """
-    if not (scene.on_top and scene.flat and scene.panel) or scene.journal is not None:
-        return False
-    frame = scene.frame
-    up = int(np.argmax(np.abs(frame.axes @ UP)))
-    sense = np.sign(frame.axes[up] @ UP)
-    points = frame.local(scene.cache.samples(scene.child).points)
-    height = sense * points[:, up]
-    below = height < (sense * scene.body_box[:, up]).max() - 0.25 * np.ptp(height)
-    if below.mean() > 0.5:
-        return False  # a tray or drawer, which lies in its body
-    shares = []
-    for k in np.delete(np.arange(3), up):
-        margin = 0.05 * np.ptp(points[:, k])
-        shares += [(below & (points[:, k] < points[:, k].min() + margin)).mean()]
-        shares += [(below & (points[:, k] > points[:, k].max() - margin)).mean()]
-    return bool(min(shares) > 0.015)
 
 
 def _bridges_a_seam(scene: JointScene) -> bool:

@@ -16,6 +16,7 @@ from kinematify.assembly.robot import rotation_about
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
 from kinematify.joints.play import slide_play
+from kinematify.joints.scene import is_cap
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
@@ -276,6 +277,7 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
     else:
         lower = -min(backward, _standing_out(scene, sign * axis))
         lower = lower if -lower > config.limits.ajar * length else 0.0
+        forward = max(forward, length) if is_cap(scene) else forward  # the shrunk skirt of a cap sweeps into the rim
         upper = min(forward, config.limits.drawer * length + lower)
     return Range(
         kind=JointType.PRISMATIC,
@@ -315,6 +317,8 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
     or cap has none, for it is in as far as it goes.
     """
     outwards = _outwards(scene, axis)
+    if is_cap(scene):
+        return outwards
     if scene.gated and scene.mechanism <= 0.5:
         play = slide_play(scene, outwards * axis, config)
         if play is not None and config.limits.room * scene.frame.diagonal < play[1] < np.inf:

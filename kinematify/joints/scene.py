@@ -224,6 +224,29 @@ def _with_journal(bearing: EdgeBearing | None, edge: tuple[int, int], journal: J
     )
 
 
+def is_cap(scene: JointScene) -> bool:
+    """A lid on top, without a hinge, whose skirt reaches over the rim of its body on all four sides: a shoe box's.
+
+    Such a lid can only be lifted: about any edge, the skirt opposite would run into the rim.
+    """
+    if not (scene.on_top and scene.flat and scene.panel) or scene.journal is not None:
+        return False
+    frame = scene.frame
+    up = int(np.argmax(np.abs(frame.axes @ UP)))
+    sense = np.sign(frame.axes[up] @ UP)
+    points = frame.local(scene.cache.samples(scene.child).points)
+    height = sense * points[:, up]
+    below = height < (sense * scene.body_box[:, up]).max() - 0.25 * np.ptp(height)
+    if below.mean() > 0.5:
+        return False  # a tray or drawer, which lies in its body
+    shares = []
+    for k in np.delete(np.arange(3), up):
+        margin = 0.05 * np.ptp(points[:, k])
+        shares += [(below & (points[:, k] < points[:, k].min() + margin)).mean()]
+        shares += [(below & (points[:, k] > points[:, k].max() - margin)).mean()]
+    return bool(min(shares) > 0.015)
+
+
 def passes_gate(bearing: EdgeBearing, contact: ContactView, config: JointsConfig) -> bool:
     """True where the best line is a bearing beyond doubt.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematify.joints.frames import UP
 from kinematify.joints.panels import GIVEN
+from kinematify.joints.scene import is_cap
 from kinematify.joints.sweep import moving_points, sweep_slides
 
 if TYPE_CHECKING:
@@ -192,6 +193,7 @@ def _shape_cues(
         "horizontal": large * (1.0 - np.abs(axes @ UP)),
         "along_bearing": bearing,
         "along_rail": rail,
+        "cap": float(is_cap(scene)) * np.abs(axes @ UP),
         "thin_small": scene.smallness * thin,
         "normal_small": scene.smallness * pressed,
         "twin": _along_any(axes, twins, config),
