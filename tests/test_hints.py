@@ -40,6 +40,7 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
     ("texts", "said"),
     [
         (["door_3=prismatic"], "door_1"),
+        (["nosuch=prismatic"], "The parts are body, door_1"),
         (["door_1=sliding"], "prismatic"),
         (["door_1:axis=w"], "x, y, z"),
         (["door_1"], "PART=TYPE"),

@@ -71,7 +71,7 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
     if not name or not value:
         raise InputError(f"The hint {text!r} cannot be read. {_FORMS}")
     if name not in parts:
-        near = difflib.get_close_matches(name, parts, n=3, cutoff=0.4)
+        near = difflib.get_close_matches(name, parts, n=3, cutoff=0.6)
         meant = f"Did you mean {' or '.join(near)}?" if near else f"The parts are {', '.join(parts)}."
         raise InputError(f"The hint {text!r} names no part of the input. {meant}")
     choices = list(AXES if left.endswith(":axis") else TYPES)
