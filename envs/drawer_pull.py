@@ -62,6 +62,8 @@ class DrawerPullEnv(OpeningEnv):
     | | 0 to 6 | motion of each joint, in shares of 0.08 rad per step |
     | 6 | 7 | wanted opening of the gripper, -1 closed, 1 open, in 0.4 s at the fastest |
 
+    What freedom tool control leaves, 0.1 of it per step takes the arm towards its posture at the planned grasp.
+
     ## Observation space
 
     `Box((86,), float32)` for an arm of 7 joints and models of up to 16 joints:
@@ -225,8 +227,8 @@ class DrawerPullEnv(OpeningEnv):
         values, arm = self.settings.robot, self.robot.arm
         turn = (self.plan.T_world_base[:3, :3] @ arm.pose(self.wanted)[:3, :3]).T
         twist = np.concatenate([turn @ (values.tool_step * action[:3]), turn @ (values.turn_step * action[3:])])
-        jacobian = arm.jacobian(self.wanted)
-        return damped_step(jacobian, twist, values.damping)
+        jacobian, wish = arm.jacobian(self.wanted), values.posture * (self.plan.pull[0] - self.wanted)
+        return np.asarray(wish + damped_step(jacobian, twist - jacobian @ wish, values.damping))
 
     def _helped(self) -> float:
         """Reward for being near and for gripping."""

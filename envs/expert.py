@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.robot import forward_kinematics
-from kinematify.envs.drawer_pull import JOINT
+from kinematify.envs.drawer_pull import JOINT, damped_step
 from kinematify.envs.mujoco_hand import POSITION
 
 if TYPE_CHECKING:
@@ -21,6 +21,8 @@ _SPEED = 0.5  # of opening [ways/s]
 _REACH_SPEED = 0.6  # share of the fastest that actions allow
 _PULL_SPEED = 0.35  # [ways/s]
 _PULL_ROWS = 40
+_TURN_WEIGHT = 0.05  # of a radian over a metre, where an arm cannot reach a pose
+_NEAREST_DAMPING, _NEAREST_STEPS = 0.02, 40
 _SURE = 0.01  # the part is taken so far beyond what counts as open, where fingers have slipped
 _SLIP, _MOST_SLIP = 0.005, 0.2  # shares of the way that are made good per step, and in all
 _GRIP_SECONDS = 0.6
@@ -117,9 +119,11 @@ class ArmExpert:
         values = env.target.closed + shares * env.target.range
         sign = np.sign(env.target.range)
         guesses = np.stack([np.interp(sign * values, sign * plan.opened, column) for column in plan.pull.T], axis=1)
-        rows = np.array([self._posture(share, guess) for share, guess in zip(shares.tolist(), guesses, strict=True)])
+        rows = [self._posture(shares[0], guesses[0])]
+        for share, motion in zip(shares[1:].tolist(), np.diff(guesses, axis=0), strict=True):
+            rows.append(self._posture(share, rows[-1] + motion))  # from the plan alone elbows would jump to and fro
         least = (end - start) / _PULL_ROWS / (_PULL_SPEED * env.settings.time.control_step)
-        return _paced(rows, _REACH_SPEED * env.settings.robot.joint_step, least)
+        return _paced(np.array(rows), _REACH_SPEED * env.settings.robot.joint_step, least)
 
     def _posture(self, share: float, guess: FloatArray) -> FloatArray:
         """Arm joints where a share of the way is open, near a guess."""
@@ -128,10 +132,20 @@ class ArmExpert:
         return self._solved(root @ self._link_at(env.target.value(share)) @ env.plan.T_link_tool, guess)
 
     def _solved(self, target: FloatArray, guess: FloatArray) -> FloatArray:
-        """Arm joints that bring the tool to a pose of the world, near a guess; the guess where there are none."""
+        """Arm joints that bring the tool to a pose of the world, near a guess, or as near to the pose as they can."""
         arm = self._env.robot.arm
-        found = arm.solve(np.linalg.inv(self._env.plan.T_world_base) @ target, guess, center=False)
-        return guess if found is None else found
+        goal = np.linalg.inv(self._env.plan.T_world_base) @ target
+        found = arm.solve(goal, guess, center=False)
+        return self._nearest(goal, guess) if found is None else found
+
+    def _nearest(self, goal: FloatArray, guess: FloatArray) -> FloatArray:
+        """Arm joints at which the tool is nearly at a place, turned as it can be: a bar may turn between the pads."""
+        arm, q = self._env.robot.arm, guess
+        weight = np.array([1.0, 1.0, 1.0, _TURN_WEIGHT, _TURN_WEIGHT, _TURN_WEIGHT])
+        for _ in range(_NEAREST_STEPS):
+            step = damped_step(weight[:, None] * arm.jacobian(q), weight * arm.error(q, goal), _NEAREST_DAMPING)
+            q = np.clip(q + step, arm.lower, arm.upper)
+        return np.asarray(q)
 
     def _link_at(self, value: float) -> FloatArray:
         """Link that is opened, frame of the object's root, shape (4, 4)."""

@@ -60,16 +60,11 @@ class Goal:
 
     def fraction(self, reading: Reading) -> Any:
         """Share of the way that is open: a float for one environment, else shape (n,)."""
-        return self._numbers((reading.values[..., self.target.leader] - self.target.closed) / self.target.range)
+        return (_component(reading.values, self.target.leader) - self.target.closed) / self.target.range
 
     def speed(self, reading: Reading) -> Any:
         """[ways/s], positive opens: a float for one environment, else shape (n,)."""
-        return self._numbers(reading.speeds[..., self.target.leader] / self.target.range)
-
-    @staticmethod
-    def _numbers(values: Any) -> Any:
-        """NumPy needs a microsecond for what Python does with a float in a tenth of one."""
-        return values if np.ndim(values) else float(values)
+        return _component(reading.speeds, self.target.leader) / self.target.range
 
     def direction(self, reading: Reading) -> FloatArray:
         """Unit direction in which the hold moves when the part opens, zero where it does not, shape (..., 3)."""
@@ -116,3 +111,8 @@ class Goal:
         open_share = least(most(fraction / self.open_fraction, 0.0), 1.0)
         slow = least(most(2.0 - fastest / task.fast, 0.0), 1.0)
         return success, open_share * slow * fair, fastest
+
+
+def _component(values: FloatArray, index: int) -> Any:
+    """Values of one joint: NumPy needs a microsecond for what Python does with a float in a tenth of one."""
+    return values.item(index) if values.ndim == 1 else values[:, index]

@@ -143,6 +143,8 @@ class RobotSettings(StageConfig):
     """Farthest that the target of a servo is from its joint [rad]."""
     damping: float
     """Of the inverse kinematics."""
+    posture: float
+    """Share of the way to the posture of the planned grasp that is taken per step, where the tool does not mind."""
     start_noise: float
     """Of each joint at the start, either way [rad]."""
     servo_frequency: float

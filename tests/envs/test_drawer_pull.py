@@ -64,6 +64,7 @@ def test_the_documented_spaces_are_the_spaces(drawer: Path) -> None:
         f"shares of {robot.turn_step:g} rad",
         f"shares of {robot.joint_step:g} rad",
         f"in {robot.finger_seconds:g} s at",
+        f"leaves, {robot.posture:g} of it per step",
         f"share of {robot.grip_force:g} N",
         f"{reward.reach:g} times 1 - tanh({reward.reach_scale:g} d)",
         f"{reward.grip:g} while both fingers press on the part with at least {robot.touch_force:g} N",
