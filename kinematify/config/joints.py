@@ -139,6 +139,8 @@ class JournalConfig(StageConfig):
     """Largest angle between a face's normal and the radius [deg]."""
     radius_tolerance: float
     """Largest deviation of a face from the radius, as a fraction of it."""
+    leaning: float
+    """Mean square of the cosine between the normals and the line beyond which the surface is a ball's."""
     sectors: int
     """Into which a full turn is divided."""
     coverage: float

@@ -156,8 +156,11 @@ def _fitting(facing: Facing, axis: FloatArray, pivot: FloatArray, radius: float,
     return np.asarray(along & (np.abs(length - radius) < config.radius_tolerance * radius))
 
 
-def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal:
-    """Least squares: the direction least along the fitting normals, then the point where the normals meet."""
+def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal | None:
+    """Least squares: the direction least along the fitting normals, then the point where the normals meet.
+
+    None for a belt of a ball, whose normals lean along every line: it turns about any of them.
+    """
     axis, pivot = journal.axis, journal.pivot
     for _ in range(3):
         fits = _fitting(facing, axis, pivot, journal.radius, config)
@@ -165,7 +168,10 @@ def _refined(facing: Facing, journal: Journal, config: JournalConfig) -> Journal
         if len(points) < _LEAST:
             break
         weights = weights / weights.sum()
-        axis = np.linalg.eigh((normals * weights[:, None]).T @ normals)[1][:, 0]
+        leaning, directions = np.linalg.eigh((normals * weights[:, None]).T @ normals)
+        if leaning[0] > config.leaning:
+            return None
+        axis = directions[:, 0]
         tangents = np.cross(axis, normals)
         tangents /= np.maximum(np.linalg.norm(tangents, axis=1), 1e-12)[:, None]
         system = (tangents * weights[:, None]).T @ tangents
