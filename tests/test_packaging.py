@@ -21,9 +21,9 @@ from kinematify.cli.doctor import MODULES
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "kinematify", "validation", "envs", "configs")
 INSTALLED = """
-from importlib import import_module, resources
+from importlib import resources, util
 for name in ("", ".validation", ".envs", ".configs", ".assembly", ".model"):
-    print(import_module("kinematify" + name).__name__)
+    print(util.find_spec("kinematify" + name).name)  # found, not imported: envs registers itself with gymnasium
 data = resources.files("kinematify.configs")
 print(*sorted(entry.name for entry in data.iterdir() if entry.name.endswith(".yaml")))
 print(resources.files("kinematify").joinpath("py.typed").is_file())
