@@ -138,7 +138,7 @@ def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxe
     assert kinds(first) == {"new series": 2}
     assert set(kinds(second)) <= {"still failing"}
     assert not second.night.failed
-    slow = night(boxes, tmp_path, "planted:slow_on_three_parts")
+    slow = night(boxes, tmp_path, "planted_inferences:slow_on_three_parts")
     told = [(change.kind.value, change.object) for change in slow.night.changes if change.kind != "still failing"]
     assert told == [("slower", "drawered")]
     assert not slow.night.failed
@@ -149,7 +149,7 @@ def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxe
 
 def test_one_bad_object_does_not_end_the_night(boxes: Path, tmp_path: Path) -> None:
     night(boxes, tmp_path)
-    bad = night(boxes, tmp_path, "planted:crashing_on_three_parts")
+    bad = night(boxes, tmp_path, "planted_inferences:crashing_on_three_parts")
     assert len(bad.night.runs) == 2
     gates = [change for change in bad.night.changes if change.gate]
     assert {change.object for change in gates} == {"drawered"}
@@ -161,7 +161,7 @@ def test_one_bad_object_does_not_end_the_night(boxes: Path, tmp_path: Path) -> N
 
 def test_a_changed_configuration_starts_a_new_series(boxes: Path, tmp_path: Path) -> None:
     night(boxes, tmp_path)
-    other = night(boxes, tmp_path, "planted:crashing_on_three_parts", version=2)
+    other = night(boxes, tmp_path, "planted_inferences:crashing_on_three_parts", version=2)
     assert kinds(other) == {"new series": 2}
     assert not other.night.failed
 
@@ -170,14 +170,14 @@ def test_baseline_is_compared_with_until_a_night_is_accepted(boxes: Path, tmp_pa
     good = night(boxes, tmp_path)
     assert any("--accept" in notice for notice in good.notices)
     accept(tmp_path, good.night)
-    broken = night(boxes, tmp_path, "planted:crashing_on_three_parts")
-    still = night(boxes, tmp_path, "planted:crashing_on_three_parts")
+    broken = night(boxes, tmp_path, "planted_inferences:crashing_on_three_parts")
+    still = night(boxes, tmp_path, "planted_inferences:crashing_on_three_parts")
     assert broken.night.failed
     assert not any(change.gate for change in still.night.changes)
     assert still.night.failed, "a regression must fail every night until it is mended or accepted"
     assert {change.object for change in still.night.baseline_changes if change.gate} == {"drawered"}
     accept(tmp_path, still.night)
-    assert not night(boxes, tmp_path, "planted:crashing_on_three_parts").night.failed
+    assert not night(boxes, tmp_path, "planted_inferences:crashing_on_three_parts").night.failed
 
 
 def test_planted_axis_and_limit_faults_are_new_problems(tmp_path: Path) -> None:
@@ -185,14 +185,14 @@ def test_planted_axis_and_limit_faults_are_new_problems(tmp_path: Path) -> None:
     data, out = tmp_path / "data", tmp_path / "nights"
     write_smoke_objects(data, ["a cabinet with one drawer"])
     asked = {"sources": ["inferred"], "checks": ["KV3*"]}
-    sound = night(data, out, "planted:sound", **asked)
+    sound = night(data, out, "planted_inferences:sound", **asked)
     assert next(run.status for run in sound.night.runs) == "ok"
     assert not any(problem.severity == "error" for run in sound.night.runs for problem in run.problems)
     accept(out, sound.night)
-    axis = night(data, out, "planted:without_axis_evidence")
+    axis = night(data, out, "planted_inferences:without_axis_evidence")
     found = {(change.kind.value, change.subject.split()[0]) for change in axis.night.changes if change.gate}
     assert {("new", "axis"), ("worse", "angle_deg")} <= found
-    limits = night(data, out, "planted:with_limits_in_degrees", **asked)
+    limits = night(data, out, "planted_inferences:with_limits_in_degrees", **asked)
     against_sound = {
         (change.kind.value, change.what, change.subject.split()[0])
         for change in limits.night.baseline_changes

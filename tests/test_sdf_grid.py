@@ -11,7 +11,7 @@ import torch
 import trimesh
 
 from kinematify.assembly.part import Part
-from kinematify.config import SdfConfig
+from kinematify.config import load_config
 from kinematify.geometry.sdf_grid import (
     SignedDistanceCache,
     SignedDistanceGrid,
@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray
     from kinematify.geometry.sdf import SignedDistanceField
 
-CONFIG = SdfConfig(resolution=48, margin=0.1, band_cells=2.0, cache_bytes=10_000_000)
+CONFIG = load_config().sdf.model_copy(
+    update={"resolution": 48, "margin": 0.1, "band_cells": 2.0, "cache_bytes": 10_000_000}
+)
 
 
 def part_of(mesh: trimesh.Trimesh) -> Part:

@@ -1,4 +1,4 @@
-"""Inferences with a fault in them, for the nightly: named by ``planted:...`` as the function under test."""
+"""Inferences with a fault in them, for the nightly: named by ``planted_inferences:...`` as the function under test."""
 
 from __future__ import annotations
 
