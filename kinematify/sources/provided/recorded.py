@@ -23,20 +23,24 @@ _NAMED = 16  # digits of the digest that name a recording
 
 
 @dataclass(frozen=True)
-class RecordingSource:
-    """Asks another source, and keeps what it made."""
+class _Taped:
+    """A source beside a folder of recordings; requests are those of the source."""
 
     source: PartSource
     folder: Path
 
     @property
     def name(self) -> str:
-        """That of the other source."""
+        """That of the source."""
         return self.source.name
 
     def options(self) -> dict[str, object]:
-        """Those of the other source."""
+        """Those of the source."""
         return self.source.options()
+
+
+class RecordingSource(_Taped):
+    """Asks the source, and keeps what it made."""
 
     def generate(self, prompt: Prompt, job: Job, progress: Progress) -> Generated:
         """See `PartSource`."""
@@ -56,21 +60,8 @@ class RecordingSource:
         return made
 
 
-@dataclass(frozen=True)
-class ReplayedSource:
+class ReplayedSource(_Taped):
     """Gives what was recorded for the same request, and nothing else."""
-
-    source: PartSource
-    folder: Path
-
-    @property
-    def name(self) -> str:
-        """That of the source whose answers were recorded."""
-        return self.source.name
-
-    def options(self) -> dict[str, object]:
-        """Those of the source whose answers were recorded."""
-        return self.source.options()
 
     def generate(self, prompt: Prompt, job: Job, progress: Progress) -> Generated:
         """See `PartSource`.
