@@ -239,6 +239,7 @@ if __name__ == "__main__":
     parser.add_argument("--seconds", type=float, default=12.0)
     parser.add_argument("-o", "--output", type=Path, default=Path("results"))
     arguments = parser.parse_args()
+    arguments.output.mkdir(parents=True, exist_ok=True)
     found = {
         "expert": lambda: expert(arguments.seeds, arguments.models),
         "speed": lambda: speed(arguments.seconds),
