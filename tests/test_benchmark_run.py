@@ -18,6 +18,7 @@ from kinematify.benchmark.datasets import bench_folder, find_objects
 from kinematify.benchmark.paper import ABLATION
 from kinematify.benchmark.report import load_report, write_report
 from kinematify.benchmark.run import (
+    DEFAULT_ABLATION,
     PAPER_VARIANTS,
     BenchmarkReport,
     BenchmarkRequest,
@@ -237,6 +238,10 @@ def test_ablations_differ_from_the_paper_in_one_thing() -> None:
     assert without_anchor.cavl == full.cavl.without_anchor() != full.cavl
     assert without_anchor.topology == full.topology
     assert set(ABLATION) == {variant.label for variant in PAPER_VARIANTS}
+    plain, unsearched, with_cavl = (variant.load() for variant in DEFAULT_ABLATION)
+    assert unsearched.topology.mode == "bfs" != plain.topology.mode
+    assert (unsearched.joints, with_cavl.topology) == (plain.joints, plain.topology)
+    assert with_cavl.joints.method == "cavl" != plain.joints.method
 
 
 def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:

@@ -91,6 +91,10 @@ def test_arguments_become_a_request(results: list[BenchmarkRequest], tmp_path: P
     assert request.conditions == ("rest", "yaw37")
     assert request.only == ("panda",)
     assert [variant.label for variant in request.variants] == ["paper", "paper without MCTS", "paper without DW-CAVL"]
+    assert run(["bench", *words, "--ablation", "-o", str(tmp_path)]) == 0
+    assert [variant.label for variant in results[1].variants] == [
+        "default", "default without MCTS", "default with DW-CAVL",
+    ]  # fmt: skip
 
 
 def test_report_is_written_and_summed_up(

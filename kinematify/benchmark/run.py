@@ -64,6 +64,12 @@ PAPER_VARIANTS = (
     ),
 )
 """The paper as written and its two ablations: breadth-first search for the tree, and no anchor term."""
+DEFAULT_ABLATION = (
+    *DEFAULT_VARIANTS,
+    Variant(label="default without MCTS", config="default", changes={"topology.mode": "bfs"}),
+    Variant(label="default with DW-CAVL", config="default", changes={"joints.method": "cavl"}),
+)
+"""The same questions asked of the default, which has no DW-CAVL: with it in place of all evidence on joints."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -48,6 +48,9 @@ _FOUND_FAILURES = 1
     help="May be given more than once; paper brings its two ablations with it.",
 )
 @click.option(
+    "--ablation", is_flag=True, help="Measure default without MCTS, and with DW-CAVL in place of its own joints, too."
+)
+@click.option(
     "--conditions",
     metavar="LIST",
     default="rest,random-0,random-1,random-2,yaw37",
@@ -92,6 +95,7 @@ def command(
     folder: Path | None,
     data: str | None,
     configs: tuple[str, ...],
+    ablation: bool,
     conditions: str,
     patterns: tuple[str, ...],
     out: Path,
@@ -126,7 +130,7 @@ def command(
     earlier = load_report(baseline) if baseline is not None else None
     request = BenchmarkRequest(
         data=chosen,
-        variants=_variants(configs),
+        variants=_variants(configs, ablation=ablation),
         conditions=tuple(word.strip() for word in conditions.split(",")),
         only=_matching_objects(chosen, patterns),
         fresh=fresh,
@@ -166,12 +170,13 @@ def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple
     return chosen
 
 
-def _variants(configs: Sequence[str]) -> tuple[Variant, ...]:
-    """Return one variant per configuration; `paper` stands for its ablations too."""
-    from kinematify.benchmark.run import PAPER_VARIANTS, Variant
+def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
+    """Return one variant per configuration; `paper` stands for its ablations too, `default` if they are asked for."""
+    from kinematify.benchmark.run import DEFAULT_ABLATION, PAPER_VARIANTS, Variant
 
-    own = [(Variant(label=Path(config).stem, config=config),) for config in configs]
-    return tuple(variant for one in own for variant in (PAPER_VARIANTS if one[0].label == "paper" else one))
+    several = {"paper": PAPER_VARIANTS, **({"default": DEFAULT_ABLATION} if ablation else {})}
+    own = [Variant(label=Path(config).stem, config=config) for config in configs]
+    return tuple(variant for one in own for variant in several.get(one.label, (one,)))
 
 
 def _describe(report: BenchmarkReport) -> str:
