@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
+import pybullet
 import pytest
 import trimesh
 from lxml import etree
@@ -16,6 +17,7 @@ from kinematify.assembly.description import read_description
 from kinematify.assembly.robot import forward_kinematics, rotation_about
 from kinematify.cli.app import run
 from kinematify.errors import InputError, OutputError
+from kinematify.validation.read import read_model
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -265,7 +267,7 @@ def test_glb_shows_the_model_upright_in_its_colours(urdf: Path, tmp_path: Path) 
 def test_formats_and_files_that_cannot_be_are_refused(
     urdf: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(InputError, match="mjcf, usd, sdf, glb, srdf"):
+    with pytest.raises(InputError, match="mjcf, usd, sdf, urdf, glb, srdf"):
         export(urdf, "step", tmp_path / "model.step")
     with pytest.raises(OutputError, match="usda"):
         export(urdf, "usd", tmp_path / "model.txt")
@@ -276,3 +278,58 @@ def test_formats_and_files_that_cannot_be_are_refused(
     assert run(["export", str(tmp_path / "none.urdf"), "--to", "mjcf", "-o", str(tmp_path / "m.xml")]) == 2
     assert run(["export", str(urdf), "--to", "mjcf", "-o", str(tmp_path / "m.xml")]) == 0
     assert "convex pieces" in capsys.readouterr().out
+
+
+def test_urdf_keeps_the_model_and_cuts_what_collides_into_convex_pieces(urdf: Path, tmp_path: Path) -> None:
+    done = export(urdf, "urdf", tmp_path / "engines.urdf")
+    before, after = read_model(urdf), read_model(done.path)
+    for q, poses in zip(configurations(), poses_of(urdf)[1], strict=True):
+        moved = forward_kinematics(after.kinematics, q)
+        assert all(np.allclose(moved[name], T, atol=1e-12) for name, T in poses.items())
+    for joint, copy in zip(before.joints, after.joints, strict=True):
+        assert (joint.joint.name, joint.joint.kind) == (copy.joint.name, copy.joint.kind)
+        assert (joint.joint.lower, joint.joint.upper) == (copy.joint.lower, copy.joint.upper)
+        assert joint.damping == copy.damping
+    assert after.joint_by_name["follow"].joint.mimic == before.joint_by_name["follow"].joint.mimic
+    tray = after.link_by_name["slider"].collisions
+    assert len(tray) >= 5  # a floor and four walls
+    for shape in tray:
+        mesh = trimesh.Trimesh(shape.mesh.vertices, shape.mesh.faces)
+        assert mesh.volume == pytest.approx(mesh.convex_hull.volume, rel=1e-6)
+    assert [shape.kind for shape in after.link_by_name["wheel"].collisions] == ["sphere"]
+    seen = after.link_by_name["slider"].visuals[0].mesh
+    assert np.allclose(seen.vertices, before.link_by_name["slider"].visuals[0].mesh.vertices, atol=1e-8)
+
+
+def test_bullet_puts_a_ball_into_the_hollow_of_an_exported_tray(urdf: Path, tmp_path: Path) -> None:
+    """PyBullet takes a mesh for its hull: in the model as it was the ball would lie on top of the filled tray."""
+    done = export(urdf, "urdf", tmp_path / "engines.urdf")
+    depth = {}
+    for path in (urdf, done.path):
+        client = pybullet.connect(pybullet.DIRECT)
+        try:
+            robot = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
+            name = [pybullet.getJointInfo(robot, k, physicsClientId=client)[12].decode() for k in range(5)]
+            poses = forward_kinematics(read_description(path), {})
+            tray = poses["slider"] @ read_model(path).link_by_name["slider"].visuals[0].T_link_shape
+            ball = pybullet.createMultiBody(
+                1.0,
+                pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.05, physicsClientId=client),
+                basePosition=(tray @ [0.0, 0.0, 0.05, 1.0])[:3].tolist(),
+                physicsClientId=client,
+            )
+            close = pybullet.getClosestPoints(
+                ball, robot, 1.0, linkIndexB=name.index("slider"), physicsClientId=client
+            )  # fmt: skip
+            depth[path] = min(point[8] for point in close)
+        finally:
+            pybullet.disconnect(client)
+    assert depth[urdf] < -0.02
+    assert depth[done.path] > 0.0
+
+
+def test_export_never_writes_over_the_model_that_it_reads(urdf: Path) -> None:
+    before = urdf.read_bytes()
+    with pytest.raises(InputError, match="the model itself"):
+        export(urdf, "urdf", urdf)
+    assert urdf.read_bytes() == before

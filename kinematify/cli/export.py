@@ -11,10 +11,11 @@ from kinematify.cli.help import examples
 
 @click.command(
     "export",
-    short_help="URDF -> MJCF, USD, SDF, GLB, SRDF.",
+    short_help="URDF -> MJCF, USD, SDF, GLB, SRDF, URDF.",
     epilog=examples(
         "kinematify export model.urdf --to mjcf -o model.xml",
         "kinematify export model.urdf --to usd -o model.usda",
+        "kinematify export model.urdf --to urdf -o for_engines.urdf",
         "kinematify export dog/model.urdf --to sdf -o dog.sdf --free",
         "kinematify export fetch/model.urdf --to srdf -o fetch.srdf --tool gripper_link",
         "kinematify export robot.urdf --to srdf -o robot.srdf --tool hand --gripper left_finger,right_finger",
@@ -25,7 +26,7 @@ from kinematify.cli.help import examples
     "--to",
     "form",
     required=True,
-    type=click.Choice(["mjcf", "usd", "sdf", "glb", "srdf"]),
+    type=click.Choice(["mjcf", "usd", "sdf", "urdf", "glb", "srdf"]),
     help="Format to write.",
 )
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), metavar="FILE", help="File to write.")
@@ -58,7 +59,10 @@ def command(
 
     mjcf, usd, sdf: links, joints, limits, masses and colours for MuJoCo, Isaac Sim and Gazebo. Concave collision
     geometry becomes convex pieces, as `kinematify validate` simulates it; neighbours do not collide. mjcf and sdf have
-    their meshes in a folder beside the file.
+    their meshes in a folder beside the file, as urdf has.
+
+    urdf: the same model, whose collision geometry became convex pieces: engines and most planners take a mesh for its
+    convex hull, which fills a cabinet.
 
     glb: what is seen, in a tree of nodes that stand where the joints are, for viewers and game engines.
 
@@ -70,7 +74,7 @@ def command(
 
     if form != "srdf" and (tool or gripper):
         raise click.UsageError("--tool and --gripper belong to --to srdf. Leave them out.")
-    if free and form in ("srdf", "glb"):
+    if free and form in ("srdf", "glb", "urdf"):
         raise click.UsageError("--free belongs to --to mjcf, usd or sdf. Leave it out.")
     joints = tuple(word.strip() for word in (gripper or "").split(",") if word.strip())
     settings = load_settings() if seed is None else load_settings(seed=seed)

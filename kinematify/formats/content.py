@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.validation.declared import DeclaredJoint, DeclaredLink, DeclaredModel, DeclaredShape
     from kinematify.validation.prepare.masses import PreparedInertial
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.validation.settings import PrepareSettings, ValidationSettings
 
 GREY = (0.7, 0.7, 0.7, 1.0)
 MESH = "mesh"
@@ -77,6 +77,8 @@ class Content:
     model: DeclaredModel
     apart: tuple[tuple[str, str], ...]
     """Links that are not to collide: neighbours in the tree, and those in contact at rest."""
+    settings: PrepareSettings
+    """What joints without effort and velocity get."""
     notes: tuple[str, ...]
     """What was made up or changed, one sentence each."""
 
@@ -132,6 +134,7 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
         joints=model.joints,
         model=model,
         apart=_apart(model, settings),
+        settings=settings.prepare,
         notes=tuple(_notes(model, inertials, cut)),
     )
 

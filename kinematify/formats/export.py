@@ -20,6 +20,7 @@ _WRITERS = {
     "mjcf": ("kinematify.formats.mjcf", "write_mjcf"),
     "usd": ("kinematify.formats.usd", "write_usd"),
     "sdf": ("kinematify.formats.sdf_format", "write_sdf"),
+    "urdf": ("kinematify.formats.urdf_format", "write_urdf"),
     "glb": ("kinematify.formats.glb", "write_glb"),
     "srdf": ("kinematify.validation.task.srdf", "write_srdf"),
 }
@@ -71,6 +72,8 @@ def export(
     try:
         if to == "srdf":
             return _srdf(urdf, path, chosen, tool=tool, gripper=gripper, package_dirs=package_dirs)
+        if to == "urdf" and path.resolve() == urdf.resolve():
+            raise InputError(f"{path} is the model itself. Give another file with -o.")
         content = read_content(urdf, chosen, package_dirs=package_dirs)
         lost = _writer(to)(content, path, free=free)
         return Exported(path=path, notes=content.notes if to != "glb" else (), lost=lost)
