@@ -97,7 +97,7 @@ class Generation:
             "understood": list(self.request.understood),
             "ignored": list(self.request.ignored),
             "validation": summary_of(self.report),
-            "accuracy": _accuracy(self._score()),
+            "accuracy": _accuracy(self.score()),
         }
 
     def say(self, *, quiet: bool) -> None:
@@ -108,12 +108,12 @@ class Generation:
             _understood(self.request),
             describe(self.inference, self.out),
             verdict_on(self.report, self.out),
-            _describe_score(self._score()),
+            _describe_score(self.score()),
         ]
         say("\n\n".join(block for block in blocks if block))
         warn_if_interrupted(self.report)
 
-    def _score(self) -> ObjectScore:
+    def score(self) -> ObjectScore:
         """Compare with the joints that the object was built with."""
         truth = ground_truth(self.blueprint)
         index = {name: k for k, name in enumerate(truth.part_names)}
