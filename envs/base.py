@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import gymnasium
@@ -35,7 +36,7 @@ _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.7
 _OPTIONS = ("joint", "qpos", "open_fraction")
 
 
-class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], EzPickle):
+class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], EzPickle, ABC):
     """A joint of an object that is to be opened."""
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - gymnasium's own declaration
@@ -133,9 +134,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
                 return
         self._place(self.thing.scene.mechanism.rest)
 
+    @abstractmethod
     def _place(self, leaders: FloatArray) -> float:
         """Set the joints that lead, shape (J,), and stop all; returns the depth of the deepest contact [m]."""
-        raise NotImplementedError
 
     def _retarget(self, joint: str) -> None:
         """Open another joint from now on."""
@@ -144,8 +145,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._make_world()
         self._close_pictures()
 
+    @abstractmethod
     def _make_world(self) -> None:
-        raise NotImplementedError
+        """Load the object, and the robot if there is one, into the engine."""
 
     def _asked_start(self, given: Mapping[str, Any]) -> FloatArray:
         """Values of the leaders that reset options ask for, shape (J,)."""
