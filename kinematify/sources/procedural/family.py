@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.assembly.joint_type import JointType
 from kinematify.errors import InputError
 from kinematify.sources.procedural.materials import COLORS, MATERIALS
 from kinematify.sources.procedural.styles import STYLES
@@ -101,10 +102,28 @@ COMMON = (
     Parameter(name="style", default="clean", choices=STYLES, help="Of the meshes: as drawn, or as from elsewhere."),
     Parameter(name="material", default="", choices=("", *MATERIALS), help="What the base is made of."),
     Parameter(name="color", default="", choices=("", *COLORS), help="Colour of what names no material of its own."),
+    Parameter(
+        name="open_angle",
+        default=0.0,
+        unit="rad",
+        bounds=(0.0, math.pi),
+        help="How far hinges stand open instead of a share; slides stay closed.",
+    ),
+    Parameter(
+        name="open_distance",
+        default=0.0,
+        unit="m",
+        bounds=(0.0, 5.0),
+        help="How far slides stand open instead of a share; hinges stay closed.",
+    ),
 )
 """Parameters of every family."""
 
 _NOT_DRAWN = ("material", "color")
+_ONLY_ASKED_FOR = ("open_angle", "open_distance")  # no number is drawn for them either, which would change the rest
+
+
+_FAR = {JointType.REVOLUTE: "open_angle", JointType.PRISMATIC: "open_distance"}
 
 
 def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None, name: str = "") -> Blueprint:
@@ -122,12 +141,19 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
     """
     rng = np.random.default_rng(seed)
     checked = {key: _checked(family, key, value) for key, value in given.items()}
-    values = {p.name: _drawn(p, rng) if seed is not None else p.default for p in family.all_parameters}
+    values = {
+        p.name: _drawn(p, rng) if seed is not None and p.name not in _ONLY_ASKED_FOR else p.default
+        for p in family.all_parameters
+    }
     values.update(checked)
     workshop = Workshop(
         family.name, material=str(values["material"]) or family.material, color=str(values["color"]) or None
     )
-    family.build(Values(values, rng), workshop)
+    far = {kind: float(values[key]) for kind, key in _FAR.items() if values[key]}
+    # What opens at all is asked of the family by opening it; how far, is set on the joints.
+    family.build(Values({**values, "open": 1.0} if far else values, rng), workshop)
+    if far:
+        workshop.open_by(far, title=family.title)
     return workshop.finish(
         name or family.name,
         {"seed": seed, **values},

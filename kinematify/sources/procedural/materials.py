@@ -21,7 +21,11 @@ class Material:
 MATERIALS = {
     "wood": Material(density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "oak", "pine", "timber", "mdf")),
     "steel": Material(density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless")),
-    "metal": Material(density=2700.0, color=(0.70, 0.72, 0.75), words=("metal", "metallic", "aluminium", "aluminum")),
+    "metal": Material(
+        density=2700.0,
+        color=(0.70, 0.72, 0.75),
+        words=("metal", "metallic", "aluminium", "aluminum", "brass", "copper", "bronze", "chrome"),
+    ),
     "plastic": Material(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon")),
     "glass": Material(density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed")),
     "rubber": Material(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",)),

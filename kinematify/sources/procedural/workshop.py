@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Part
+from kinematify.errors import InputError
 from kinematify.sources.procedural.blueprint import Blueprint, BlueprintJoint
 from kinematify.sources.procedural.materials import MATERIALS, color_of
 from kinematify.sources.procedural.solids import union
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
     from kinematify.sources.procedural.materials import RGB
     from kinematify.sources.procedural.solids import Point
+
+
+_MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
 
 
 class Workshop:
@@ -127,6 +131,25 @@ class Workshop:
         if math.isfinite(joint.upper):
             self._rest[joint.child] = rest * joint.upper
 
+    def open_by(self, far: Mapping[JointType, float], *, title: str) -> None:
+        """Let what stands open stand open by an angle or a distance, and all else closed.
+
+        Args:
+            far: Kind of joint -> how far [rad or m]; joints that go less far go to their end.
+            title: Of the family, for the message.
+
+        Raises:
+            InputError: No joint that opens goes so far.
+        """
+        opening = [joint for joint in self._joints if self._rest.get(joint.child)]
+        for kind, way in far.items():
+            reach = max((joint.upper for joint in opening if joint.kind is kind), default=0.0)
+            if way > reach + 1e-9:
+                asked, most = (_spoken(kind, value) for value in (way, reach))
+                reason = f"its {_MOVING[kind]} open by {most} at most" if reach else f"no {_MOVING[kind]} of it open"
+                raise InputError(f"A {title} is to be open by {asked}, but {reason}. Ask for less, or say 'half open'.")
+        self._rest = {joint.child: min(far.get(joint.kind, 0.0), joint.upper) for joint in opening}
+
     def finish(
         self, name: str, parameters: Mapping[str, Any], *, style: str, clearance: float, rng: np.random.Generator
     ) -> Blueprint:
@@ -159,3 +182,7 @@ class Workshop:
             color=color,
             density=MATERIALS[material].density,
         )
+
+
+def _spoken(kind: JointType, value: float) -> str:
+    return f"{math.degrees(value):.0f} degrees" if kind.turns else f"{value:g} m"

@@ -208,7 +208,6 @@ FAMILY = Family(
             default="left",
             choices=("left", "right"),
             help="Of a single hinged leaf.",
-            choice_words={"left": ("left hinged",), "right": ("right hinged",)},
         ),
     ),
     build=_build,

@@ -107,7 +107,6 @@ FAMILY = Family(
             default="right",
             choices=("right", "left"),
             help="Of doors over the whole width.",
-            choice_words={"right": ("right hinged",), "left": ("left hinged",)},
         ),
         Parameter(name="handle", default="bar", choices=("bar", "edge", "none"), help="What doors are pulled by."),
         Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),

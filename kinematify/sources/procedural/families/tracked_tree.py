@@ -69,7 +69,19 @@ def _along(lean: float) -> FloatArray:
 FAMILY = Family(
     name="tracked_tree",
     title="tree of links on tracks",
-    words=("tracked tree", "linkage tree", "tree linkage", "kinematic tree", "tree robot", "branching robot"),
+    words=(
+        "tracked tree",
+        "tracked robot tree",
+        "robot tree",
+        "tracked robot",
+        "tree on tracks",
+        "tree of links",
+        "linkage tree",
+        "tree linkage",
+        "kinematic tree",
+        "tree robot",
+        "branching robot",
+    ),
     material="metal",
     parameters=(
         Parameter(

@@ -132,7 +132,6 @@ FAMILY = Family(
             default="left",
             choices=("left", "right"),
             help="Of the door.",
-            choice_words={"left": ("left hinged",), "right": ("right hinged",)},
         ),
     ),
     build=_build,

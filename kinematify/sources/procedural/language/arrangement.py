@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kinematify.sources.procedural.language.words import NUMBERS
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 _ABOVE = ("above", "over", "atop")
 _BELOW = ("below", "under", "beneath", "underneath")
 _BESIDE = ("beside", "next", "alongside")
+_MIDDLE = ("middle", "center", "centre", "between")
 _PRONOUNS = ("it", "them", "these", "those", "that", "which", "each", "")
 
 
@@ -30,6 +31,10 @@ class Mention:
     """Index of the last word."""
     grid: tuple[int, int] | None = None
     """Columns and rows, where the sentence gives both."""
+    across: int = 0
+    """-1 left, 1 right, where it is half of what stands on either side."""
+    stated: bool = True
+    """With a number; else it takes up what was named before, as in `the doors on the left`."""
 
 
 @dataclass(kw_only=True)
@@ -39,8 +44,8 @@ class _Block:
     mention: Mention
     across: int = 0
     """-1 left, 1 right."""
-    up: int = 0
-    """1 top, -1 bottom."""
+    up: int | None = None
+    """1 top, 0 middle, -1 bottom; none where nothing is said."""
 
 
 def layout_of(words: Sequence[str], mentions: Sequence[Mention]) -> tuple[str, tuple[int, ...]]:
@@ -56,21 +61,44 @@ def layout_of(words: Sequence[str], mentions: Sequence[Mention]) -> tuple[str, t
     shown = sorted((m for m in mentions if m.kind in CELLS and m.count > 0), key=lambda m: m.first)
     if not shown:
         return "", ()
-    blocks = [_Block(mention=mention) for mention in shown]
+    blocks, meant = _blocks(shown)
     used: list[int] = []
-    for k, block in enumerate(blocks):
-        end = blocks[k + 1].mention.first if k + 1 < len(blocks) else len(words)
-        _place(words, blocks, k, range(block.mention.last + 1, end), used)
-    texts = [_cells(words, block.mention, used) for block in blocks]
-    plain = [f"{b.mention.count}*{b.mention.kind}" for b in blocks]
-    if not used and texts == plain and {b.mention.kind for b in blocks} <= {"door", "drawer"}:
+    for k, mention in enumerate(shown):
+        end = shown[k + 1].first if k + 1 < len(shown) else len(words)
+        following = meant[k + 1] if k + 1 < len(shown) else None
+        _place(words, blocks, (meant[k], following), range(mention.last + 1, end), used)
+    ends = {id(block.mention): _end(words, shown, block.mention) for block in blocks}
+    texts = [_cells(words, block.mention, ends[id(block.mention)], used) for block in blocks]
+    plain = [_stack(b.mention) for b in blocks]
+    placed = used or any(block.across for block in blocks)
+    if not placed and texts == plain and {b.mention.kind for b in blocks} <= {"door", "drawer"}:
         return "", ()
     return _written(blocks, texts), tuple(used)
 
 
-def _place(words: Sequence[str], blocks: list[_Block], k: int, between: range, used: list[int]) -> None:
-    """Read the words between mention k and the next one."""
-    block, following = blocks[k], blocks[k + 1] if k + 1 < len(blocks) else None
+def _blocks(mentions: Sequence[Mention]) -> tuple[list[_Block], list[_Block]]:
+    """What is to be placed, and the one of them that each mention means."""
+    kinds = {mention.kind for mention in mentions if mention.stated}
+    own: dict[str, _Block] = {}
+    blocks, meant = [], []
+    for mention in sorted(mentions, key=lambda m: not m.stated):
+        if (mention.stated or mention.kind not in kinds) and (mention.stated or mention.kind not in own):
+            blocks.append(_Block(mention=mention, across=mention.across))
+            own.setdefault(mention.kind, blocks[-1])
+    of = {id(block.mention): block for block in blocks}
+    meant = [of.get(id(mention), own[mention.kind]) for mention in mentions]
+    return sorted(blocks, key=lambda block: (block.mention.first, block.mention.across)), meant
+
+
+def _place(
+    words: Sequence[str],
+    blocks: list[_Block],
+    pair: tuple[_Block, _Block | None],
+    between: range,
+    used: list[int],
+) -> None:
+    """Read the words between a mention and the next one."""
+    block, following = pair
     for at in between:
         word, after = words[at], words[at + 1] if at + 1 < len(words) else ""
         refers_back = after in _PRONOUNS or following is None or after in (",", ".", ";", "and")
@@ -84,7 +112,9 @@ def _place(words: Sequence[str], blocks: list[_Block], k: int, between: range, u
             block.up = up
             others = [following] if following is not None and not refers_back else [b for b in blocks if b is not block]
             for other in others:
-                other.up = other.up or -up
+                other.up = -up if other.up is None else other.up
+        elif word in _MIDDLE:
+            block.up = 0
         elif word in _BESIDE:
             block.across = -1
             if following is not None:
@@ -94,14 +124,23 @@ def _place(words: Sequence[str], blocks: list[_Block], k: int, between: range, u
         used.append(at)
 
 
-def _cells(words: Sequence[str], mention: Mention, used: list[int]) -> str:
-    """The cells of one mention: stacked, side by side, or in a grid."""
+def _end(words: Sequence[str], mentions: Sequence[Mention], mention: Mention) -> int:
+    """The word at which the next mention begins, or six words behind this one."""
+    later = [other.first for other in mentions if other.first > mention.last]
+    return min([mention.last + 6, len(words), *later])
+
+
+def _stack(mention: Mention) -> str:
+    return mention.kind if mention.count == 1 else f"{mention.count}*{mention.kind}"
+
+
+def _cells(words: Sequence[str], mention: Mention, end: int, used: list[int]) -> str:
+    """The cells of one mention, said before the word `end`: stacked, side by side, or in a grid."""
     kind, count = mention.kind, mention.count
     if mention.grid is not None:
         used.append(mention.first)
         return _grid(kind, *mention.grid)
-    near = range(mention.first, min(mention.last + 6, len(words)))
-    for at in near:
+    for at in range(mention.first, end):
         number = NUMBERS.get(words[at - 1], 0) or (int(words[at - 1]) if words[at - 1].isdigit() else 0)
         if words[at] in ("column", "columns", "row", "rows") and number and count % number == 0:
             used.extend((at - 1, at))
@@ -115,10 +154,10 @@ def _cells(words: Sequence[str], mention: Mention, used: list[int]) -> str:
             return _grid(kind, 1, count)
     joined = [at for at in range(mention.first, mention.last) if words[at] in ("x", "by")]
     if joined:
-        used.extend(at for at, word in enumerate(words[: mention.first]) if word == "grid")
+        used.extend(at for at, word in enumerate(words[: mention.last]) if word == "grid")
         rows = int(words[joined[0] - 1]) if words[joined[0] - 1].isdigit() else NUMBERS.get(words[joined[0] - 1], 1)
         return _grid(kind, max(1, count // max(rows, 1)), rows)
-    return f"{count}*{kind}"
+    return _stack(mention)
 
 
 def _grid(kind: str, columns: int, rows: int) -> str:
@@ -129,11 +168,15 @@ def _grid(kind: str, columns: int, rows: int) -> str:
 def _written(blocks: Sequence[_Block], texts: Sequence[str]) -> str:
     """Left, middle and right columns; in each, what is on top first."""
     columns = []
+    places = {block.across for block in blocks}
+    if len(places) == 1 and places != {0}:  # on the right of a front that is otherwise plain
+        column = _written([replace(block, across=0) for block in blocks], texts)
+        return f"panel | ({column})" if places == {1} else f"({column}) | panel"
     for across in (-1, 0, 1):
         members = [(b, t) for b, t in zip(blocks, texts, strict=True) if b.across == across]
         order = {"shelf": 0, "door": 1, "drawer": 2}
-        stated = any(b.up for b, _ in members)
-        members.sort(key=lambda item: -item[0].up if stated else order.get(item[0].mention.kind, 3))
+        stated = any(b.up is not None for b, _ in members)
+        members.sort(key=lambda item: -(item[0].up or 0) if stated else order.get(item[0].mention.kind, 3))
         if members:
             columns.append(" / ".join(text for _, text in members))
     return " | ".join(f"({column})" for column in columns) if len(columns) > 1 else columns[0]

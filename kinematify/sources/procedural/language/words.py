@@ -29,13 +29,24 @@ UNITS = {
     "inche": 0.0254, "in": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048,
 }  # fmt: skip
 """Metres per unit."""
+NOUNS = {"handle": ("pull", "grip")}
+"""How people call what several families have a parameter for, besides its name."""
+CHOICES = {
+    "hinge_side": {
+        side: (f"{side} hinged", f"hinged on the {side}", f"hinged {side}", f"hinges on the {side}", f"{side} hinge")
+        for side in ("left", "right")
+    }
+}
+"""How people call the choices of such a parameter."""
 _STOP_TEXT = """
     a an the of with and or to in on at by for from it its them their that which whose is are has have having i
     we you would like want need please make me give build create generate some any this these those there be as
     into my our one each per every other others made out very quite nice simple standard typical normal ordinary
-    small big large medium tall short wide narrow compact little new old modern kitchen living room office
-    household home containing featuring including plus also only just total all set kind type style shaped
-    looking real full size robot robotic mechanical electric object model thing stand standing side
+    mini tiny
+    small big huge large medium tall short wide narrow compact little new old modern kitchen living room office
+    household home bathroom containing featuring including plus also only just total all set kind type style shaped
+    dark light pale bright looking real full size robot robotic mechanical electric object model thing stand
+    standing side
 """
 STOP_WORDS = frozenset(_STOP_TEXT.split())
 """Words that carry nothing, or whose sense is left to the seed."""

@@ -1,0 +1,237 @@
+"""Counts of a sentence: how many of what, in which grid, and the same thing counted at several places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.language.arrangement import Mention
+from kinematify.sources.procedural.language.reading import nouns_of
+from kinematify.sources.procedural.language.sizes import JOINING
+from kinematify.sources.procedural.language.words import ARTICLES, singular
+from kinematify.sources.procedural.layout import CELLS
+
+if TYPE_CHECKING:
+    from kinematify.sources.procedural.family import Parameter
+    from kinematify.sources.procedural.language.reading import Reading
+
+_LINES = ("row", "column")
+_NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of them counts something else
+_PLACES = {
+    "left": "left", "right": "right", "top": "top", "bottom": "bottom", "above": "top", "below": "bottom",
+    "over": "top", "under": "bottom", "underneath": "bottom", "beneath": "bottom", "middle": "middle",
+    "center": "middle", "centre": "middle", "between": "middle",
+}  # fmt: skip
+"""Words for a place of its own, by which one count is told from another of the same thing."""
+_SIDES = (("either", "each", "both"), ("side", "sides", "end", "ends"))
+_LEADING = ("on", "at", "to", "in", "the", "further", "more", "other", "another", "below", "above", "under", "over")
+_ADJECTIVES = 2  # at most, between a grid and what stands in it
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Count:
+    """A noun that can be counted, where a sentence has it."""
+
+    number: int | None
+    where: range
+    counting: tuple[int, ...]
+    """Words of the number."""
+
+    @property
+    def first(self) -> int:
+        """The first word."""
+        return min((*self.counting, self.where.start))
+
+
+# ---- grids ---------------------------------------------------------------------------------------------------------
+
+
+def read_grids(reading: Reading) -> None:
+    """`six drawers in 3 rows and 2 columns`, `two columns of four drawers`; of what the family's name has, too."""
+    for k in range(len(reading.tokens)):
+        grid = _grid(reading, k)
+        found = grid and _gridded(reading, k, grid[2])
+        if not grid or not found:
+            continue
+        columns, rows, end = grid
+        parameter, noun = found
+        total = columns * rows
+        number, counting = _number_before(reading, noun) if noun < k else (None, ())
+        said = f"{total} {parameter.name} in {columns} columns and {rows} rows"
+        reading.take(parameter.name, number or total, said, *counting)
+        reading.take(parameter.name, total, said, *range(k, end), noun)
+        reading.counted.add(noun)
+        for name, lines in (("columns", columns), ("rows", rows)):
+            if reading.parameter(name) is not None:
+                reading.take(name, lines, f"{lines} {name}")
+        reading.mentions.append(
+            Mention(kind=_kind(parameter), count=total, first=min(k, noun), last=max(end - 1, noun), grid=grid[:2])
+        )
+
+
+def _grid(reading: Reading, k: int) -> tuple[int, int, int] | None:
+    """Columns, rows, and the word behind, of `3 rows and 2 columns` or `two columns of four` at word k."""
+    line, joint = reading.text(k + 1), reading.text(k + 2)
+    numbers = [token.number for token in reading.tokens[k : k + 4]]
+    if len(numbers) < 4 or not numbers[0] or not numbers[3] or line not in _LINES or k in reading.used:
+        return None
+    other = reading.text(k + 4)
+    crossed = other in _LINES and other != line
+    if joint != "of" and not (crossed and joint in ("and", "by", "with", ",", "x")):
+        return None
+    first, second = int(numbers[0]), int(numbers[3])
+    columns, rows = (first, second) if line == "column" else (second, first)
+    return columns, rows, k + (5 if crossed else 4)
+
+
+def _gridded(reading: Reading, k: int, end: int) -> tuple[Parameter, int] | None:
+    """What stands in the grid, and the word that says so: one of the next, or the nearest one before."""
+    for at in (*range(end, end + _ADJECTIVES + 1), *range(k - 1, -1, -1)):
+        for parameter in reading.family.parameters:
+            nouns = nouns_of(parameter)
+            if isinstance(parameter.default, int) and singular(reading.text(at), frozenset(nouns)) in nouns:
+                return parameter, at
+    return None
+
+
+# ---- counts --------------------------------------------------------------------------------------------------------
+
+
+def read_counts(reading: Reading) -> None:
+    """`two doors`, `3 small drawers`, `no handle`, `a grid of 3 by 2 drawers`, `half a dozen knobs`."""
+    for parameter in reading.family.parameters:
+        if isinstance(parameter.default, int):
+            counts = _counts_of(reading, parameter)
+            _take_counts(reading, parameter, counts)
+
+
+def _counts_of(reading: Reading, parameter: Parameter) -> list[_Count]:
+    """Every place where a sentence names what a parameter counts, in its order."""
+    found: list[_Count] = []
+    for noun in sorted(nouns_of(parameter), key=len, reverse=True):
+        words = tuple(noun.split())
+        for k in range(len(reading.tokens) - len(words) + 1):
+            where = range(k, k + len(words))
+            read = tuple(singular(reading.text(i), frozenset(words)) for i in where)
+            if read == words and not reading.used & set(where):
+                number, counting = _number_before(reading, k)
+                found.append(_Count(number=number, where=where, counting=counting))
+                reading.used.update((*where, *counting))
+    found.sort(key=lambda count: count.where.start)
+    return _with_those_left_out(reading, found)
+
+
+def _with_those_left_out(reading: Reading, counts: list[_Count]) -> list[_Count]:
+    """`two drawers on the left and one on the right`: the second count leaves its noun out."""
+    more = []
+    for count in (c for c in counts if c.number is not None and _place(reading, c.where.stop)):
+        for k in range(count.where.stop + 1, len(reading.tokens) - 1):
+            number = reading.number(k)
+            if _names_something_else(reading, k, counts, count):
+                break
+            bare = number is not None and k not in reading.used and reading.text(k) not in (*ARTICLES, "no")
+            if bare and reading.text(k + 1) in _LEADING and _place(reading, k + 1):
+                more.append(_Count(number=int(number or 0), where=range(k, k + 1), counting=(k,)))
+                reading.used.add(k)
+    return sorted([*counts, *more], key=lambda count: count.where.start)
+
+
+def _names_something_else(reading: Reading, k: int, counts: list[_Count], count: _Count) -> bool:
+    """Whether word k belongs to another thing that is counted, which a bare number behind it would mean."""
+    if any(other.first <= k < other.where.stop for other in counts if other is not count):
+        return True
+    nouns = {noun for p in reading.family.parameters if isinstance(p.default, int) for noun in nouns_of(p)}
+    return singular(reading.text(k), frozenset(nouns)) in nouns
+
+
+def _take_counts(reading: Reading, parameter: Parameter, counts: list[_Count]) -> None:
+    """Counts at several places add up; elsewhere two of one thing must agree."""
+    numbered = [count for count in counts if count.number is not None]
+    places = [_place(reading, count.where.stop) for count in numbered]
+    apart = len(numbered) > 1 and all(places) and len(set(places)) == len(places)
+    totals = [_total(reading, count) for count in numbered]
+    if apart:
+        total = sum(totals)
+        words = [i for count in numbered for i in (*count.counting, *count.where)]
+        reading.take(parameter.name, total, f"{total} {parameter.name}", *words)
+    for count, total in zip(numbered, totals, strict=True):
+        if not apart:
+            reading.take(parameter.name, total, f"{total} {parameter.name}", *count.counting, *count.where)
+    stated = dict(zip(numbered, totals, strict=True))
+    for count in counts:
+        reading.counted.update(count.where)
+        reading.mentions += _mentions(reading, parameter, count, stated.get(count))
+
+
+def _mentions(reading: Reading, parameter: Parameter, count: _Count, total: int | None) -> list[Mention]:
+    """The mention of a count; one for each side if it stands on either."""
+    kind, last = _kind(parameter), count.where.stop - 1
+    if total is None:
+        known = int(reading.values.get(parameter.name, parameter.default))
+        return [Mention(kind=kind, count=known, first=count.first, last=last, stated=False)]
+    if not _on_both_sides(reading, count.where.stop) or total % 2:
+        return [Mention(kind=kind, count=total, first=count.first, last=last)]
+    reading.used.update(range(count.where.stop, count.where.stop + 3))
+    half = total // 2
+    return [Mention(kind=kind, count=half, first=count.first, last=last + 3, across=side) for side in (-1, 1)]
+
+
+def _total(reading: Reading, count: _Count) -> int:
+    """How many a count means: one door on either side is two doors, and so is two doors on both sides."""
+    number = count.number or 0
+    if _on_both_sides(reading, count.where.stop) and (number % 2 or reading.text(count.where.stop + 1) == "each"):
+        return 2 * number
+    return number
+
+
+def _on_both_sides(reading: Reading, k: int) -> bool:
+    which, side = _SIDES
+    return reading.text(k) in ("on", "at") and reading.text(k + 1) in which and reading.text(k + 2) in side
+
+
+def _place(reading: Reading, k: int) -> str | None:
+    """The place that is said right behind a noun: `on the left`, `below`, `at the top`."""
+    for at in range(k, k + 4):
+        if reading.text(at) in _PLACES:
+            return _PLACES[reading.text(at)]
+        if reading.text(at) not in _LEADING:
+            return None
+    return None
+
+
+def read_counted_name(reading: Reading, where: range) -> None:
+    """`a double door` has two of what a door is made of, where the family counts them by its own name."""
+    names = (" ".join(reading.text(i) for i in where), reading.text(where.stop - 1))
+    number, counting = _number_before(reading, where.start)
+    if (reading.text(where.start - 2), reading.text(where.start - 1)) == ("pair", "of"):  # of glasses, of scissors
+        reading.used.add(where.start - 2)
+    counted = (p for p in reading.family.parameters if isinstance(p.default, int))
+    parameter = next((p for p in counted if set(names) & set(nouns_of(p))), None)
+    if parameter is not None and number is not None and number > 1:
+        reading.take(parameter.name, number, f"{number} {parameter.name}", *counting)
+
+
+def _kind(parameter: Parameter) -> str:
+    """The cell of a layout that a parameter counts, else its noun."""
+    return next((noun for noun in nouns_of(parameter) if noun in CELLS), nouns_of(parameter)[0])
+
+
+def _number_before(reading: Reading, k: int) -> tuple[int | None, tuple[int, ...]]:
+    """The number that counts the noun at word k, and its words; what describes the noun between them is left."""
+    at = k - 1
+    while at >= 0 and k - at <= 3:
+        token = reading.tokens[at]
+        if token.number is not None and at not in reading.used:
+            before, factor = reading.text(at - 1), reading.number(at - 2)
+            if before in JOINING and at >= 2 and factor is not None:
+                return int(token.number) * int(factor), (at - 2, at - 1, at)
+            if token.text == "dozen" and reading.text(at - 2) == "half":
+                return 6, (at - 2, at - 1, at)
+            if token.text == "dozen":
+                times = reading.number(at - 1) if at else None
+                return 12 * int(times or 1), (at - 1, at) if times else (at,)
+            return int(token.number), (at - 1, at) if before in ARTICLES else (at,)
+        if token.is_sign or at in reading.used or token.text in _NUMBER_ENDS:
+            return None, ()
+        at -= 1
+    return None, ()

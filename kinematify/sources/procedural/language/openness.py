@@ -1,0 +1,81 @@
+"""How far a sentence wants the moving parts to stand open: a share, an angle or a distance."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.language.sizes import angle_at, length_at
+
+if TYPE_CHECKING:
+    from kinematify.sources.procedural.family import Value
+    from kinematify.sources.procedural.language.reading import Reading
+
+OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0, "opened": 1.0, "unfolded": 1.0}
+"""Words for a state, and the share of the way that they mean by themselves."""
+FRACTIONS = {
+    "half": 0.5, "halfway": 0.5, "quarter": 0.25, "quarters": 0.25, "third": 1.0 / 3.0, "thirds": 1.0 / 3.0,
+    "slightly": 0.15, "partly": 0.4, "partially": 0.4, "fully": 1.0, "completely": 1.0, "wide": 1.0,
+}  # fmt: skip
+"""Words for a share of the way."""
+_OUT = (("pulled", "out"), ("pull", "out"), ("swung", "out"), ("slid", "out"))  # as good as opened
+_OPENABLE = ("door", "lid", "drawer", "flap", "cover", "leaf", "window", "sash", "screen")
+_NOT_A_STATE = ("shelf", "compartment", "front", "field")  # an open shelf is no state
+_CLAUSE_ENDS = (",", ";", ".", ":", "with", "and")
+_FILLING = ("by", "at", "to", "of", "the", "way", "up", "about", "an", "a", "per", "cent", "percent", "%")
+_REACH = 5  # words to either side of the state
+
+_Amount = tuple[str, "Value", str, tuple[int, ...]]
+
+
+def read_openness(reading: Reading) -> None:
+    """Take up `half open`, `ajar`, `opened by 30 degrees`, `pulled out 20 cm`, `open 30 %`."""
+    for k, token in enumerate(reading.tokens):
+        out = (token.text, reading.text(k + 1)) in _OUT
+        if k in reading.used or not (out or token.text in OPENNESS) or reading.text(k + 1) in _NOT_A_STATE:
+            continue
+        share = 1.0 if out else OPENNESS[token.text]
+        clause = _clause(reading, k)
+        amount = _amount(reading, clause) if share == 1.0 else None
+        name, value, said, where = amount or ("open", share, f"{share:.0%} open", ())
+        fillers = {i for i in clause if reading.text(i) in _FILLING or reading.text(i) in FRACTIONS}
+        reading.take(name, value, said, k, *([k + 1] if out else []), *where, *fillers)
+        reading.used.update(i for i in clause if reading.text(i) in _OPENABLE)  # `its door ajar`
+
+
+def _clause(reading: Reading, k: int) -> list[int]:
+    """Words around word k that belong to the same statement and are not taken up."""
+    places = []
+    for step in (-1, 1):
+        at = k + step
+        while abs(at - k) <= _REACH and reading.text(at) and reading.text(at) not in _CLAUSE_ENDS:
+            places.append(at)
+            at += step
+    return sorted(place for place in places if place not in reading.used)
+
+
+def _amount(reading: Reading, clause: list[int]) -> _Amount | None:
+    """Parameter, value, words for the user and places of what a clause measures."""
+    for k in clause:
+        angle, length = angle_at(reading, k), length_at(reading, k)
+        if angle is not None:
+            return "open_angle", angle[0], f"open by {math.degrees(angle[0]):g} deg", tuple(range(k, angle[1]))
+        if length is not None:
+            return "open_distance", length[0], f"open by {length[0]:g} m", tuple(range(k, length[1]))
+        share = _share(reading, k)
+        if share is not None:
+            return "open", share[0], f"{share[0]:.0%} open", tuple(range(k, share[1]))
+    return None
+
+
+def _share(reading: Reading, k: int) -> tuple[float, int] | None:
+    """A share at word k and the word behind it: `30 %`, `two thirds`, `half`."""
+    number, after = reading.number(k), reading.text(k + 1)
+    percent = after in ("%", "percent") or (after, reading.text(k + 2)) == ("per", "cent")
+    if number is not None and percent:
+        return number / 100.0, k + (3 if after == "per" else 2)
+    if number is not None and after in ("third", "thirds", "quarter", "quarters"):
+        return number * FRACTIONS[after], k + 2
+    if reading.text(k) in FRACTIONS:
+        return FRACTIONS[reading.text(k)], k + 1
+    return None

@@ -1,0 +1,132 @@
+"""Sizes of a sentence: lengths with units, two or three of them multiplied, and angles."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from kinematify.sources.procedural.language.words import UNITS
+
+if TYPE_CHECKING:
+    from kinematify.sources.procedural.family import Parameter
+    from kinematify.sources.procedural.language.reading import Reading
+
+DIMENSIONS = {
+    "width": ("wide", "width", "across", "broad"),
+    "depth": ("deep", "depth"),
+    "height": ("high", "tall", "height"),
+    "length": ("long", "length"),
+    "diameter": ("diameter",),
+    "wall": ("thick", "thickness"),
+    "reach": ("reach",),
+}
+"""Words for a size, keyed by the parameter that they mean."""
+JOINING = ("x", "by")
+"""Between numbers that are multiplied."""
+_INSTEAD = {
+    "width": ("diameter", "span", "length"),
+    "length": ("width",),
+    "diameter": ("width", "span"),
+    "height": ("length",),
+    "reach": ("length",),
+}
+"""What a word for a size means in families that do not have its first sense, the likelier first."""
+_DEGREES = {"degree": math.pi / 180.0, "degrees": math.pi / 180.0, "deg": math.pi / 180.0, "°": math.pi / 180.0,
+            "radian": 1.0, "radians": 1.0, "rad": 1.0}  # fmt: skip
+
+
+def read_sizes(reading: Reading) -> None:
+    """Take up all sizes of a sentence but how far something stands open."""
+    _angles(reading)
+    _lengths(reading)
+    _products(reading)
+
+
+def length_at(reading: Reading, k: int) -> tuple[float, int] | None:
+    """A number with a unit at word k: metres, and the word behind it; `6 ft 2 in` is one length."""
+    number, unit = reading.number(k), reading.text(k + 1)
+    if number is None or unit not in UNITS or (unit == "in" and reading.text(k + 2) in ("diameter", "total")):
+        return None
+    metres, end = number * UNITS[unit], k + 2
+    if unit in ("foot", "feet", "ft") and reading.text(end + 1) in ("inch", "inche", "in") and reading.number(end):
+        metres, end = metres + (reading.number(end) or 0.0) * UNITS["inch"], end + 2
+    if reading.text(end) == "in" and reading.text(end + 1) == "diameter":
+        end += 1
+    return round(metres, 9), end
+
+
+def angle_at(reading: Reading, k: int) -> tuple[float, int] | None:
+    """A number with a unit of angle at word k: radians, and the word behind it; `6 degrees of freedom` is none."""
+    number, unit = reading.number(k), reading.text(k + 1)
+    if number is None or unit not in _DEGREES or reading.text(k + 2) == "of":
+        return None
+    return number * _DEGREES[unit], k + 2
+
+
+def _angles(reading: Reading) -> None:
+    """`tilted by 23 degrees`, in families that have such an angle."""
+    for parameter in reading.family.parameters:
+        names = (parameter.name, f"{parameter.name}ed", *parameter.words)
+        for k in range(len(reading.tokens) if parameter.unit == "rad" else 0):
+            angle = angle_at(reading, k)
+            if angle is None:
+                continue
+            for at in (angle[1], k - 1, k - 2, k - 3):
+                if reading.text(at) in names:
+                    said = f"{parameter.name} {math.degrees(angle[0]):g} deg"
+                    reading.take(parameter.name, angle[0], said, *range(min(k, at), max(angle[1], at + 1)))
+                    break
+
+
+def _lengths(reading: Reading) -> None:
+    """`80 cm wide`, `a height of 2 m`, `0.3 m in diameter`."""
+    k = 0
+    while k < len(reading.tokens):
+        length = length_at(reading, k)
+        if length is None:
+            k += 1
+            continue
+        metres, end = length
+        for at in (end, end + 1, k - 1, k - 2):
+            name = _dimension(reading, reading.text(at), metres) if at not in reading.used else None
+            if name is not None:
+                reading.take(name, metres, f"{name} {metres:g} m", *range(min(k, at), max(end, at + 1)))
+                break
+        k = end
+
+
+def _dimension(reading: Reading, word: str, metres: float) -> str | None:
+    """The parameter that a word for a size means in this family; of several, the first that can be so large."""
+    lengths = {p.name: p for p in reading.family.all_parameters if p.unit == "m"}
+    meant = [p.name for p in lengths.values() if word and word in (*p.words, p.name)]
+    for name in (name for name, words in DIMENSIONS.items() if word in words):
+        meant += [item for item in (name, *_INSTEAD.get(name, ())) if item in lengths]
+    return next((name for name in meant if _holds(lengths[name], metres)), meant[0] if meant else None)
+
+
+def _holds(parameter: Parameter, metres: float) -> bool:
+    low, high = parameter.bounds or (-math.inf, math.inf)
+    return low <= metres <= high
+
+
+def _products(reading: Reading) -> None:
+    """`20 x 15 x 10 cm` is width, depth and height; two numbers leave out the height, or the depth if there is none."""
+    for k in range(len(reading.tokens)):
+        numbers, places, at = [], [], k
+        while reading.number(at) is not None and at not in reading.used:
+            numbers.append(float(reading.number(at) or 0.0))
+            places.append(at)
+            unit = reading.text(at + 1) if reading.text(at + 1) in UNITS else ""
+            at += 2 if unit else 1
+            if reading.text(at) not in JOINING or len(numbers) == 3:
+                break
+            at += 1
+        units = [reading.text(i) for i in range(k, at + 1) if reading.text(i) in UNITS]
+        names = [name for name in ("width", "depth", "height") if reading.parameter(name) is not None]
+        if len(numbers) < 2 or not units or len(numbers) > len(names):
+            continue
+        end = at + 1 if reading.text(at) in UNITS else at
+        for name, number, place in zip(names, numbers, places, strict=False):
+            own = reading.text(place + 1)
+            size = round(number * UNITS[own if own in UNITS else units[-1]], 9)
+            reading.take(name, size, f"{name} {size:g} m", *range(k, end))
