@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.validation.declared import DeclaredJoint, DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.validation.prepare.decompose import Pieces
     from kinematify.validation.prepare.masses import PreparedInertial
     from kinematify.validation.settings import PrepareSettings, ValidationSettings
 
@@ -127,7 +128,6 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
                 inertial=inertials[link.name],
             )
         )
-    cut = sum(len(pieces[link.name].convex) > 1 for link in model.links)
     return Content(
         name=model.name,
         bodies=tuple(bodies),
@@ -135,15 +135,20 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
         model=model,
         apart=_apart(model, settings),
         settings=settings.prepare,
-        notes=tuple(_notes(model, inertials, cut)),
+        notes=tuple(_notes(model, inertials, pieces)),
     )
 
 
-def _notes(model: DeclaredModel, inertials: dict[str, PreparedInertial], cut: int) -> list[str]:
+def _notes(model: DeclaredModel, inertials: dict[str, PreparedInertial], pieces: dict[str, Pieces]) -> list[str]:
     weighed = [link.name for link in model.links if inertials[link.name].mass_added and link.has_geometry]
     notes = []
+    cut = [name for name, found in pieces.items() if len(found.convex) > 1]
     if cut:
-        notes.append(f"The collision geometry of {cut} links is several convex pieces each.")
+        farthest = max(cut, key=lambda name: pieces[name].gap)
+        notes.append(
+            f"The collision geometry of {len(cut)} links is several convex pieces each; they reach at most "
+            f"{1e3 * pieces[farthest].gap:.2g} mm beyond the surface ({farthest})."
+        )
     if weighed:
         notes.append(f"{len(weighed)} links state no usable mass and weigh what their volume suggests: "
                      f"{', '.join(weighed[:4])}{', ...' if len(weighed) > 4 else ''}.")  # fmt: skip
