@@ -34,12 +34,14 @@ if TYPE_CHECKING:
     from kinematify.config import VisionConfig
     from kinematify.pipeline import Inference
 
-_RATES = (1.0, 0.9, 0.8)
+_VOTERS = ((1.0, 1.0), (0.9, 0.9), (0.8, 0.8), (0.8, 0.95))
+"""How often a voter is right, and how often it says it is."""
 _DRAWS = 5
 _INTRODUCTION = (
     "`python benchmarks/voters.py ../shared/bench/everyday`: {objects} objects at rest, end to end. **The voters are "
-    "simulated**: they know the truth and are wrong at random as often as stated ({draws} draws each); their votes are "
-    "added as log odds with the weights of `configs/default.yaml`, section `vision`. No real model was asked."
+    "simulated**: they know the truth and are wrong at random as often as stated ({draws} draws each), on every joint for "
+    "itself; they say how sure they are, honestly but for those of whom the table says otherwise. Votes are added as log "
+    "odds by `configs/default.yaml`, section `vision`. No real model was asked."
 )
 _QUESTIONS = ("type", "direction", "side")
 
@@ -70,13 +72,19 @@ def main() -> None:
         inference = infer(Assembly(parts=erased.parts, source="benchmark"), config=config)
         _add(scores, "nobody", [_score(erased, inference)])
         for questions in (("type",), ("direction",), _QUESTIONS):
-            for rate in _RATES:
-                rng = np.random.default_rng([11, round(100 * rate), len(questions)])
-                found = [_voted(erased, inference, questions, rate, rng) for _ in range(1 if rate == 1.0 else _DRAWS)]
-                _add(scores, f"{' and '.join(questions)}, {rate:.0%} right", found)
+            for voter in _VOTERS:
+                rng = np.random.default_rng([11, round(100 * voter[0]), len(questions)])
+                draws = 1 if voter[0] == 1.0 else _DRAWS
+                found = [_voted(erased, inference, questions, voter, rng) for _ in range(draws)]
+                _add(scores, _name(questions, voter), found)
         print(item.name, flush=True)
     rows = [_row(voter, objects) for voter, objects in scores.items()]
     _write(rows, len(scores["nobody"]), arguments.output)
+
+
+def _name(questions: tuple[str, ...], voter: tuple[float, float]) -> str:
+    right, says = voter
+    return f"{' and '.join(questions)}, {right:.0%} right{'' if says == right else f', says {says:.0%}'}"
 
 
 def _add(scores: dict[str, list[list[ObjectScore]]], voter: str, found: list[ObjectScore]) -> None:
@@ -84,7 +92,11 @@ def _add(scores: dict[str, list[list[ObjectScore]]], voter: str, found: list[Obj
 
 
 def _voted(
-    erased: ErasedModel, inference: Inference, questions: tuple[str, ...], rate: float, rng: np.random.Generator
+    erased: ErasedModel,
+    inference: Inference,
+    questions: tuple[str, ...],
+    voter: tuple[float, float],
+    rng: np.random.Generator,
 ) -> ObjectScore:
     """Score an inference after one voter has voted on all joints whose parts stand in the truth."""
     index = {name: k for k, name in enumerate(erased.truth.part_names)}
@@ -95,7 +107,7 @@ def _voted(
         true = truth.get(pair)
         if true is not None:
             right = _right(true, inference.assembly.parts[joint.child], inference.config.vision)
-            cast = {name: _cast(right[name], _CHOICES[name], rate, rng) for name in questions}
+            cast = {name: _cast(right[name], _CHOICES[name], voter, rng) for name in questions}
             votes[k] = JointVotes(kind=cast.get("type"), direction=cast.get("direction"), side=cast.get("side"))
     return _score(erased, chosen_anew(inference, votes)[0])
 
@@ -110,13 +122,16 @@ def _right(true: TrueJoint, part: Part, config: VisionConfig) -> dict[str, str |
     }
 
 
-def _cast(right: str | None, choices: tuple[str, ...], rate: float, rng: np.random.Generator) -> Vote | None:
-    """A vote that says how often its voter is right; who sees nothing to answer abstains."""
+def _cast(
+    right: str | None, choices: tuple[str, ...], voter: tuple[float, float], rng: np.random.Generator
+) -> Vote | None:
+    """A vote that says how sure its voter is; who sees nothing to answer abstains."""
+    rate, says = voter
     draw, other = rng.random(), rng.integers(len(choices) - 1)
     if right is None:
         return None
     wrong = [choice for choice in choices if choice != right]
-    return Vote(choice=str(right if draw < rate else wrong[other]), confidence=min(rate, 0.99))
+    return Vote(choice=str(right if draw < rate else wrong[other]), confidence=min(says, 0.99))
 
 
 def _score(erased: ErasedModel, inference: Inference) -> ObjectScore:

@@ -22,11 +22,11 @@ from kinematify.assembly.part import Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import InputError
-from kinematify.joints.candidate import JointCandidate
+from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.vision.answer import JointQuestion, JointVotes, Vote, read_answer
 from kinematify.vision.client import ADDRESS, KEY, ChatOracle, oracle_of
 from kinematify.vision.question import joint_question
-from kinematify.vision.votes import chosen_anew, direction_of, side_of, vote_gain, with_votes
+from kinematify.vision.votes import chosen_anew, direction_of, side_of, standing, vote_gain, with_votes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -86,6 +86,36 @@ def test_votes_favour_what_they_name_and_nothing_else() -> None:
     )
     sure = votes("revolute", "vertical", "right", confidence=1.0)
     assert gain(right, sure) <= CONFIG.most
+
+
+def test_vote_counts_the_log_odds_of_its_reliability_and_no_more() -> None:
+    up = turning(Z, (0.0, 0.0, 0.0))
+    gains = [vote_gain(up, votes(direction="vertical", confidence=c), (), panel(), CONFIG) for c in (0.8, 0.9, 0.99)]
+    assert gains[0] == pytest.approx(np.log(0.8 / 0.1))
+    assert gains[1] == pytest.approx(np.log(0.9 / 0.05))
+    assert gains[2] == gains[1]  # who claims more is believed no more
+
+
+def test_voter_that_is_right_as_often_as_the_geometry_changes_nothing_alone() -> None:
+    chosen, other = turning(Z, (0.0, 0.0, 0.0)), turning(X, (0.0, 0.0, 0.0))
+    joint = estimate(chosen, other)
+
+    def lead(own: JointVotes, twins: Sequence[JointVotes] = ()) -> float:
+        here, there = (standing(c, joint, CONFIG) + vote_gain(c, own, twins, panel(), CONFIG) for c in (chosen, other))
+        return here - there
+
+    assert lead(JointVotes()) == CONFIG.chosen_lead
+    assert lead(votes(direction="sideways", confidence=0.8)) > 0.0 > lead(votes(direction="sideways", confidence=0.9))
+    twins = [votes(direction="vertical"), votes(direction="vertical")]
+    assert lead(votes(direction="sideways", confidence=0.9), twins) > 0.0  # an outlier among twins is corrected
+
+
+def estimate(*candidates: JointCandidate) -> JointEstimate:
+    best = candidates[0]
+    return JointEstimate(
+        parent=0, child=1, kind=best.kind, axis=best.axis, pivot=best.pivot, lower=0.0, upper=1.0, confidence=0.5,
+        alternatives=candidates,
+    )  # fmt: skip
 
 
 def box_with_lid(folder: Path, *, hinge: bool) -> Path:

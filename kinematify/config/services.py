@@ -35,16 +35,12 @@ class VisionConfig(ServiceConfig):
     """Of the views [deg]; small angles are nearly orthographic."""
     least_confidence: float
     """Answers that are less sure count as abstentions."""
-    most_confidence: float
-    """Models say 0.99 too easily: more counts as this."""
-    type_weight: float
-    """Of the log odds of a vote on the type."""
-    direction_weight: float
-    """Of a vote on the direction of the axis."""
-    side_weight: float
-    """Of a vote on the side of the hinge."""
+    reliability: float
+    """Share of a model's answers that is taken to be right, however sure it says it is; less sure ones count less."""
+    chosen_lead: float
+    """Lead of what the geometry chose over candidates of equal score [log odds]: how often it is right."""
     cluster_weight: float
-    """Of the votes on the types of congruent parts, relative to the part's own."""
+    """Of the votes on congruent parts, all together, relative to the part's own."""
     most: float
     """All votes on one joint together weigh no more [log odds]: what leads by more is not overruled."""
     oblique_deg: float

@@ -1,7 +1,9 @@
 """Votes are evidence among other evidence: they are added to the scores of candidates as log odds, and never obeyed.
 
-A vote alone decides worse than the geometry alone below 95 % of right answers; added, it helps. All votes on one joint
-together are bounded, so that what the geometry is sure of stands.
+A vote alone decides worse than the geometry alone below 95 % of right answers; added, it helps, if both are weighed in
+the same unit. A vote counts the log odds of its reliability, whatever more the voter says of itself, and the choice of
+the geometry those of how often it is right, however close the scores: so a voter that is no better than the geometry
+changes nothing alone. All votes on one joint together are bounded, for who misreads a picture errs on all questions.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
 _DIRECTIONS = (Direction.SIDEWAYS, Direction.DEPTH, Direction.VERTICAL)
 """Of the world's x, y and z axes: the front looks along -y."""
+_ALIKE = 0.01  # boxes that differ less, as a share of their diagonal, stand the same way
 _SIDES = ((Side.LEFT, Side.RIGHT), (Side.FRONT, Side.BACK), (Side.BOTTOM, Side.TOP))
 
 
@@ -71,7 +74,7 @@ def chosen_anew(inference: Inference, votes: dict[int, JointVotes]) -> tuple[Inf
     joints, heard = list(inference.joints), []
     for k, own in sorted(votes.items()):
         joint = joints[k]
-        twins = [votes[other] for other in _twins(inference, k) if other in votes]
+        twins = [_shared(inference, k, other, votes[other]) for other in _twins(inference, k) if other in votes]
         best = _best(joint, own, twins, inference.assembly.parts[joint.child], config)
         changed = best is not None and not is_same(joint, best)
         if best is not None and changed:
@@ -87,14 +90,29 @@ def _twins(inference: Inference, k: int) -> list[int]:
     return [n for n, joint in enumerate(inference.joints) if n != k and joint.child in cluster]
 
 
+def _shared(inference: Inference, k: int, other: int, votes: JointVotes) -> JointVotes:
+    """What votes on a twin say of the part itself: its type, and where both stand alike, the direction of its axis."""
+    sides = [np.ptp(inference.assembly.parts[inference.joints[n].child].bounds, axis=0) for n in (k, other)]
+    alike = np.allclose(*sides, rtol=0.0, atol=_ALIKE * float(np.linalg.norm(sides[0])))
+    return replace(votes, direction=votes.direction if alike else None, side=None)
+
+
 def _best(
     joint: JointEstimate, own: JointVotes, twins: Sequence[JointVotes], part: Part, config: VisionConfig
 ) -> JointCandidate | None:
     """The candidate that geometry and votes like best; None where there is no choice."""
     if joint.kind is JointType.FIXED or not joint.alternatives:
         return None
-    gains = [candidate.score + vote_gain(candidate, own, twins, part, config) for candidate in joint.alternatives]
+    gains = [
+        standing(candidate, joint, config) + vote_gain(candidate, own, twins, part, config)
+        for candidate in joint.alternatives
+    ]
     return joint.alternatives[int(np.argmax(gains))]
+
+
+def standing(candidate: JointCandidate, chosen: JointEstimate, config: VisionConfig) -> float:
+    """What the geometry says for a candidate [log odds]: its score, and that the geometry chose it if it did."""
+    return candidate.score + config.chosen_lead * is_same(chosen, candidate)
 
 
 def vote_gain(
@@ -105,19 +123,21 @@ def vote_gain(
     Args:
         candidate: A joint of the part.
         own: Votes on this part.
-        twins: Votes on congruent parts, whose types count too.
+        twins: Votes on congruent parts, whose types and directions count too, together as `config.cluster_weight` of
+            one vote: who is wrong about one of them is likely to be wrong about all.
         part: The moving part.
-        config: Weights.
+        config: Reliability and bounds.
     """
     kind = candidate.kind.value
     direction = direction_of(candidate.axis, config.oblique_deg)
     side = side_of(candidate, part, config.off_center) if candidate.kind.turns else None
-    shared = config.type_weight * config.cluster_weight / max(len(twins), 1)
+    shared = config.cluster_weight / max(len(twins), 1)
     opinions = [
-        (own.kind, kind, len(TYPES), config.type_weight),
+        (own.kind, kind, len(TYPES), 1.0),
         *((twin.kind, kind, len(TYPES), shared) for twin in twins),
-        (own.direction, direction, len(Direction), config.direction_weight),
-        (own.side, side, len(Side), config.side_weight),
+        (own.direction, direction, len(Direction), 1.0),
+        *((twin.direction, direction, len(Direction), shared) for twin in twins),
+        (own.side, side, len(Side), 1.0),
     ]
     weights = [weight * _strength(vote, choices, config) for vote, _, choices, weight in opinions]
     agreed = [
@@ -130,11 +150,11 @@ def vote_gain(
 
 
 def _strength(vote: Vote | None, choices: int, config: VisionConfig) -> float:
-    """Log odds of a vote over chance, at least 0."""
+    """Log odds of a vote for one of so many choices, at least 0: right in p of all cases, else any of the others."""
     if vote is None:
         return 0.0
-    sure = min(vote.confidence, config.most_confidence)
-    return max(0.0, math.log(sure * (choices - 1) / (1.0 - sure)))
+    right = min(vote.confidence, config.reliability)
+    return max(0.0, math.log(right * (choices - 1) / (1.0 - right)))
 
 
 def _means(voted: str, choice: str) -> bool:
