@@ -39,9 +39,9 @@ _VOTERS = ((1.0, 1.0), (0.9, 0.9), (0.8, 0.8), (0.8, 0.95))
 _DRAWS = 5
 _INTRODUCTION = (
     "`python benchmarks/voters.py ../shared/bench/everyday`: {objects} objects at rest, end to end. **The voters are "
-    "simulated**: they know the truth and are wrong at random as often as stated ({draws} draws each), on every joint for "
-    "itself; they say how sure they are, honestly but for those of whom the table says otherwise. Votes are added as log "
-    "odds by `configs/default.yaml`, section `vision`. No real model was asked."
+    "simulated**: they know the truth and are wrong at random as often as stated ({draws} draws each), on every joint "
+    "for itself; they say how sure they are, honestly but for those of whom the table says otherwise. Votes are added "
+    "as log odds by `configs/default.yaml`, section `vision`. No real model was asked."
 )
 _QUESTIONS = ("type", "direction", "side")
 
