@@ -57,14 +57,16 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[RodinServer]:
     found.close()
 
 
-def generate(folder: Path, *, budget: float | None = None, resend: bool = False) -> Generated:
+def generate(
+    folder: Path, *, budget: float | None = None, resend: bool = False, said: list[str] | None = None
+) -> Generated:
     settings = load_config().sources.rodin.model_copy(update=QUICK)
     source = RodinSource(settings, budget)
     prompt = check_prompt("a box with a lid", (), seed=3)
     with open_job(folder, source.name, prompt.digest(source.options())) as job:
         if resend:
             job.resend()
-        return source.generate(prompt, job, lambda stage, done: None)
+        return source.generate(prompt, job, lambda stage, done: None if said is None else said.append(stage))
 
 
 def test_text_becomes_parts_with_their_provenance_and_the_key_is_written_nowhere(
@@ -104,8 +106,10 @@ def test_refusals_cost_nothing_and_can_be_mended(server: RodinServer, tmp_path: 
 def test_too_many_requests_are_waited_for(server: RodinServer, tmp_path: Path) -> None:
     server.faults["/rodin"] = [429, 503]
     server.faults["/status"] = [429]
-    generate(tmp_path / "job")
+    said: list[str] = []
+    generate(tmp_path / "job", said=said)
     assert server.paid == {"/rodin": 1, "/bang": 1}
+    assert sum("once more in" in words for words in said) == 3
 
 
 def test_service_that_stays_busy_took_nothing(server: RodinServer, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import httpx
 from kinematify.errors import EnvironmentFault, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from kinematify.config import ServiceConfig
@@ -42,6 +42,8 @@ class Service:
     settings: ServiceConfig
     key_name: str
     """Environment variable that holds the key, for messages."""
+    told: Callable[[str], None] = lambda words: None
+    """Told why it is asked again, and when."""
 
     def __post_init__(self) -> None:
         parts = urlsplit(self.url)
@@ -74,14 +76,14 @@ class Service:
                 answer = self._client.post(f"{self.url}{path}", **content)
             except httpx.HTTPError as error:
                 fault = error
-                time.sleep(pause)
+                self._rest(_words(error), pause)
                 continue
             if answer.status_code < 400:
                 return self._json(answer)
             if answer.status_code != _TOO_MANY and answer.status_code < 500:
                 raise self._refusal(answer)
             fault = EnvironmentFault(f"status {answer.status_code}")
-            time.sleep(max(pause, _retry_after(answer)))
+            self._rest(str(fault), pause, _retry_after(answer))
         raise EnvironmentFault(
             f"{self.name} does not answer {path} ({_words(fault)}) after {self.settings.tries} tries. Check the "
             "network and the state of the service; the same call goes on where this one stopped."
@@ -101,7 +103,7 @@ class Service:
                 answer = self._client.post(f"{self.url}{path}", **content)
             except (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout) as error:
                 fault = _words(error)
-                time.sleep(pause)
+                self._rest(fault, pause)
                 continue
             except httpx.HTTPError as error:
                 raise EnvironmentFault(
@@ -110,7 +112,7 @@ class Service:
                 ) from error
             if answer.status_code in (_TOO_MANY, _BUSY):
                 fault = f"status {answer.status_code}, too many requests"
-                time.sleep(max(pause, _retry_after(answer)))
+                self._rest(fault, pause, _retry_after(answer))
                 continue
             if answer.status_code >= 500:
                 raise EnvironmentFault(
@@ -121,8 +123,8 @@ class Service:
                 raise self._refusal(answer)
             return self._json(answer)
         raise NotTaken(
-            f"{self.name} has not taken {path} ({fault}) in {self.settings.tries} tries; nothing was paid. Call again "
-            "later."
+            f"{self.name} has not taken {path} ({fault}) in {self.settings.tries} tries; nothing was paid. Check "
+            "the network, or call again later."
         )
 
     def fetch(self, url: str, out: Path) -> None:
@@ -142,11 +144,11 @@ class Service:
                     size = self._saved(answer, partly)
             except httpx.HTTPError as error:
                 fault = _words(error)
-                time.sleep(pause)
+                self._rest(fault, pause)
                 continue
             if problem := _incomplete(partly, size):
                 fault = problem
-                time.sleep(pause)
+                self._rest(fault, pause)
                 continue
             partly.replace(out)
             return
@@ -169,9 +171,19 @@ class Service:
                 file.write(chunk)
         return size
 
-    def _pauses(self) -> Iterator[float]:
-        for attempt in range(self.settings.tries):
+    def _pauses(self) -> Iterator[float | None]:
+        """The pause after each try [s]; None after the last one."""
+        for attempt in range(self.settings.tries - 1):
             yield min(self.settings.first_pause * 2.0**attempt, self.settings.longest_pause)
+        yield None
+
+    def _rest(self, fault: str, pause: float | None, least: float = 0.0) -> None:
+        """Wait before the next try, and say so; `least` is what the service asks for [s]."""
+        if pause is None:
+            return
+        seconds = max(pause, least)
+        self.told(f"{self.name} did not take it ({fault}), once more in {seconds:.0f} s")
+        time.sleep(seconds)
 
     def _json(self, answer: httpx.Response) -> Any:
         try:

@@ -225,7 +225,9 @@ class _Run:
 
     def _tell(self, step: str, words: str, share: float) -> None:
         low, high = _SHARES[step]
-        self.progress(words, low + share * (high - low))
+        done = low + share * (high - low)
+        self.service.told = lambda why: self.progress(why, done)
+        self.progress(words, done)
 
 
 def _at(answer: Any, *keys: str) -> Any:
