@@ -92,8 +92,8 @@ def _twins(inference: Inference, k: int) -> list[int]:
 
 def _shared(inference: Inference, k: int, other: int, votes: JointVotes) -> JointVotes:
     """What votes on a twin say of the part itself: its type, and where both stand alike, the direction of its axis."""
-    sides = [np.ptp(inference.assembly.parts[inference.joints[n].child].bounds, axis=0) for n in (k, other)]
-    alike = np.allclose(*sides, rtol=0.0, atol=_ALIKE * float(np.linalg.norm(sides[0])))
+    here, there = (np.ptp(inference.assembly.parts[inference.joints[n].child].bounds, axis=0) for n in (k, other))
+    alike = np.allclose(here, there, rtol=0.0, atol=_ALIKE * float(np.linalg.norm(here)))
     return replace(votes, direction=votes.direction if alike else None, side=None)
 
 
