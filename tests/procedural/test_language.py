@@ -112,6 +112,9 @@ def test_the_colour_reaches_the_bodies():
         ("a cabinet with two drawers and three drawers", "Say one of them"),
         ("a cabinet that is 80 cm wide and 90 cm wide", "Say one of them"),
         ("a cabinet, half open and closed", "Say one of them"),
+        ("a cabinet 80 wide", "no unit"),
+        ("a cabinet with a width of 80", "no unit"),
+        ("a cabinet with 2.5 drawers", "whole number"),
     ],
 )
 def test_what_cannot_be_understood_is_refused(text, reason):
@@ -123,6 +126,11 @@ def test_what_cannot_be_understood_is_refused(text, reason):
     ("text", "reason"),
     [
         ("a cabinet with 500 drawers", "from 0 to 12"),
+        ("a cabinet with a million drawers", "from 0 to 12"),
+        ("a cabinet with 1,000 drawers", "from 0 to 12"),
+        ("a cabinet with 1e9 drawers", "from 0 to 12"),
+        ("a cabinet with no doors and no drawers", "Nothing of this"),
+        ("a laptop opened by 300 degrees", r"300 degrees"),
         ("a cabinet 3 km wide", r"0\.1 to 5 m"),
         ("a cabinet 0.1 mm wide", r"0\.1 to 5 m"),
         ("a cabinet 80 m wide with two doors", r"0\.1 to 5 m"),

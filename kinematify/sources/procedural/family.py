@@ -152,6 +152,9 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
     far = {kind: float(values[key]) for kind, key in _FAR.items() if values[key]}
     # What opens at all is asked of the family by opening it; how far, is set on the joints.
     family.build(Values({**values, "open": 1.0} if far else values, rng), workshop)
+    if not workshop.moves:
+        counts = ", ".join(p.name for p in family.parameters if isinstance(p.default, int))
+        raise InputError(f"Nothing of this {family.title} would move. Ask for one of {counts} at least.")
     if far:
         workshop.open_by(far, title=family.title)
     return workshop.finish(
@@ -203,9 +206,16 @@ def _checked_number(family: Family, parameter: Parameter, value: Any) -> float |
     low, high = parameter.bounds or (-math.inf, math.inf)
     whole = isinstance(parameter.default, int)
     if not low <= number <= high or (whole and number != int(number)):
-        kind = "a whole number" if whole else "a number"
-        unit = f" {parameter.unit}" if parameter.unit else ""
         raise InputError(
-            f"The {parameter.name} of a {family.title} is {value!r}, but must be {kind} from {low:g} to {high:g}{unit}."
+            f"The parameter {parameter.name} of a {family.title} is {_shown(parameter, value)}, but must be "
+            f"{'a whole number' if whole else 'a number'} from {low:g} to {_shown(parameter, high)}."
         )
     return int(number) if whole else number
+
+
+def _shown(parameter: Parameter, value: Any) -> str:
+    """A value with its unit; angles in degrees, too. What is no number stands in quotes."""
+    if not isinstance(value, float | int):
+        return repr(value)
+    degrees = f" ({math.degrees(value):.0f} degrees)" if parameter.unit == "rad" else ""
+    return f"{value:g} {parameter.unit}".strip() + degrees

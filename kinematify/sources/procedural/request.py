@@ -67,6 +67,6 @@ def find_family(name: str) -> Family:
     words = {word.replace(" ", "_"): name for name, family in FAMILIES.items() for word in (name, *family.words)}
     if wanted in words:
         return FAMILIES[words[wanted]]
-    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=3, cutoff=0.5)]
+    near = [words[match] for match in difflib.get_close_matches(wanted, words, n=3, cutoff=0.6)]
     hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"There are {', '.join(FAMILIES)}."
     raise InputError(f"There is no category {name!r}. {hint}")

@@ -59,6 +59,11 @@ class Workshop:
         self._looks[name] = made_of, color_of(made_of, color or (None if material else self._color))
         return name
 
+    @property
+    def moves(self) -> bool:
+        """True if there is a joint."""
+        return bool(self._joints)
+
     def add(self, name: str, *solids: Manifold) -> None:
         """Add solids to a body that is there."""
         self._solids[name] = union(self._solids[name], *solids)

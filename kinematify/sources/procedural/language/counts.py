@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kinematify.errors import InputError
 from kinematify.sources.procedural.language.arrangement import Mention
 from kinematify.sources.procedural.language.reading import nouns_of
 from kinematify.sources.procedural.language.sizes import JOINING
@@ -222,6 +223,11 @@ def _number_before(reading: Reading, k: int) -> tuple[int | None, tuple[int, ...
     while at >= 0 and k - at <= 3:
         token = reading.tokens[at]
         if token.number is not None and at not in reading.used:
+            if token.number != int(token.number):
+                raise InputError(
+                    f"The text asks for {token.given} {reading.tokens[k].given}; only a whole number of them can be "
+                    "built."
+                )
             before, factor = reading.text(at - 1), reading.number(at - 2)
             if before in JOINING and at >= 2 and factor is not None:
                 return int(token.number) * int(factor), (at - 2, at - 1, at)

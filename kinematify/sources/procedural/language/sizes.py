@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from kinematify.errors import InputError
 from kinematify.sources.procedural.language.words import UNITS
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def read_sizes(reading: Reading) -> None:
     _angles(reading)
     _lengths(reading)
     _products(reading)
+    _refuse_sizes_without_unit(reading)
 
 
 def length_at(reading: Reading, k: int) -> tuple[float, int] | None:
@@ -130,3 +132,15 @@ def _products(reading: Reading) -> None:
             own = reading.text(place + 1)
             size = round(number * UNITS[own if own in UNITS else units[-1]], 9)
             reading.take(name, size, f"{name} {size:g} m", *range(k, end))
+
+
+def _refuse_sizes_without_unit(reading: Reading) -> None:
+    """`80 wide` may be centimetres or millimetres."""
+    for k, token in enumerate(reading.tokens):
+        behind = _dimension(reading, reading.text(k + 1), 0.0)
+        before = _dimension(reading, reading.text(k - 2), 0.0) if reading.text(k - 1) == "of" else None
+        if token.given[0].isdigit() and k not in reading.used and (behind or before):
+            raise InputError(
+                f"The text says {token.given} for the {behind or before} and no unit. Write for example "
+                f"'{token.given} cm'; mm, cm, m, inches and feet are known."
+            )

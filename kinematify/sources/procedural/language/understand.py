@@ -144,8 +144,8 @@ def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) ->
     ]
     nearest = list(dict.fromkeys(near or titles.values()))[:4]
     raise InputError(
-        f"The text {sentence[:80]!r} names nothing that can be built. Nearest: {', '.join(nearest)}. `kinematify "
-        "generate --list` shows all categories."
+        f"The text {sentence[:80]!r} names nothing that can be built. Nearest: {', '.join(nearest)}. Describe one "
+        "object in English; `kinematify generate --list` shows all categories."
     )
 
 

@@ -19,7 +19,7 @@ NUMBERS = {
     "double": 2, "twin": 2, "both": 2, "three": 3, "triple": 3, "four": 4, "five": 5, "six": 6, "seven": 7, "eight": 8,
     "nine": 9, "ten": 10, "eleven": 11, "twelve": 12, "dozen": 12, "thirteen": 13, "fourteen": 14, "fifteen": 15,
     "sixteen": 16, "seventeen": 17, "eighteen": 18, "nineteen": 19, "twenty": 20, "thirty": 30, "forty": 40,
-    "fifty": 50, "hundred": 100, "thousand": 1000,
+    "fifty": 50, "hundred": 100, "thousand": 1000, "million": 1_000_000, "billion": 1_000_000_000,
 }  # fmt: skip
 """Number words; `a` and `an` count only before something that can be counted."""
 ARTICLES = ("a", "an")
@@ -51,7 +51,7 @@ _STOP_TEXT = """
 STOP_WORDS = frozenset(_STOP_TEXT.split())
 """Words that carry nothing, or whose sense is left to the seed."""
 
-_TOKEN = re.compile(r"\d+(?:[.,]\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
+_TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
 
 
@@ -89,6 +89,7 @@ def tokens_of(sentence: str, vocabulary: Iterable[str]) -> tuple[Token, ...]:
     lowered = sentence.lower()
     if re.search(r"\bminus\b|(?:^|\s)-\s?\d", lowered):
         raise InputError(f"The text {_shown(sentence)} asks for a negative number. Give counts and sizes above zero.")
+    lowered = re.sub(r"\b[1-9]\d{0,2}(?:,\d{3})+\b", lambda number: number[0].replace(",", ""), lowered)
     text = re.sub(r"(?<=\d)x(?=\d)", " x ", lowered.replace("×", " x ").replace("-", " ")).strip()
     if not text:
         raise InputError("The text is empty. Describe an object, e.g. 'a cabinet with two doors above three drawers'.")
