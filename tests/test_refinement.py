@@ -387,10 +387,12 @@ def test_a_fixed_piece_is_one_part_again_when_scored() -> None:
     above = Prediction(
         parents={0: -1, 2: 0, 1: 2}, joints=(joint(0, 2, JointType.REVOLUTE), joint(2, 1, JointType.FIXED))
     )
-    merged = without_pieces(above, {2: 1})
+    merged, mended = without_pieces(above, {2: 1})
+    assert mended == 1
     assert dict(merged.parents) == {0: -1, 1: 0}
     assert [(item.parent, item.child, item.kind) for item in merged.joints] == [(0, 1, JointType.REVOLUTE)]
     loose = Prediction(
         parents={0: -1, 1: 0, 2: 1}, joints=(joint(0, 1, JointType.REVOLUTE), joint(1, 2, JointType.REVOLUTE))
     )
-    assert dict(without_pieces(loose, {2: 1}).parents) == dict(loose.parents)
+    unchanged, mended = without_pieces(loose, {2: 1})
+    assert (dict(unchanged.parents), mended) == (dict(loose.parents), 0)

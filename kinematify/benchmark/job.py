@@ -9,7 +9,7 @@ import resource
 import sys
 import time
 import traceback
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Literal
 
@@ -18,6 +18,7 @@ from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.benchmark.datasets import BenchObject, Condition
 from kinematify.benchmark.metrics import ObjectScore, score_object
+from kinematify.benchmark.perturb import CLEAN, perturbed, without_pieces
 from kinematify.benchmark.prediction import NOTHING_PREDICTED, prediction_of
 from kinematify.config import Config
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.assembly.erase import ErasedModel
+    from kinematify.benchmark.perturb import Perturbed
     from kinematify.benchmark.prediction import Prediction
     from kinematify.pipeline import Inference
 
@@ -44,6 +46,8 @@ class Job:
     """Label of the configuration."""
     config: Config
     infer: str = INFER
+    input: str = CLEAN
+    """`CLEAN`, or one of `kinematify.benchmark.perturb.DEGRADED`."""
 
     def key(self, code_version: str) -> str:
         """Name of the job's result: equal only where nothing that the result depends on has changed."""
@@ -54,6 +58,7 @@ class Job:
             "condition": asdict(self.condition),
             "config": self.config.model_dump(mode="json"),
             "infer": self.infer,
+            "input": self.input,
             "code": code_version,
         }
         return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()
@@ -79,6 +84,12 @@ class JobResult:
     """Peak resident memory of the worker [MB]; None where it was stopped from outside."""
     score: ObjectScore | None = None
     """A failed inference is scored as if it had predicted nothing; None where the truth cannot be read."""
+    input: str = CLEAN
+    """What was done to the meshes."""
+    cuts: int = 0
+    """Places where a part had been cut in two."""
+    cuts_mended: int = 0
+    """Cuts whose two sides came out as fixed to each other."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,9 +114,10 @@ def run_job(job: Job, *, key: str, failure: Failure | None = None) -> JobResult:
     """
     try:
         erased = _erased(job)
+        given = perturbed(job.input, _shown(erased), job.config, seed=job.condition.seed)
     except Exception as error:
         return unscored(job, key, Failure(status="unreadable", message=_sentence(error), seconds=0.0))
-    answer = _Answer() if failure is not None else _infer(job, erased)
+    answer = _Answer() if failure is not None else _infer(job, erased, given)
     failure = failure or answer.failure
     score = score_object(
         erased.truth,
@@ -114,7 +126,7 @@ def run_job(job: Job, *, key: str, failure: Failure | None = None) -> JobResult:
         diagonal=erased.assembly.diagonal,
         gripper_joints=job.item.gripper_joints,
     )
-    return _result(job, key, failure, answer, score)
+    return replace(_result(job, key, failure, answer, score), cuts=len(given.pieces))
 
 
 def _erased(job: Job) -> ErasedModel:
@@ -129,22 +141,28 @@ class _Answer:
     seconds: float = 0.0
     stage_seconds: dict[str, float] = field(default_factory=dict)
     failure: Failure | None = None
+    cuts_mended: int = 0
 
 
-def _infer(job: Job, erased: ErasedModel) -> _Answer:
+def _shown(erased: ErasedModel) -> Assembly:
+    """A fresh assembly: whatever erasing noted about names or origin stays behind."""
+    return Assembly(parts=erased.parts, source="benchmark")
+
+
+def _infer(job: Job, erased: ErasedModel, given: Perturbed) -> _Answer:
     infer = _function(job.infer)
-    # A fresh assembly: whatever erasing noted about names or origin stays behind.
-    shown = Assembly(parts=erased.parts, source="benchmark")
     start = time.perf_counter()
     try:
-        inference = infer(shown, config=job.config)
+        inference = infer(given.assembly, config=given.config)
         seconds = time.perf_counter() - start
-        part_index = {name: index for index, name in enumerate(erased.truth.part_names)}
+        part_index = {name: index for index, name in enumerate((*erased.truth.part_names, *given.pieces))}
         prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, part_index)
+        pieces = {part_index[piece]: part_index[whole] for piece, whole in given.pieces.items()}
+        prediction, mended = without_pieces(prediction, pieces)
     except Exception as error:
         seconds = time.perf_counter() - start
         return _Answer(seconds=seconds, failure=Failure(status="error", message=_sentence(error), seconds=seconds))
-    return _Answer(prediction=prediction, seconds=seconds, stage_seconds=dict(inference.timings))
+    return _Answer(prediction=prediction, seconds=seconds, stage_seconds=dict(inference.timings), cuts_mended=mended)
 
 
 def _function(dotted: str) -> Callable[..., Inference]:
@@ -178,6 +196,8 @@ def _result(job: Job, key: str, failure: Failure | None, answer: _Answer, score:
         stage_seconds=answer.stage_seconds,
         peak_mb=None if stopped else _peak_mb(),
         score=score,
+        input=job.input,
+        cuts_mended=answer.cuts_mended,
     )
 
 

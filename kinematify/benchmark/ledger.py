@@ -29,7 +29,18 @@ _NO_INFLUENCE = {"cli", "envs", "nightly", "validation", "batch.py", "refine.py"
 """Parts of the package that stand to the right of the inference."""
 _REPORTING = {
     f"benchmark/{name}.py"
-    for name in ("ledger", "paper", "regression", "report", "run", "scaling", "summary", "tables", "workers")
+    for name in (
+        "degrade_tables",
+        "ledger",
+        "paper",
+        "regression",
+        "report",
+        "run",
+        "scaling",
+        "summary",
+        "tables",
+        "workers",
+    )
 }
 """Parts of the benchmark that run jobs or show their results."""
 

@@ -52,6 +52,9 @@ class JointScore:
     limit_iou: float
     opens: bool | None
     """Whether the positive direction opens; None where the true range does not say."""
+    confidence: float | None = None
+    """What the method gave the joint above the child, or the one that hangs the parent on the child; None if neither
+    is there."""
 
     @property
     def matched(self) -> bool:
@@ -134,6 +137,7 @@ def _joint_scores(
             near=centroids[joint.child],
             names=truth.part_names,
             gripper=joint.source in gripper_joints,
+            confidence=_confidence(joint, prediction),
         )
         for joint in truth.joints
     ]
@@ -157,8 +161,22 @@ def _misfit(joint: TrueJoint, guess: PredictedJoint) -> tuple[bool, float]:
     return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
 
 
+def _confidence(joint: TrueJoint, prediction: Prediction) -> float | None:
+    above = {item.child: item for item in prediction.joints}
+    own, turned = above.get(joint.child), above.get(joint.parent)
+    if own is None and turned is not None and turned.parent == joint.child:
+        own = turned
+    return None if own is None else own.confidence
+
+
 def _joint_score(
-    joint: TrueJoint, guess: PredictedJoint | None, *, near: FloatArray, names: Sequence[str], gripper: bool
+    joint: TrueJoint,
+    guess: PredictedJoint | None,
+    *,
+    near: FloatArray,
+    names: Sequence[str],
+    gripper: bool,
+    confidence: float | None,
 ) -> JointScore:
     placed = guess is not None and joint.kind.turns and guess.kind != JointType.FIXED
     return JointScore(
@@ -174,6 +192,7 @@ def _joint_score(
         pivot_m=float(np.linalg.norm(joint.pivot - guess.pivot)) if guess is not None and placed else None,
         limit_iou=_limit_iou(joint, guess),
         opens=_opens(joint, guess),
+        confidence=confidence,
     )
 
 

@@ -1,4 +1,4 @@
-"""Input that is a little wrong, as real input is: what the refinement has to mend.
+"""Input that is a little wrong, as real input is: what the inference has to bear and the refinement to mend.
 
 Every perturbation is seeded and touches the parts, the contact graph or the tolerance alone, so that the truth stays
 what it was. A part that was cut in two is scored as one where the answer fixes the pieces to each other.
@@ -10,30 +10,33 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from trimesh.intersections import slice_faces_plane
 
-from kinematify.assembly.part import Assembly, Part
+from kinematify.assembly.assemble import simplified
+from kinematify.benchmark.degrade import DEGRADATIONS, with_parts
 from kinematify.benchmark.prediction import Prediction
 from kinematify.contact.build import build_contact_graph
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.random import Generator
 
+    from kinematify.assembly.part import Assembly, FloatArray, Part
+    from kinematify.benchmark.degrade import Degrade
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
 
 CLEAN = "clean"
 NOISE = 0.02
 """Vertices are moved by up to this share of the smallest side of their part's box."""
-GAP = 0.01
-"""Gap that opens between touching parts, fraction of the object's diagonal."""
 MISSING, SPURIOUS = 2, 3
 """Contacts that are left out, and that are made up."""
 _REACH = 10.0  # contacts are made up between parts up to this multiple of the tolerance apart, nearest ones if none is
 _MARK = "_piece"
+_TILT = np.radians(10.0)  # planes of cuts stand square to the part within about this
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -52,7 +55,7 @@ def perturbed(name: str, assembly: Assembly, config: Config, *, seed: int) -> Pe
     """Perturb an object.
 
     Args:
-        name: One of `PERTURBATIONS`.
+        name: `CLEAN`, or one of `PERTURBATIONS` or `DEGRADED`.
         assembly: The parts as they are.
         config: Of the inference.
         seed: Draws what is perturbed.
@@ -60,29 +63,39 @@ def perturbed(name: str, assembly: Assembly, config: Config, *, seed: int) -> Pe
     return _HOW[name](assembly, config, np.random.default_rng([seed, len(assembly.parts)]))
 
 
-def without_pieces(prediction: Prediction, pieces: Mapping[int, int]) -> Prediction:
-    """A prediction in which pieces that are fixed to what they were cut from are one part with it again.
+def without_pieces(prediction: Prediction, pieces: Mapping[int, int]) -> tuple[Prediction, int]:
+    """A prediction in which pieces that are fixed to each other are one part again.
 
     Args:
         prediction: Over all parts.
         pieces: Index of a piece -> that of the part that it was cut from.
+
+    Returns:
+        The prediction over what is left, and how many cuts were mended.
     """
-    parents, joints = dict(prediction.parents), list(prediction.joints)
-    for piece, main in pieces.items():
-        fixed = {joint.child for joint in joints if joint.kind == JointType.FIXED}
-        if parents[piece] == main and piece in fixed:
-            gone = piece
-        elif parents[main] == piece and main in fixed:
-            gone = main
-            parents[main] = parents[piece]
-            joints = [item for item in joints if item.child != main]
-            joints = [replace(item, child=main) if item.child == piece else item for item in joints]
-        else:
-            continue
-        parents = {part: main if above == piece else above for part, above in parents.items() if part != piece}
-        joints = [replace(item, parent=main) if item.parent == piece else item for item in joints]
-        joints = [item for item in joints if not (gone == piece and item.child == piece)]
-    return Prediction(parents=parents, joints=tuple(joints))
+    whole = {part: part for part in prediction.parents}
+    fixed = {joint.child for joint in prediction.joints if joint.kind == JointType.FIXED}
+    for child, parent in prediction.parents.items():
+        if child in fixed and pieces.get(child, child) == pieces.get(parent, parent):
+            kept, gone = sorted((_whole(whole, child), _whole(whole, parent)), key=lambda part: part in pieces)
+            whole[gone] = kept
+    parents = {
+        _whole(whole, part): -1 if above < 0 else _whole(whole, above)
+        for part, above in prediction.parents.items()
+        if above < 0 or _whole(whole, part) != _whole(whole, above)
+    }
+    joints = tuple(
+        replace(joint, parent=_whole(whole, joint.parent), child=_whole(whole, joint.child))
+        for joint in prediction.joints
+        if _whole(whole, joint.parent) != _whole(whole, joint.child)
+    )
+    return Prediction(parents=parents, joints=joints), sum(part != above for part, above in whole.items())
+
+
+def _whole(whole: Mapping[int, int], part: int) -> int:
+    while whole[part] != part:
+        part = whole[part]
+    return part
 
 
 # ---- what is done --------------------------------------------------------------------------------------------------
@@ -110,18 +123,19 @@ def _noise(assembly: Assembly, config: Config, rng: Generator) -> Perturbed:
         way *= reach * rng.random((len(places), 1)) / np.linalg.norm(way, axis=1)[:, None]
         return replace(part, vertices=(places + way)[index.reshape(-1)])
 
-    return Perturbed(assembly=_with(assembly, [shaken(part) for part in assembly.parts]), config=config)
+    return Perturbed(assembly=with_parts(assembly, [shaken(part) for part in assembly.parts]), config=config)
 
 
-def _gaps(assembly: Assembly, config: Config, rng: Generator) -> Perturbed:
-    """Every part shrinks about the middle of its box by half a gap on each side, but to no less than half."""
+def _mesh(degrade: Degrade) -> Callable[[Assembly, Config, Generator], Perturbed]:
+    """Degraded meshes; heavy ones are simplified as those that a user loads are."""
 
-    def shrunk(part: Part) -> Part:
-        middle, sides = part.bounds.mean(axis=0), np.ptp(part.bounds, axis=0)
-        factors = np.maximum(1.0 - GAP * assembly.diagonal / np.maximum(sides, 1e-12), 0.5)
-        return replace(part, vertices=middle + factors * (part.vertices - middle))
+    def degraded(assembly: Assembly, config: Config, rng: Generator) -> Perturbed:
+        rough = degrade(assembly, rng)
+        most = config.assembly.max_part_faces
+        parts = [part if len(part.faces) <= most else simplified(part, config.assembly) for part in rough.parts]
+        return Perturbed(assembly=with_parts(assembly, parts), config=config)
 
-    return Perturbed(assembly=_with(assembly, [shrunk(part) for part in assembly.parts]), config=config)
+    return degraded
 
 
 def _missing(assembly: Assembly, config: Config, rng: Generator) -> Perturbed:
@@ -154,9 +168,67 @@ def _split(assembly: Assembly, config: Config, rng: Generator) -> Perturbed:
     side = centres[:, along] > np.median(centres[:, along])
     if side.all() or not side.any():
         return Perturbed(assembly=assembly, config=config)
-    piece = Part(name=f"{part.name}{_MARK}", vertices=part.vertices, faces=part.faces[side])
-    parts = [replace(item, faces=item.faces[~side]) if item is part else item for item in assembly.parts]
-    return Perturbed(assembly=_with(assembly, [*parts, piece]), config=config, pieces={piece.name: part.name})
+    return _in_pieces(assembly, config, chosen, [replace(part, faces=part.faces[half]) for half in (~side, side)])
+
+
+def _cut(count: int) -> Callable[[Assembly, Config, Generator], Perturbed]:
+    """One part is cut by planes across its longest direction, tilted a little, at places that keep all pieces large."""
+
+    def cut(assembly: Assembly, config: Config, rng: Generator) -> Perturbed:
+        chosen = int(rng.integers(len(assembly.parts)))
+        part = assembly.parts[chosen]
+        direction = np.eye(3)[int(np.argmax(np.ptp(part.bounds, axis=0)))] + np.tan(_TILT) * rng.uniform(-1, 1, size=3)
+        direction /= np.linalg.norm(direction)
+        low, high = np.quantile(part.vertices[part.faces].mean(axis=1) @ direction, [0.02, 0.98])
+        shares = (np.arange(1, count) + rng.uniform(-0.2, 0.2, size=count - 1)) / count
+        bands = cut_in_bands(part, direction, (low + shares * (high - low)).tolist())
+        pieces = [piece for piece in bands if piece.area > 1e-3 * part.area]
+        if len(pieces) < count:
+            return Perturbed(assembly=assembly, config=config)
+        return _in_pieces(assembly, config, chosen, pieces)
+
+    return cut
+
+
+def cut_in_bands(part: Part, direction: FloatArray, offsets: Sequence[float]) -> list[Part]:
+    """Cut a part by parallel planes, triangles too; the pieces are open and meet edge to edge.
+
+    Args:
+        part: Any mesh.
+        direction: Unit normal of the planes, shape (3,).
+        offsets: Where the planes stand along it, ascending [m].
+
+    Returns:
+        One piece more than there are planes, from below; a piece without faces where a plane misses the part.
+    """
+    bands, rest = [], part
+    for offset in offsets:
+        below, rest = (_half(rest, sign * direction, sign * offset) for sign in (-1.0, 1.0))
+        bands.append(below)
+    return [*bands, rest]
+
+
+def _half(part: Part, normal: FloatArray, offset: float) -> Part:
+    """What lies on the positive side of a plane."""
+    if not len(part.faces):
+        return part
+    # Face indices are kept in the order of the mesh, so that both halves interpolate their common edges alike.
+    vertices, faces, _ = slice_faces_plane(  # type: ignore[no-untyped-call]
+        part.vertices, part.faces, normal, offset * normal
+    )
+    return replace(part, vertices=vertices, faces=faces)
+
+
+def _in_pieces(assembly: Assembly, config: Config, chosen: int, pieces: Sequence[Part]) -> Perturbed:
+    """The assembly with one part in pieces; the largest one keeps its name."""
+    name = assembly.parts[chosen].name
+    first, *others = sorted(pieces, key=lambda piece: -piece.area)
+    named = [replace(piece, name=f"{name}{_MARK}{number}") for number, piece in enumerate(others, start=1)]
+    parts = list(assembly.parts)
+    parts[chosen] = first
+    return Perturbed(
+        assembly=with_parts(assembly, [*parts, *named]), config=config, pieces={piece.name: name for piece in named}
+    )
 
 
 PERTURBATIONS = (
@@ -168,7 +240,10 @@ PERTURBATIONS = (
     "split",
     "gaps",
 )
-"""Names, `CLEAN` left out."""
+"""Faulty input that the refinement is measured on; `CLEAN` left out."""
+OVER_SEGMENTED = ("cut-2", "cut-3")
+DEGRADED = (*DEGRADATIONS, *OVER_SEGMENTED)
+"""Rough input that the inference is measured on; `CLEAN` left out."""
 _HOW: dict[str, Callable[[Assembly, Config, Generator], Perturbed]] = {
     CLEAN: _clean,
     "tolerance-half": _tolerance(0.5),
@@ -177,12 +252,10 @@ _HOW: dict[str, Callable[[Assembly, Config, Generator], Perturbed]] = {
     "contacts-missing": _missing,
     "contacts-spurious": _spurious,
     "split": _split,
-    "gaps": _gaps,
+    "cut-2": _cut(2),
+    "cut-3": _cut(3),
+    **{name: _mesh(degrade) for name, degrade in DEGRADATIONS.items()},
 }
-
-
-def _with(assembly: Assembly, parts: list[Part]) -> Assembly:
-    return Assembly(parts=tuple(parts), source=assembly.source)
 
 
 def _graph(assembly: Assembly, config: Config, factor: float) -> ContactGraph:

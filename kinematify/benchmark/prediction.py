@@ -29,6 +29,8 @@ class PredictedJoint:
     """[rad or m]; -inf for continuous."""
     upper: float
     """[rad or m]; +inf for continuous."""
+    confidence: float | None = None
+    """Between 0 and 1; None where the method gives none."""
     alternatives: tuple[tuple[JointType, FloatArray], ...] = ()
     """Type and axis of every candidate that was kept, best first: what it would answer if told the type."""
 
@@ -71,5 +73,6 @@ def _joint(estimate: JointEstimate, index: Sequence[int]) -> PredictedJoint:
         pivot=estimate.pivot,
         lower=estimate.lower,
         upper=estimate.upper,
+        confidence=estimate.confidence,
         alternatives=tuple((candidate.kind, candidate.axis) for candidate in estimate.alternatives),
     )

@@ -166,7 +166,7 @@ def _score(job: RefiningJob, erased: ErasedModel, given: Perturbed, inference: I
     pieces = {index[piece]: index[main] for piece, main in given.pieces.items()}
     return score_object(
         erased.truth,
-        without_pieces(prediction, pieces),
+        without_pieces(prediction, pieces)[0],
         centroids=[part.centroid for part in erased.parts],
         diagonal=erased.assembly.diagonal,
         gripper_joints=job.item.gripper_joints,

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
-from kinematify.benchmark.perturb import CLEAN, GAP, MISSING, NOISE, SPURIOUS
+from kinematify.benchmark.degrade import GAP
+from kinematify.benchmark.perturb import CLEAN, MISSING, NOISE, SPURIOUS
 from kinematify.benchmark.refining import RefiningResult
 from kinematify.errors import InputError, OutputError
 

@@ -83,9 +83,9 @@ def _summaries(report: BenchmarkReport) -> list[dict[str, Any]]:
     summaries = []
     for variant in report.header["variants"]:
         results = [result for result in report.results if result.variant == variant]
-        for kind in dict.fromkeys(result.kind for result in results):
-            group = [result for result in results if result.kind == kind]
-            summaries.append({"variant": variant, "kind": kind, **_group_numbers(group)})
+        for kind, given in dict.fromkeys((result.kind, result.input) for result in results):
+            group = [result for result in results if (result.kind, result.input) == (kind, given)]
+            summaries.append({"variant": variant, "kind": kind, "input": given, **_group_numbers(group)})
     return summaries
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from kinematify.benchmark.datasets import CONDITIONS, BenchObject, Condition, find_objects
 from kinematify.benchmark.job import INFER, Job, JobResult
 from kinematify.benchmark.ledger import RESULT, Ledger, code_version
+from kinematify.benchmark.perturb import CLEAN
 from kinematify.benchmark.workers import run_jobs
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
@@ -81,6 +82,8 @@ class BenchmarkRequest:
     variants: tuple[Variant, ...] = DEFAULT_VARIANTS
     conditions: tuple[str, ...] = tuple(condition.name for condition in CONDITIONS)
     """Names of conditions."""
+    inputs: tuple[str, ...] = (CLEAN,)
+    """What is done to the meshes: `CLEAN` and some of `kinematify.benchmark.perturb.DEGRADED`."""
     only: tuple[str, ...] = ()
     """Names of objects or categories or kinds; empty for all."""
     work_folder: Path = Path(".kinematify-bench")
@@ -185,8 +188,9 @@ def _jobs(request: BenchmarkRequest) -> list[Job]:
     objects = selected_objects(request)
     conditions = selected_conditions(request)
     return [
-        Job(item=item, condition=condition, variant=variant.label, config=config, infer=request.infer)
+        Job(item=item, condition=condition, variant=variant.label, config=config, infer=request.infer, input=given)
         for variant, config in [(variant, variant.load()) for variant in request.variants]
+        for given in request.inputs
         for item in objects
         for condition in conditions
     ]
@@ -220,7 +224,8 @@ def _longest_first(jobs: Mapping[str, Job]) -> list[tuple[str, Job]]:
 
 
 def _line(result: JobResult) -> str:
-    place = f"{result.object}, {result.condition}, {result.variant}"
+    given = "" if result.input == CLEAN else f", {result.input}"
+    place = f"{result.object}, {result.condition}{given}, {result.variant}"
     if result.status == "ok":
         return f"{place}: {result.seconds:.1f} s"
     return f"{place}: {result.status}, {result.message}"
@@ -236,6 +241,7 @@ def header_of(request: BenchmarkRequest, results: Sequence[_OfObject]) -> dict[s
         "objects": len({result.object for result in results}),
         "conditions": list(request.conditions),
         "seeds": sorted(seeds),
+        "inputs": list(request.inputs),
         "variants": [variant.label for variant in request.variants],
         "workers": request.workers,
         "processor": _processor(),

@@ -8,6 +8,7 @@ from itertools import chain
 from statistics import fmean
 from typing import TYPE_CHECKING
 
+from kinematify.benchmark.degrade_tables import degradation_sections, degraded
 from kinematify.benchmark.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.benchmark.summary import (
     CLOSE_ANGLE,
@@ -81,7 +82,8 @@ def markdown(report: BenchmarkReport, name: str, baseline: BenchmarkReport | Non
     sections = [[f"# {name}", "", *_header_lines(report), "", READING]]
     for variant in report.header["variants"]:
         results = [result for result in report.results if result.variant == variant]
-        sections += [[f"## Configuration: {variant}"], *_variant_sections(results)]
+        sections.append([f"## Configuration: {variant}"])
+        sections += degradation_sections(results) if degraded(results) else _variant_sections(results)
     if len(report.header["variants"]) > 1:
         sections.append(_ablation(report))
     if baseline is not None:

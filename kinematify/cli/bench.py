@@ -33,6 +33,7 @@ _FOUND_FAILURES = 1
         "kinematify bench models/ --conditions rest --objects panda --objects cabinet_*",
         "kinematify bench models/ --config default --config paper",
         "kinematify bench models/ --baseline results/robots.json",
+        "kinematify bench models/ --degrade voxels-150,cut-2 --conditions rest --name degraded",
         "kinematify bench models/ --refine --tiers geometry,engines --perturb all --conditions rest",
     ),
 )
@@ -73,6 +74,14 @@ _FOUND_FAILURES = 1
 )
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
 @click.option("--fresh", is_flag=True, help="Run all again instead of taking up what an earlier run has finished.")
+@click.option(
+    "--degrade",
+    metavar="LIST",
+    default="none",
+    show_default=True,
+    help="Rough meshes too, beside clean ones; all, or some of voxels-300, voxels-150, vertex-noise, faces-1000, "
+    "faces-300, hulls, holes, flipped, gaps, interpenetration, open, cut-2, cut-3.",
+)
 @click.option("--refine", is_flag=True, help="Measure what simulation and choosing again change, instead of accuracy.")
 @click.option(
     "--tiers",
@@ -103,6 +112,7 @@ def command(
     baseline: Path | None,
     jobs: int | None,
     fresh: bool,
+    degrade: str,
     refine: bool,
     tiers: str,
     perturb: str,
@@ -117,6 +127,10 @@ def command(
     code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
     --baseline do.
 
+    --degrade measures the same objects once more with every fault that meshes have in practice: remeshed on a grid of
+    1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or in each other,
+    open where parts meet (open), or with a part cut in two or three (cut-2, cut-3), which must come out as fixed.
+
     With --refine each object is inferred once and refined by every tier; the table says what that mends, what it costs
     and where it does harm. --perturb adds input with wrong tolerances, noise, faulty contacts, cut parts or gaps.
     """
@@ -127,11 +141,14 @@ def command(
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
     chosen = data if data is not None else folder
+    if degrade != "none" and (refine or baseline is not None):
+        raise click.UsageError("--degrade cannot be combined with --refine or --baseline. Give one of them.")
     earlier = load_report(baseline) if baseline is not None else None
     request = BenchmarkRequest(
         data=chosen,
         variants=_variants(configs, ablation=ablation),
         conditions=tuple(word.strip() for word in conditions.split(",")),
+        inputs=_inputs(degrade),
         only=_matching_objects(chosen, patterns),
         fresh=fresh,
         workers=jobs or os.cpu_count() or 1,
@@ -152,6 +169,28 @@ def command(
     for regression in regressions:
         click.echo(_describe_regression(regression), err=True)
     return _FOUND_FAILURES if regressions else 0
+
+
+def _inputs(given: str) -> tuple[str, ...]:
+    """Clean meshes, and what is asked for of `--degrade`."""
+    from kinematify.benchmark.perturb import CLEAN, DEGRADED
+
+    return (CLEAN,) if given == "none" else (CLEAN, *words_of(given, DEGRADED, "--degrade"))
+
+
+def words_of(given: str, known: Sequence[str], option: str) -> tuple[str, ...]:
+    """The words of a list, in the order in which they are known; all of them for ``all``.
+
+    Raises:
+        click.UsageError: A word is unknown.
+    """
+    if given == "all":
+        return tuple(known)
+    words = [word.strip() for word in given.split(",")]
+    unknown = [word for word in words if word not in known]
+    if unknown:
+        raise click.UsageError(f"{option} names {unknown[0]!r}. Known are all, {', '.join(known)}.")
+    return tuple(word for word in known if word in words)
 
 
 def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple[str, ...]:
@@ -184,8 +223,8 @@ def _describe(report: BenchmarkReport) -> str:
     from kinematify.benchmark.paper import TABLE_I, mean_over_robots
 
     rows = [
-        _summary_row(variant, kind, [run for run in report.results if (run.variant, run.kind) == (variant, kind)])
-        for variant, kind in dict.fromkeys((run.variant, run.kind) for run in report.results)
+        _summary_row(key, [run for run in report.results if (run.variant, run.kind, run.input) == key])
+        for key in dict.fromkeys((run.variant, run.kind, run.input) for run in report.results)
     ]
     for paper in (mean_over_robots(), TABLE_I["everyday"]):
         rows.append(("(the paper)", paper.label, "", f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}", "", "", "", ""))
@@ -204,7 +243,8 @@ def _describe(report: BenchmarkReport) -> str:
     return format_table(headings, rows)
 
 
-def _summary_row(variant: str, kind: str, runs: Sequence[JobResult]) -> tuple[str, ...]:
+def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
+    from kinematify.benchmark.perturb import CLEAN
     from kinematify.benchmark.summary import summarise
 
     summary = summarise(runs)
@@ -212,7 +252,9 @@ def _summary_row(variant: str, kind: str, runs: Sequence[JobResult]) -> tuple[st
     cells = [
         _number(summary.values.get(metric), scale, digits) for metric, scale, digits in (*columns, ("seconds", 1.0, 1))
     ]
-    return (variant, kind, str(summary.objects), *cells, str(summary.failed_runs + summary.unscored_runs))
+    variant, kind, given = key
+    objects = kind if given == CLEAN else f"{kind}, {given}"
+    return (variant, objects, str(summary.objects), *cells, str(summary.failed_runs + summary.unscored_runs))
 
 
 def _number(value: float | None, scale: float, digits: int) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.answer import write_answer
+from kinematify.cli.bench import words_of
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS
 from kinematify.cli.table import format_table
@@ -31,8 +32,8 @@ def measure_refinement(
     from kinematify.benchmark.refining_report import TIER_HEADINGS, harmed, tier_rows, write_refining_report
     from kinematify.benchmark.run import header_of
 
-    wanted = _words(tiers, TIERS, "--tiers")
-    inputs = (CLEAN,) if perturb == "none" else (CLEAN, *_words(perturb, PERTURBATIONS, "--perturb"))
+    wanted = words_of(tiers, TIERS, "--tiers")
+    inputs = (CLEAN,) if perturb == "none" else (CLEAN, *words_of(perturb, PERTURBATIONS, "--perturb"))
     with progress_reporter() as progress:
         results = run_refining_benchmark(request, tiers=wanted, perturbations=inputs, progress=progress)
     header = header_of(request, results)
@@ -44,14 +45,3 @@ def measure_refinement(
         click.echo(format_table(TIER_HEADINGS, tier_rows(results)))
         worse = "; ".join(f"{row[0]} ({row[1]}, {row[2]}): {row[3]}" for row in rows)
         click.echo(f"\nHarm: {worse or 'none'}.\n\nReport: {paths[0]} and {paths[1]}")
-
-
-def _words(given: str, known: tuple[str, ...], option: str) -> tuple[str, ...]:
-    """The words of a list, in the order in which they are known; all of them for ``all``."""
-    if given == "all":
-        return known
-    words = [word.strip() for word in given.split(",")]
-    unknown = [word for word in words if word not in known]
-    if unknown:
-        raise click.UsageError(f"{option} names {unknown[0]!r}. Known are all, {', '.join(known)}.")
-    return tuple(word for word in known if word in words)

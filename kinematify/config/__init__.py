@@ -27,7 +27,14 @@ from kinematify.config.joints import (
 from kinematify.config.output import ModelConfig, PreviewConfig
 from kinematify.config.refinement import FeedbackConfig, RefineConfig
 from kinematify.config.services import ServiceConfig, VisionConfig
-from kinematify.config.shapes import AssemblyConfig, ContactConfig, NeuralSdfConfig, SdfConfig, SurfaceConfig
+from kinematify.config.shapes import (
+    AssemblyConfig,
+    ContactConfig,
+    NeuralSdfConfig,
+    SdfConfig,
+    SeamConfig,
+    SurfaceConfig,
+)
 from kinematify.config.sources import RodinConfig, SourcesConfig
 from kinematify.config.trees import BaseConfig, RewardWeights, TopologyConfig
 
@@ -61,6 +68,7 @@ __all__ = [
     "RewardWeights",
     "RodinConfig",
     "SdfConfig",
+    "SeamConfig",
     "ServiceConfig",
     "SlidesConfig",
     "SourcesConfig",
@@ -83,6 +91,7 @@ class Config(StageConfig):
     assembly: AssemblyConfig
     surface: SurfaceConfig
     contact: ContactConfig
+    seam: SeamConfig
     bearing: BearingConfig
     quality: QualityConfig
     model: ModelConfig

@@ -71,13 +71,6 @@ class RefineConfig(StageConfig):
     """The tolerance then is this multiple of the median gap to the nearest part."""
     widest_tolerance: float
     """And at most this, fraction of the diagonal."""
-    seam_share: float
-    """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, from which the
-    two are one part."""
-    seam_smooth: float
-    """Share of the common rim over which the surface goes on, from which the same holds."""
-    seam_tolerance: float
-    """Distance at which two rims coincide, fraction of the diagonal."""
     twin_lead: float
     """Twins are told what most of them are if their common evidence leads by so much [log odds]."""
     survival_weight: float

@@ -50,6 +50,24 @@ class ContactConfig(StageConfig):
     """Largest Chamfer distance of congruent parts, as a fraction of the part's diagonal."""
 
 
+class SeamConfig(StageConfig):
+    """Where one part was cut in two."""
+
+    tolerance: float
+    """Distance at which two rims coincide, fraction of the assembly's diagonal."""
+    through_smooth: float
+    """Share of a common rim over which the surface goes on, from which it is a cut if it is also complete."""
+    through_planar: float
+    """A cut lies in a plane within this share of its own size (root mean square)."""
+    through_complete: float
+    """Share of the rims of both pieces in that plane that must coincide."""
+    share: float
+    """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, from which the
+    two are one part, however the seam runs; not asked of the base link."""
+    smooth: float
+    """Share of the common rim over which the surface goes on, from which the same holds."""
+
+
 class NeuralSdfConfig(StageConfig):
     """Signed distances as networks (III-B); lengths in the training are half diagonals of the part."""
 

@@ -147,6 +147,14 @@ class PartSurface:
         return np.asarray(edges[np.union1d(sharp, np.flatnonzero(counts == 1))])
 
     @cached_property
+    def rim(self) -> tuple[FloatArray, FloatArray]:
+        """Edges that one face alone has: their ends [m], shape (E, 2, 3), and the unit normals of the faces, (E, 3)."""
+        vertices, _ = self.welded
+        edges, edge_of_side, face_of_side = self._edge_table
+        single = np.flatnonzero(np.bincount(edge_of_side, minlength=len(edges))[edge_of_side] == 1)
+        return vertices[edges[edge_of_side[single]]], self.face_normals[0][face_of_side[single]]
+
+    @cached_property
     def feature_pieces(self) -> FeaturePieces:
         """Sharp and boundary edges as midpoints with directions."""
         vertices, _ = self.welded

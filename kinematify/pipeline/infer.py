@@ -6,25 +6,27 @@ import resource
 import sys
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
+from kinematify.contact.seams import find_cuts, joined, largest_piece, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearing import fit_bearings
 from kinematify.joints.decide import estimate_joints
 from kinematify.joints.quality import edge_quality
 from kinematify.model.build import build_model
+from kinematify.pipeline.pieces import joints_of_pieces, pair_of_pieces, tree_of_pieces
 from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.search import search_trees
 from kinematify.topology.stats import assembly_stats
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from kinematify.joints.bearing import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.pipeline.pieces import Groups
     from kinematify.topology.evidence import Pair
     from kinematify.topology.tree import KinematicTree
 
@@ -95,8 +98,12 @@ def infer(
     root = _base_index(assembly, base)
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
+        cuts = find_cuts(assembly, surfaces, config.seam) if graph is None else {}
+        groups = rigid_pieces(len(assembly.parts), cuts)
         if graph is None:
             graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
+    if 1 < len(groups) < len(assembly.parts):
+        return _inferred_joined(assembly, graph, groups, base=root, config=config, clock=clock)
     bearings: dict[Pair, EdgeBearing] = {}
     if config.joints.method == "geometry":
         with clock.stage("bearings", 0.2):
@@ -118,6 +125,47 @@ def infer(
         peak_mb=_peak_mb(),
         warnings=(*assembly.warnings, *_floating_parts(assembly, graph, trees[0])),
     )
+
+
+def _inferred_joined(
+    assembly: Assembly,
+    graph: ContactGraph,
+    groups: Groups,
+    *,
+    base: int | None,
+    config: Config,
+    clock: _StageClock,
+) -> Inference:
+    """Infer with the pieces of every part that was cut as one, and fix them to each other in the answer."""
+    mains = [largest_piece(assembly, group) for group in groups]
+    named = next((assembly.names[main] for main, group in zip(mains, groups, strict=True) if base in group), None)
+    whole = infer(joined(assembly, groups), config=config, base=named, progress=clock.progress)
+    trees = tuple(tree_of_pieces(tree, groups, mains) for tree in whole.trees)
+    bearings = {pair_of_pieces(pair, mains): bearing for pair, bearing in whole.bearings.items()}
+    known = {pair: bearing for pair, bearing in bearings.items() if pair in graph.by_pair}
+    return replace(
+        whole,
+        assembly=assembly,
+        graph=graph,
+        bearings=MappingProxyType(known),
+        trees=trees,
+        joints=joints_of_pieces(assembly, trees[0], whole.joints, groups, mains),
+        timings=MappingProxyType({name: clock.seconds.get(name, 0.0) + t for name, t in whole.timings.items()}),
+        warnings=(*assembly.warnings, *whole.warnings, *_cut_parts(assembly, groups, mains)),
+    )
+
+
+def _cut_parts(assembly: Assembly, groups: Groups, mains: Sequence[int]) -> list[str]:
+    """Tell of parts that were cut into pieces."""
+    warnings = []
+    for main, group in zip(mains, groups, strict=True):
+        others = [assembly.names[piece] for piece in group if piece != main]
+        if others:
+            warnings.append(
+                f"{' and '.join(others)} and {assembly.names[main]} are one part that was cut apart: their open rims "
+                "coincide, and the surface goes on. They are fixed to each other."
+            )
+    return warnings
 
 
 def gather_evidence(

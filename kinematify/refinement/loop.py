@@ -12,13 +12,13 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from kinematify.contact.seams import find_seams
 from kinematify.geometry.surface import part_surfaces
 from kinematify.refinement.candidates import CandidateJoints, score_of
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.contacts import audit_contacts, rebuilt
 from kinematify.refinement.history import Change, History, Round
 from kinematify.refinement.plan import Plan
-from kinematify.refinement.seams import find_seams
 from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.split import infer_joined
 from kinematify.refinement.tiers import GEOMETRY, TIERS, dear_verdict
@@ -257,12 +257,12 @@ class _Loop:
     def _rebuilt(self, done: _Done) -> tuple[Plan, Contacts, list[Change]] | None:
         """Parts that were one, and contacts that the graph has wrong; None where both are right."""
         assembly, config = self.given.assembly, self.given.config
-        seams = find_seams(assembly, done.plan.tree.root, self.config)
+        surfaces = part_surfaces(assembly, config=config.surface)
+        seams = find_seams(assembly, surfaces, done.plan.tree.root, config.seam)
         if seams:
             joined = infer_joined(done.plan, done.contacts, seams, base=self.base)
             if joined[2]:
                 return joined
-        surfaces = part_surfaces(assembly, config=config.surface)
         audit = audit_contacts(assembly, surfaces, self.given.graph, config)
         if not audit:
             return None

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
-
-import numpy as np
-
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.contact.seams import joined, largest_piece, rigid_pieces
 from kinematify.pipeline.infer import infer
+from kinematify.pipeline.pieces import joints_of_pieces, tree_of_pieces
 from kinematify.refinement.history import Change
 from kinematify.refinement.plan import Plan
-from kinematify.refinement.seams import joined, largest_piece, rigid_pieces
 from kinematify.refinement.topology import Contacts
-from kinematify.topology.tree import KinematicTree
-
-if TYPE_CHECKING:
-    from kinematify.assembly.part import Assembly
-    from kinematify.pipeline.infer import Inference
 
 Pair = tuple[int, int]
-Groups = tuple[tuple[int, ...], ...]
 
 
 def infer_joined(
@@ -43,7 +32,8 @@ def infer_joined(
     if len(groups) < 2:
         return plan, contacts, []
     whole = infer(joined(assembly, groups), config=plan.config, base=named)
-    tree, joints = _with_pieces(assembly, whole, groups, mains)
+    tree = tree_of_pieces(whole.trees[0], groups, mains)
+    joints = joints_of_pieces(assembly, tree, whole.joints, groups, mains)
     new = Plan(assembly=assembly, config=plan.config, tree=tree, joints=joints)
     changes = [
         Change(
@@ -58,39 +48,6 @@ def infer_joined(
         if piece != main
     ]
     return new, contacts, changes
-
-
-def _with_pieces(
-    assembly: Assembly, whole: Inference, groups: Groups, mains: list[int]
-) -> tuple[KinematicTree, tuple[JointEstimate, ...]]:
-    """Tree and joints over all pieces: the main piece of each group stands where the group stood."""
-    parents = [-1] * len(assembly.parts)
-    for node, above in enumerate(whole.trees[0].parents):
-        parents[mains[node]] = -1 if above < 0 else mains[above]
-    found = {
-        mains[item.child]: replace(item, parent=mains[item.parent], child=mains[item.child]) for item in whole.joints
-    }
-    for main, group in zip(mains, groups, strict=True):
-        for piece in group:
-            if piece != main:
-                parents[piece] = main
-                found[piece] = _fixed(assembly, main, piece)
-    tree = KinematicTree(parents=tuple(parents), reward=whole.trees[0].reward, terms=whole.trees[0].terms)
-    return tree, tuple(found[child] for _, child in tree.edges())
-
-
-def _fixed(assembly: Assembly, parent: int, child: int) -> JointEstimate:
-    return JointEstimate(
-        parent=parent,
-        child=child,
-        kind=JointType.FIXED,
-        axis=np.array([0.0, 0.0, 1.0]),
-        pivot=assembly.parts[child].centroid,
-        lower=0.0,
-        upper=0.0,
-        confidence=1.0,
-        evidence={"seam": 1.0},
-    )
 
 
 def _parent_name(plan: Plan, part: int) -> str:

@@ -1,0 +1,110 @@
+"""Parts that were cut apart are told from parts that merely meet, and come out fixed to each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+from objects import BUILDERS
+
+from kinematify.assembly.part import Assembly, Part
+from kinematify.benchmark.perturb import cut_in_bands, perturbed
+from kinematify.config import load_config
+from kinematify.contact.seams import find_cuts, find_seams, rigid_pieces
+from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.candidate import JointType
+from kinematify.pipeline import infer
+
+CONFIG = load_config()
+X = np.array([1.0, 0.0, 0.0])
+
+
+def part_of(mesh: trimesh.Trimesh, name: str) -> Part:
+    return Part(name=name, vertices=mesh.vertices, faces=mesh.faces)
+
+
+def cuts(*parts: Part) -> set[tuple[int, int]]:
+    named = tuple(Part(name=f"p{k}", vertices=part.vertices, faces=part.faces) for k, part in enumerate(parts))
+    assembly = Assembly(parts=named, source="test")
+    return set(find_cuts(assembly, part_surfaces(assembly, config=CONFIG.surface), CONFIG.seam))
+
+
+SOLIDS = {
+    "box": trimesh.creation.box((1, 0.3, 0.2)),
+    "tube": trimesh.creation.annulus(0.1, 0.2, 1.0).apply_transform(
+        trimesh.transformations.rotation_matrix(np.pi / 2, [0, 1, 0])
+    ),
+    "ball": trimesh.creation.icosphere(subdivisions=3),
+}
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_what_a_plane_cut_apart_is_found_the_base_included(name: str) -> None:
+    tilted = np.array([1.0, 0.1, -0.1]) / np.linalg.norm([1.0, 0.1, -0.1])
+    pieces = cut_in_bands(part_of(SOLIDS[name], name), tilted, [-0.1, 0.15])
+    assert cuts(*pieces) == {(0, 1), (1, 2)}
+
+
+def test_a_sheet_cut_across_is_found() -> None:
+    sheet = Part(
+        name="sheet",
+        vertices=np.array([[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [0, 0.5, 0.0]]),
+        faces=[[0, 1, 2], [0, 2, 3]],
+    )
+    assert cuts(*cut_in_bands(sheet, X, [0.4])) == {(0, 1)}
+
+
+def test_closed_parts_that_meet_are_no_pieces() -> None:
+    left, right = (trimesh.creation.box((0.5, 0.3, 0.2)).apply_translation((x, 0, 0)) for x in (-0.25, 0.25))
+    assert cuts(part_of(left, "a"), part_of(right, "b")) == set()
+
+
+def test_a_lid_cut_out_of_a_shell_along_its_corner_is_no_piece() -> None:
+    shell = trimesh.creation.box((1, 1, 1))
+    lid = shell.face_normals[:, 2] > 0.5
+    body, top = (Part(name="p", vertices=shell.vertices, faces=shell.faces[chosen]) for chosen in (~lid, lid))
+    assert cuts(body, top) == set()
+
+
+def test_a_door_flush_in_its_body_that_has_a_back_of_its_own_is_no_piece() -> None:
+    """The sides go straight on over the seam, but the door is closed at the back and the body has an opening there."""
+    body, door = cut_in_bands(part_of(trimesh.creation.box((1, 1, 1)), "fridge"), X, [0.3])
+    opening = trimesh.creation.box((0.1, 0.8, 0.8)).apply_translation((0.25, 0, 0))
+    inside = opening.submesh([opening.face_normals[:, 0] < 0.5], append=True)
+    hollow = trimesh.util.concatenate([trimesh.Trimesh(body.vertices, body.faces), inside])
+    assert cuts(door, part_of(hollow, "body")) == set()
+
+
+def test_seams_that_bend_join_parts_but_never_the_base() -> None:
+    ball = SOLIDS["ball"]
+    jagged = ball.triangles_center[:, 0] + 0.2 * ball.triangles_center[:, 1] ** 2 > 0.1
+    parts = tuple(
+        Part(name=f"p{k}", vertices=ball.vertices, faces=ball.faces[side]) for k, side in enumerate((jagged, ~jagged))
+    )
+    plate = part_of(trimesh.creation.box((3, 3, 0.1)).apply_translation((0, 0, -1.05)), "plate")
+    assembly = Assembly(parts=(*parts, plate), source="test")
+    surfaces = part_surfaces(assembly, config=CONFIG.surface)
+    assert set(find_seams(assembly, surfaces, 2, CONFIG.seam)) == {(0, 1)}
+    assert find_seams(assembly, surfaces, 0, CONFIG.seam) == {}
+    assert rigid_pieces(3, {(0, 1): 1.0}) == ((0, 1), (2,))
+
+
+@pytest.mark.parametrize(("name", "kind", "seed"), [("nested_drawer", "cut-2", 0), ("hinge_pin", "cut-3", 1)])
+def test_pieces_come_out_fixed_and_the_other_joints_as_without_the_cut(name: str, kind: str, seed: int) -> None:
+    assembly = BUILDERS[name]().assembly
+    whole = infer(assembly, config=CONFIG)
+    given = perturbed(kind, assembly, CONFIG, seed=seed)
+    assert given.pieces
+    found = infer(given.assembly, config=CONFIG)
+    names = found.assembly.names
+    fixed = {names[joint.child] for joint in found.joints if joint.kind is JointType.FIXED}
+    assert fixed == set(given.pieces)
+    assert {names[joint.parent] for joint in found.joints if names[joint.child] in fixed} == set(given.pieces.values())
+    moving = {names[joint.child]: joint for joint in found.joints if joint.kind is not JointType.FIXED}
+    assert set(moving) == {assembly.names[joint.child] for joint in whole.joints}
+    for joint in whole.joints:
+        same = moving[assembly.names[joint.child]]
+        assert same.kind is joint.kind
+        assert abs(float(same.axis @ joint.axis)) > np.cos(np.radians(1.0))
+    assert any("cut apart" in warning for warning in found.warnings)
+    assert set(found.graph.by_pair) >= set(found.bearings)
