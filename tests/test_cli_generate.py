@@ -15,7 +15,7 @@ from kinematify.benchmark.datasets import find_objects
 from kinematify.cli.app import run
 from kinematify.cli.generation import Generation
 from kinematify.cli.verdict import describe_briefly
-from kinematify.pipeline.corpus import write_corpus
+from kinematify.pipeline.corpus import _entry, write_corpus
 from kinematify.sources.procedural.request import from_text
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result
@@ -113,8 +113,21 @@ def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):
     assert len(more) == 3
     assert {name: more[name] for name in first} == first
     assert {item.kind for item in find_objects(out)} == {"procedural"}
+    manifest = json.loads((out / "manifest.json").read_text())
+    assert {entry["name"] for entry in manifest["objects"]} == set(more)
+    assert sum(manifest["categories"].values()) == 3
     assert run(["generate", "--corpus", "3", "--seed", "2", "-o", str(out)]) == 2
     assert "seed 1, not 2" in capsys.readouterr().err
+
+
+def test_what_a_killed_process_left_of_a_corpus_is_cleared_away_and_some_objects_stand_ajar(tmp_path):
+    (tmp_path / ".bottle_000.123").mkdir()
+    (tmp_path / ".bottle_000.123" / "model.urdf").write_text("<robot")
+    write_corpus(tmp_path, 1, seed=1, progress=lambda name, done: None)
+    assert not list(tmp_path.glob(".*"))
+    shares = [_entry(k, 1)["open"] for k in range(400)]
+    assert 0.15 < np.mean(np.array(shares) > 0.0) < 0.35
+    assert max(shares) <= 0.6
 
 
 def test_several_processes_write_the_same_corpus_as_one(tmp_path):

@@ -8,6 +8,7 @@ import os
 import shutil
 import signal
 import zlib
+from collections import Counter
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from typing import TYPE_CHECKING, Any
 
@@ -25,14 +26,18 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MANIFEST = "manifest.json"
+_AJAR = 0.25  # of the objects, as of things that are seen in rooms
+_AJAR_BY = (0.05, 0.6)  # share of the way; more is as good as open, and no object is found so
 _FEW = 8  # so many are written while other processes are still starting
 
 
 def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, float], None], workers: int = 1) -> Path:
     """Write `count` objects below a folder, one folder each with a URDF, and a manifest.
 
-    Families take turns, so that their numbers differ by one at most. Objects that are there already stay: the same
-    call after an interrupt goes on, and a larger count adds to a smaller corpus of the same seed.
+    Families take turns, so that their numbers differ by one at most; a quarter of the objects stand ajar. The manifest
+    says of every object how it was drawn, and its ``source.json`` with which parameters it was built. Objects that are
+    there already stay: the same call after an interrupt goes on, and a larger count adds to a smaller corpus of the
+    same seed.
 
     Args:
         out: The folder.
@@ -52,8 +57,11 @@ def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, f
     entries = [_entry(k, seed) for k in range(count)]
     try:
         out.mkdir(parents=True, exist_ok=True)
-        facts = {"schema": 1, "kinematify": __version__, "seed": seed, "objects": entries}
+        counts = Counter(entry["category"] for entry in entries)
+        facts = {"schema": 1, "kinematify": __version__, "seed": seed, "categories": counts, "objects": entries}
         manifest.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+        for left in out.glob(".*.*"):  # half of an object, of a process that was killed
+            shutil.rmtree(left)
         missing = [entry for entry in entries if not (out / entry["name"]).exists()]
         for done, name in enumerate(_write_objects(out, missing, workers), start=count - len(missing) + 1):
             progress(name, done / count)
@@ -69,8 +77,10 @@ def _entry(k: int, seed: int) -> dict[str, Any]:
     """Object k of a corpus; what it is like hangs on its name alone, so that new families change no other."""
     names = sorted(FAMILIES)
     family, number = names[k % len(names)], k // len(names)
-    drawn = int(np.random.default_rng([seed, zlib.crc32(family.encode()), number]).integers(2**31))
-    return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn}
+    rng = np.random.default_rng([seed, zlib.crc32(family.encode()), number])
+    drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
+    share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
+    return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn, "open": share}
 
 
 def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -> Iterator[str]:
@@ -97,7 +107,7 @@ def _write_object(out: Path, entry: dict[str, Any]) -> str:
     folder: Path = out / entry["name"]
     aside = out / f".{folder.name}.{os.getpid()}"
     shutil.rmtree(aside, ignore_errors=True)
-    blueprint = build(FAMILIES[entry["category"]], {}, seed=entry["seed"], name=entry["name"])
+    blueprint = build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=entry["seed"], name=entry["name"])
     write_truth(blueprint, aside, load_config())
     aside.rename(folder)
     return folder.name
