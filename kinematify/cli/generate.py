@@ -190,7 +190,11 @@ def _categories() -> str:
     from kinematify.sources.procedural.families import FAMILIES
 
     rows = [(family.name, family.title, ", ".join(p.name for p in family.parameters)) for family in FAMILIES.values()]
-    return format_table(("category", "what it is", "parameters"), rows)
+    table = format_table(("category", "what it is", "parameters"), rows)
+    return (
+        f"{table}\n\nParameters with units and ranges: kinematify generate --list --category NAME\n"
+        "A page with a picture of each: kinematify generate --gallery DIR"
+    )
 
 
 def _parameters(category: str) -> str:
