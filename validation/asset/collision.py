@@ -126,7 +126,8 @@ def inflated_hulls(physics: Physics) -> Iterator[Problem]:
             yield Problem(
                 message=f"The hull of the collision mesh {name} of the link {link.name} has {ratio:.3g} times the "
                 "volume of the mesh, and MuJoCo and PyBullet see the hull: what reaches into its hollows collides.",
-                remedy="Cut it into convex pieces and write each as a <collision> (kinematify export --to urdf, or CoACD).",
+                remedy="Cut it into convex pieces and write each as a <collision> (kinematify export --to urdf, or "
+                "CoACD).",
                 link=link.name,
                 value=ratio,
                 limit=physics.settings.inflation,

@@ -86,8 +86,8 @@ class HullView:
             message=f"The surfaces of {first} and {second} stay clear, but their convex hulls, which engines collide, "
             f"are {length(excess[deepest] + tolerance)} deep in each other at {value} of {sweep.travel.joint}, and in "
             f"the way over {share:.0%} of its free range.",
-            remedy="Cut the collision meshes into convex pieces (kinematify export --to urdf, or CoACD for closer ones); the "
-            "joint itself is right.",
+            remedy="Cut the collision meshes into convex pieces (kinematify export --to urdf, or CoACD); the joint "
+            "itself is right.",
             severity=Severity.WARNING,
             joint=sweep.travel.joint,
             pair=(first, second),
