@@ -88,7 +88,7 @@ def test_interruption_ends_with_130_and_no_traceback(failing, capsys: pytest.Cap
         (["infer"], "Missing argument 'ASSEMBLY'"),
         (["infer", "x"], "Missing option '-o' / '--out'"),
         (["infer", "x", "-o", "y", "--sead", "1"], "--seed"),
-        (["infer", "x", "-o", "y", "--up", "x"], "'auto', 'z', 'y'"),
+        (["infer", "x", "-o", "y", "--up", "w"], "'auto', 'z', 'y'"),
         (["doctor", "surplus"], "unexpected extra argument"),
     ],
 )

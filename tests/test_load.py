@@ -105,6 +105,18 @@ def test_turning_upright_keeps_handedness(tmp_path: Path) -> None:
     assert trimesh.Trimesh(part.vertices, part.faces).volume == pytest.approx(6.0)
 
 
+@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z"])
+def test_whatever_points_up_points_to_z(tmp_path: Path, up: str) -> None:
+    """A long arrow of boxes along the given axis stands on z, and no part is mirrored."""
+    sign, axis = (-1.0, up[1]) if up.startswith("-") else (1.0, up)
+    way = sign * np.eye(3)["xyz".index(axis)]
+    near, far = (trimesh.creation.box((0.1, 0.2, 0.3)).apply_translation(k * way) for k in (1.0, 5.0))
+    loaded = load(folder_of(tmp_path / "parts", near=near, far=far), up=up)
+    middles = {part.name: part.bounds.mean(axis=0) for part in loaded.parts}
+    np.testing.assert_allclose(middles["far"] - middles["near"], [0, 0, 4], atol=1e-6)
+    assert all(trimesh.Trimesh(part.vertices, part.faces).volume > 0 for part in loaded.parts)
+
+
 def test_gltf_node_with_two_materials_is_one_part(tmp_path: Path) -> None:
     """Two primitives of one mesh, as every modelling program writes them for two materials."""
     tree = json.loads(scene().export(file_type="gltf")["model.gltf"])

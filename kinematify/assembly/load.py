@@ -22,10 +22,19 @@ from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.assembly.part import Assembly
     from kinematify.config import AssemblyConfig
 
-UP_CHOICES = ("auto", "y", "z")
+_TO_Z_UP = {
+    "x": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
+    "y": ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
+    "z": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "-x": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
+    "-y": ((1, 0, 0), (0, 0, 1), (0, -1, 0)),
+    "-z": ((1, 0, 0), (0, -1, 0), (0, 0, -1)),
+}
+"""Axis that points up in the input -> rotation that turns it to z."""
+UP_CHOICES = ("auto", *_TO_Z_UP)
 PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf")
 """Mesh files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
@@ -69,7 +78,8 @@ def load_assembly(
     Args:
         path: File or folder.
         config: Limits and tolerances; those of the default configuration if absent.
-        up: ``auto`` (y for glTF as its standard says, z for all else), ``y`` or ``z``; y-up input is turned to z up.
+        up: ``auto`` (y for glTF as its standard says, z for all else), or the axis that points up: ``x``, ``y``, ``z``,
+            ``-x``, ``-y`` or ``-z`` (upside down). The input is turned to z up.
         scale: Metres per unit of the input.
         labels: Labels per triangle of a single mesh.
 
@@ -193,7 +203,9 @@ def _description(path: Path, reading: _Reading) -> _Given:
     description = read_description(path)
     poses = forward_kinematics(description, rest_configuration(description))
     groups = [group for group in rigid_groups(description) if group.has_geometry]
-    meshes = tuple(_upright(baked(description, group, poses), reading.up == "y") for group in groups)
+    meshes = tuple(
+        _upright(baked(description, group, poses), "z" if reading.up == "auto" else reading.up) for group in groups
+    )
     return _Given(meshes=meshes, warnings=description.notes)
 
 
@@ -216,17 +228,16 @@ def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ..
         )
     if path.suffix.lower() == ".3mf":
         check_packed_mesh(path, allowed)
-    y_up = reading.up == "y" or (reading.up == "auto" and path.suffix.lower() in GLTF_SUFFIXES)
-    return tuple(_upright(mesh, y_up) for mesh in read_meshes(path, empty_ok=empty_ok))
+    usual = "y" if path.suffix.lower() in GLTF_SUFFIXES else "z"
+    up = usual if reading.up == "auto" else reading.up
+    return tuple(_upright(mesh, up) for mesh in read_meshes(path, empty_ok=empty_ok))
 
 
-def _upright(mesh: RawMesh, y_up: bool) -> RawMesh:
-    """Turn y up to z up: a quarter turn about x, the front stays in front."""
-    if not y_up:
+def _upright(mesh: RawMesh, up: str) -> RawMesh:
+    """Turn the axis that points up to z; from y a quarter turn about x, so that the front stays in front."""
+    if up == "z":
         return mesh
-    x, y, z = mesh.vertices.T
-    turned: FloatArray = np.stack([x, -z, y], axis=1)
-    return replace(mesh, vertices=turned)
+    return replace(mesh, vertices=mesh.vertices @ np.array(_TO_Z_UP[up], dtype=np.float64).T)
 
 
 def _empty(name: str) -> RawMesh:

@@ -113,8 +113,8 @@ def run_job(job: Job, *, key: str, failure: Failure | None = None) -> JobResult:
             answer is scored.
     """
     try:
-        erased = _erased(job)
-        given = perturbed(job.input, _shown(erased), job.config, seed=job.condition.seed)
+        erased = erased_model(job)
+        given = perturbed(job.input, shown_parts(erased), job.config, seed=job.condition.seed)
     except Exception as error:
         return unscored(job, key, Failure(status="unreadable", message=_sentence(error), seconds=0.0))
     answer = _Answer() if failure is not None else _infer(job, erased, given)
@@ -129,7 +129,8 @@ def run_job(job: Job, *, key: str, failure: Failure | None = None) -> JobResult:
     return replace(_result(job, key, failure, answer, score), cuts=len(given.pieces))
 
 
-def _erased(job: Job) -> ErasedModel:
+def erased_model(job: Job) -> ErasedModel:
+    """The object in the pose of its condition, without its kinematics."""
     description = read_description(job.item.urdf, package_dirs=job.item.package_dirs)
     condition = job.condition
     return erase(description, pose=condition.pose, seed=condition.seed, yaw_deg=condition.yaw_deg)
@@ -144,7 +145,7 @@ class _Answer:
     cuts_mended: int = 0
 
 
-def _shown(erased: ErasedModel) -> Assembly:
+def shown_parts(erased: ErasedModel) -> Assembly:
     """A fresh assembly: whatever erasing noted about names or origin stays behind."""
     return Assembly(parts=erased.parts, source="benchmark")
 

@@ -30,7 +30,10 @@ _NO_INFLUENCE = {"cli", "envs", "nightly", "validation", "batch.py", "refine.py"
 _REPORTING = {
     f"benchmark/{name}.py"
     for name in (
+        "calibration",
         "degrade_tables",
+        "error_pictures",
+        "errors",
         "ledger",
         "paper",
         "regression",

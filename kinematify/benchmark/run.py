@@ -118,7 +118,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
         OutputError: The work folder cannot be written.
         KeyboardInterrupt: Ctrl-C; workers are stopped, finished jobs are kept.
     """
-    jobs = _jobs(request)
+    jobs = jobs_of(request)
     version_hash = code_version()
     keyed = [(job.key(version_hash), job) for job in jobs]
     total = len({key for key, _ in keyed})
@@ -184,7 +184,12 @@ def selected_conditions(request: BenchmarkRequest) -> list[Condition]:
     return [_condition(name) for name in request.conditions]
 
 
-def _jobs(request: BenchmarkRequest) -> list[Job]:
+def jobs_of(request: BenchmarkRequest) -> list[Job]:
+    """One job per configuration, input, object and condition of a request.
+
+    Raises:
+        InputError: There is no such data, object or condition.
+    """
     objects = selected_objects(request)
     conditions = selected_conditions(request)
     return [

@@ -34,6 +34,7 @@ _FOUND_FAILURES = 1
         "kinematify bench models/ --config default --config paper",
         "kinematify bench models/ --baseline results/robots.json",
         "kinematify bench models/ --degrade voxels-150,cut-2 --conditions rest --name degraded",
+        "kinematify bench models/ --errors 20",
         "kinematify bench models/ --refine --tiers geometry,engines --perturb all --conditions rest",
     ),
 )
@@ -82,6 +83,13 @@ _FOUND_FAILURES = 1
     help="Rough meshes too, beside clean ones; all, or some of voxels-300, voxels-150, vertex-noise, faces-1000, "
     "faces-300, hulls, holes, flipped, gaps, interpenetration, open, cut-2, cut-3.",
 )
+@click.option(
+    "--errors",
+    "shown",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Also write a page with pictures of the N worst joints, truth beside inference.",
+)
 @click.option("--refine", is_flag=True, help="Measure what simulation and choosing again change, instead of accuracy.")
 @click.option(
     "--tiers",
@@ -113,6 +121,7 @@ def command(
     jobs: int | None,
     fresh: bool,
     degrade: str,
+    shown: int | None,
     refine: bool,
     tiers: str,
     perturb: str,
@@ -160,12 +169,17 @@ def command(
         return 0
     with progress_reporter() as progress:
         report = run_benchmark(request, progress)
-    written = write_report(report, out, name=name, baseline=earlier)
+        written: tuple[Path, ...] = write_report(report, out, name=name, baseline=earlier)
+        if shown is not None:
+            from kinematify.benchmark.errors import write_error_gallery
+
+            page = write_error_gallery(report, request, out, name=f"{name}_errors", count=shown, progress=progress)
+            written = (*written, page)
     regressions = find_regressions(report, earlier) if earlier is not None else ()
     if json_to:
         write_answer(as_json(report), json_to)
     if json_to != "-":
-        click.echo(f"{_describe(report)}\n\nReport: {written[0]} and {written[1]}")
+        click.echo(f"{_describe(report)}\n\nReport: {', '.join(map(str, written))}")
     for regression in regressions:
         click.echo(_describe_regression(regression), err=True)
     return _FOUND_FAILURES if regressions else 0

@@ -43,10 +43,10 @@ DOUBTFUL = 0.5
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="Folder to make for the model.")
 @click.option(
     "--up",
-    type=click.Choice(["auto", "z", "y"]),
+    type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
     default="auto",
     show_default=True,
-    help="Axis of the input that points up; auto: y for glTF, z for all else.",
+    help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, z for all else.",
 )
 @click.option("--scale", type=float, default=1.0, show_default=True, help="Metres per unit of the input.")
 @click.option(
