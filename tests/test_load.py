@@ -542,7 +542,7 @@ def test_pickled_labels_are_not_executed(tmp_path: Path) -> None:
     refused(tmp_path / "a.stl", "cannot be read", labels=tmp_path / "l.npy")
 
 
-@pytest.mark.parametrize("options", [{"up": "x"}, {"scale": 0.0}, {"scale": -1.0}, {"scale": float("nan")}])
+@pytest.mark.parametrize("options", [{"up": "w"}, {"scale": 0.0}, {"scale": -1.0}, {"scale": float("nan")}])
 def test_bad_arguments(tmp_path: Path, options: dict[str, object]) -> None:
     with pytest.raises(InputError, match=r"Choose|Give"):
         load(tmp_path, **options)
