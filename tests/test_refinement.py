@@ -90,10 +90,13 @@ def test_a_drawer_along_the_wrong_axis_finds_the_right_one_again() -> None:
     assert (change.part, change.what) == ("drawer", "axis")
 
 
-def test_evidence_of_shape_can_outweigh_the_simulation() -> None:
-    sure = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=50.0)
-    assert joint_above(refine(sure, seconds=60.0).inference, "drawer").kind is JointType.PRISMATIC
-    assert refine(sure, seconds=60.0).history.changed == ()
+@pytest.mark.parametrize("lead", [50.0, 1.5])
+def test_evidence_of_shape_can_outweigh_the_simulation(lead: float) -> None:
+    """Blocked both ways weighs 2.5; what lets another direction lead by 1.0 only does not overrule the geometry."""
+    sure = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=lead)
+    refinement = refine(sure, seconds=60.0)
+    assert joint_above(refinement.inference, "drawer").kind is JointType.PRISMATIC
+    assert refinement.history.changed == ()
 
 
 def test_a_range_beyond_the_free_travel_ends_there_and_not_far_below() -> None:

@@ -59,6 +59,8 @@ class RefineConfig(StageConfig):
     """So many of them at most."""
     lead: float
     """A candidate replaces the chosen one if it leads by more [log odds]."""
+    lead_elsewhere: float
+    """The same for a candidate of another type or direction [log odds]."""
     least_travel: float
     """A range that is blocked may not be cut below this share of what the inference saw free."""
     least_kept: float

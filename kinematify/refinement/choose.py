@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from kinematify.validation.feedback import Feedback, RangeSignal
 
 
+_SAME_WAY = np.cos(np.radians(10.0))  # as `kinematify bench` tells wrong axes from right ones
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Trial:
     """A candidate after its simulation."""
@@ -123,8 +126,8 @@ class Chooser:
         first = trials[0]
         if len(trials) > 1 and self._can_never_move(trials):
             return self._fixed(plan, child, old, trials)
-        best = max(trials[1:], key=lambda trial: trial.total, default=first)
-        if best.total <= first.total + self.config.lead or best.joint.kind is JointType.FIXED:
+        best = max(trials[1:], key=lambda trial: trial.total - self._lead_of(trial, old), default=first)
+        if best.total <= first.total + self._lead_of(best, old) or best.joint.kind is JointType.FIXED:
             return plan, None
         what = "type" if best.joint.kind.turns != old.kind.turns else "axis"
         why = (
@@ -133,6 +136,11 @@ class Chooser:
         )
         change = Change(part=child, what=what, before=described(old), after=described(best.joint), why=why)
         return plan.with_joint(best.joint), change
+
+    def _lead_of(self, trial: Trial, old: JointEstimate) -> float:
+        """What a candidate has to lead by: more if it has another type or direction than what the geometry chose."""
+        alike = abs(float(trial.joint.axis @ old.axis)) > _SAME_WAY and trial.joint.kind.turns == old.kind.turns
+        return self.config.lead if alike else self.config.lead_elsewhere
 
     def _can_never_move(self, trials: list[Trial]) -> bool:
         """Everything that is near-best, turns and slides both, is blocked to both sides: evidence that it is fixed."""
