@@ -30,7 +30,9 @@ def wrong(item: dict[str, Any]) -> list[str]:
     if meant.family != item["family"]:
         return [f"family {meant.family}"]
     made = build(FAMILIES[meant.family], meant.values)
-    closed = build(FAMILIES[meant.family], {**meant.values, "open": 0.0})
+    stands_open = any(made.parameters[name] for name in ("open", "open_angle", "open_distance"))
+    shut = {k: v for k, v in meant.values.items() if not k.startswith("open")}
+    closed = build(FAMILIES[meant.family], shut) if stands_open else made
     found = [f"ignored {word}" for word in meant.ignored]
     found += [f"{k}: {n}" for k, n in item.get("parts", {}).items() if len(bodies(made, k)) != n]
     found += [f"joints {len(made.joints)}" for n in [item.get("joints")] if n is not None and len(made.joints) != n]
@@ -90,6 +92,12 @@ def test_what_was_understood_and_what_was_not_is_said():
     assert {"2 doors", "width 0.8 m", "red"} <= set(meant.understood)
 
 
+def test_the_colour_of_a_handle_is_left_out_and_said():
+    meant = understand("a white nightstand with one drawer and gold knobs", FAMILIES)
+    assert (meant.values["color"], meant.values["handle"]) == ("white", "knob")
+    assert meant.ignored == ("gold",)
+
+
 def test_the_colour_reaches_the_bodies():
     meant = understand("a green cabinet with one drawer", FAMILIES)
     assert build(FAMILIES["cabinet"], meant.values).parts[0].color == COLORS["green"]
@@ -105,6 +113,7 @@ def test_the_colour_reaches_the_bodies():
         ("шкаф с двумя дверями", "not English"),
         ("eine Kommode mit drei Schubladen", "in English"),
         ("a spaceship", "names nothing"),
+        ("a spaceship with a door", "names nothing"),
         ("a door with no hinge that swings", "needs a hinge"),
         ("a chest of 5 drawers in 3 rows and 2 columns", "Say one of them"),
         ("a cabinet with -3 drawers", "negative"),
@@ -155,6 +164,10 @@ def test_what_cannot_be_built_is_refused_with_its_bounds(text, reason):
         ("a keypad with five buttons", {"buttons": 5}),
         ("hand with two fingers with four joints per finger", {"fingers": 2, "joints": 4}),
         ("a tracked tree with five branches", {"branches": 5}),
+        ("a six panel door", {"panels": 6}),
+        ("a 5 axis robot", {"joints": 5}),
+        ("6 inch pliers", {"length": pytest.approx(0.1524)}),
+        ("an excavator with wheels", {"wheels": 3}),
     ],
 )
 def test_names_may_be_counted_and_say_a_kind_and_parts_may_be_refused(text, values):
@@ -198,6 +211,8 @@ def test_what_opens_stands_open_by_the_angle_that_was_asked_for_and_no_further()
         ("a cabinet with drawers on the left", "3*drawer | panel"),
         ("a cabinet with two doors on both sides of four drawers", "door | 4*drawer | door"),
         ("a cabinet with two doors and three drawers, the drawers on top", "3*drawer / 2*door"),
+        ("a cabinet with left door and right drawer", "door | drawer"),
+        ("a cabinet with a lower drawer and two upper doors", "2*door / drawer"),
     ],
 )
 def test_the_same_thing_may_stand_at_several_places(text, layout):

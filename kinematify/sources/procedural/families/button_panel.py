@@ -58,7 +58,17 @@ def _add_buttons(values: Values, workshop: Workshop, bottom: float, top: float) 
 FAMILY = Family(
     name="button_panel",
     title="button panel",
-    words=("button panel", "keypad", "control panel", "push button panel", "number pad", "elevator panel", "key pad"),
+    words=(
+        "button panel",
+        "keypad",
+        "control panel",
+        "push button panel",
+        "number pad",
+        "elevator panel",
+        "key pad",
+        "remote control",
+        "calculator",
+    ),
     material="plastic",
     parameters=(
         Parameter(name="width", default=0.12, unit="m", bounds=(0.06, 0.6), usual=(0.08, 0.25), help="Outer width."),

@@ -49,7 +49,16 @@ def _build(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="serial_arm",
     title="robot arm",
-    words=("robot arm", "arm", "manipulator", "robotic arm", "serial arm", "articulated arm", "industrial robot"),
+    words=(
+        "robot arm",
+        "arm",
+        "manipulator",
+        "robotic arm",
+        "serial arm",
+        "articulated arm",
+        "industrial robot",
+        "axis robot",
+    ),
     material="metal",
     parameters=(
         Parameter(

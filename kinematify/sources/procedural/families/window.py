@@ -134,7 +134,7 @@ def _add_handle(
 FAMILY = Family(
     name="window",
     title="window",
-    words=("window", "skylight"),
+    words=("window", "skylight", "sash window"),
     material="wood",
     parameters=(
         Parameter(name="width", default=1.0, unit="m", bounds=(0.6, 4.0), usual=(0.6, 1.6), help="Outer width."),
@@ -155,7 +155,9 @@ FAMILY = Family(
                 "pivot": ("pivoting", "pivoted"),
             },
         ),
-        Parameter(name="sashes", default=1, bounds=(1, 3), usual=(1, 3), words=("sash", "window"), help="That move."),
+        Parameter(
+            name="sashes", default=1, bounds=(1, 3), usual=(1, 3), words=("sash", "window", "pane"), help="That move."
+        ),
         Parameter(name="rows", default=1, bounds=(1, 4), usual=(1, 2), help="Of panes in a sash."),
         Parameter(name="columns", default=1, bounds=(1, 3), usual=(1, 2), help="Of panes in a sash."),
         Parameter(name="hinge", default="barrel", choices=("barrel", "edge"), help="Visible hinges, or hidden ones."),

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 _ABOVE = ("above", "over", "atop")
 _BELOW = ("below", "under", "beneath", "underneath")
 _BESIDE = ("beside", "next", "alongside")
+_SIDES = {"left": -1, "right": 1}
+_LEVELS = {"top": 1, "upper": 1, "middle": 0, "bottom": -1, "lower": -1}
 _MIDDLE = ("middle", "center", "centre", "between")
 _PRONOUNS = ("it", "them", "these", "those", "that", "which", "each", "")
 
@@ -63,6 +65,8 @@ def layout_of(words: Sequence[str], mentions: Sequence[Mention]) -> tuple[str, t
         return "", ()
     blocks, meant = _blocks(shown)
     used: list[int] = []
+    for block in blocks:
+        _place_described(words, block, used)
     for k, mention in enumerate(shown):
         end = shown[k + 1].first if k + 1 < len(shown) else len(words)
         following = meant[k + 1] if k + 1 < len(shown) else None
@@ -74,6 +78,20 @@ def layout_of(words: Sequence[str], mentions: Sequence[Mention]) -> tuple[str, t
     if not placed and texts == plain and {b.mention.kind for b in blocks} <= {"door", "drawer"}:
         return "", ()
     return _written(blocks, texts), tuple(used)
+
+
+def _place_described(words: Sequence[str], block: _Block, used: list[int]) -> None:
+    """`left door`, `two upper drawers`: the place stands right before the noun, or between it and its number."""
+    first, last = block.mention.first, block.mention.last
+    numbered = words[first] in NUMBERS or words[first].isdigit()
+    for at in range(first if numbered else max(first - 1, 0), last):
+        if words[at] in _SIDES:
+            block.across = _SIDES[words[at]]
+        elif words[at] in _LEVELS:
+            block.up = _LEVELS[words[at]]
+        else:
+            continue
+        used.append(at)
 
 
 def _blocks(mentions: Sequence[Mention]) -> tuple[list[_Block], list[_Block]]:
@@ -101,6 +119,8 @@ def _place(
     block, following = pair
     for at in between:
         word, after = words[at], words[at + 1] if at + 1 < len(words) else ""
+        if at in used:
+            continue
         refers_back = after in _PRONOUNS or following is None or after in (",", ".", ";", "and")
         if word in ("left", "right"):
             side = -1 if word == "left" else 1

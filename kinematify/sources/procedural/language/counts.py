@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
@@ -21,7 +21,7 @@ _NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of
 _PLACES = {
     "left": "left", "right": "right", "top": "top", "bottom": "bottom", "above": "top", "below": "bottom",
     "over": "top", "under": "bottom", "underneath": "bottom", "beneath": "bottom", "middle": "middle",
-    "center": "middle", "centre": "middle", "between": "middle",
+    "center": "middle", "centre": "middle", "between": "middle", "upper": "top", "lower": "bottom",
 }  # fmt: skip
 """Words for a place of its own, by which one count is told from another of the same thing."""
 _SIDES = (("either", "each", "both"), ("side", "sides", "end", "ends"))
@@ -59,7 +59,7 @@ def read_grids(reading: Reading) -> None:
         total = columns * rows
         number, counting = _number_before(reading, noun) if noun < k else (None, ())
         said = f"{total} {parameter.name} in {columns} columns and {rows} rows"
-        reading.take(parameter.name, number or total, said, *counting)
+        reading.take(parameter.name, int(number or total), said, *counting)
         reading.take(parameter.name, total, said, *range(k, end), noun)
         reading.counted.add(noun)
         for name, lines in (("columns", columns), ("rows", rows)):
@@ -106,6 +106,17 @@ def read_counts(reading: Reading) -> None:
             _take_counts(reading, parameter, counts)
 
 
+def _place_before(reading: Reading, k: int) -> str | None:
+    """The place that is said right before a noun: `the left door`, `an upper drawer`."""
+    return _PLACES.get(reading.text(k - 1))
+
+
+def _is_one(reading: Reading, where: range) -> bool:
+    """`left door`, in the singular and at a place, is one."""
+    last = reading.tokens[where.stop - 1]
+    return _place_before(reading, where.start) is not None and last.given == last.text
+
+
 def _counts_of(reading: Reading, parameter: Parameter) -> list[_Count]:
     """Every place where a sentence names what a parameter counts, in its order."""
     found: list[_Count] = []
@@ -116,9 +127,12 @@ def _counts_of(reading: Reading, parameter: Parameter) -> list[_Count]:
             read = tuple(singular(reading.text(i), frozenset(words)) for i in where)
             if read == words and not reading.used & set(where):
                 number, counting = _number_before(reading, k)
-                found.append(_Count(number=number, where=where, counting=counting))
+                whole = None if number is None else _whole(reading, number, where.stop - 1)
+                found.append(_Count(number=whole, where=where, counting=counting))
                 reading.used.update((*where, *counting))
     found.sort(key=lambda count: count.where.start)
+    if all(count.number is None for count in found):
+        found = [replace(count, number=1) if _is_one(reading, count.where) else count for count in found]
     return _with_those_left_out(reading, found)
 
 
@@ -148,7 +162,7 @@ def _names_something_else(reading: Reading, k: int, counts: list[_Count], count:
 def _take_counts(reading: Reading, parameter: Parameter, counts: list[_Count]) -> None:
     """Counts at several places add up; elsewhere two of one thing must agree."""
     numbered = [count for count in counts if count.number is not None]
-    places = [_place(reading, count.where.stop) for count in numbered]
+    places = [_place(reading, c.where.stop) or _place_before(reading, c.where.start) for c in numbered]
     apart = len(numbered) > 1 and all(places) and len(set(places)) == len(places)
     totals = [_total(reading, count) for count in numbered]
     if apart:
@@ -159,6 +173,9 @@ def _take_counts(reading: Reading, parameter: Parameter, counts: list[_Count]) -
         if not apart:
             reading.take(parameter.name, total, f"{total} {parameter.name}", *count.counting, *count.where)
     stated = dict(zip(numbered, totals, strict=True))
+    if counts and not numbered and parameter.default == 0 and parameter.usual:
+        some = int(parameter.usual[1])  # `with wheels` are as many as there may well be
+        reading.take(parameter.name, some, f"{some} {parameter.name}")
     for count in counts:
         reading.counted.update(count.where)
         reading.mentions += _mentions(reading, parameter, count, stated.get(count))
@@ -200,16 +217,27 @@ def _place(reading: Reading, k: int) -> str | None:
     return None
 
 
-def read_counted_name(reading: Reading, where: range) -> None:
+def read_counted_name(reading: Reading) -> None:
     """`a double door` has two of what a door is made of, where the family counts them by its own name."""
-    names = (" ".join(reading.text(i) for i in where), reading.text(where.stop - 1))
+    where = range(min(reading.named), max(reading.named) + 1)
+    names = (" ".join(reading.text(i) for i in where), *(reading.text(i) for i in where))
     number, counting = _number_before(reading, where.start)
     if (reading.text(where.start - 2), reading.text(where.start - 1)) == ("pair", "of"):  # of glasses, of scissors
         reading.used.add(where.start - 2)
     counted = (p for p in reading.family.parameters if isinstance(p.default, int))
     parameter = next((p for p in counted if set(names) & set(nouns_of(p))), None)
     if parameter is not None and number is not None and number > 1:
-        reading.take(parameter.name, number, f"{number} {parameter.name}", *counting)
+        whole = _whole(reading, number, where.stop - 1)
+        reading.take(parameter.name, whole, f"{whole} {parameter.name}", *counting)
+
+
+def _whole(reading: Reading, number: float, k: int) -> int:
+    """The number that counts the noun at word k, which cannot be broken."""
+    if number != int(number):
+        raise InputError(
+            f"The text asks for {number:g} {reading.tokens[k].given}; only a whole number of them can be built."
+        )
+    return int(number)
 
 
 def _kind(parameter: Parameter) -> str:
@@ -217,26 +245,21 @@ def _kind(parameter: Parameter) -> str:
     return next((noun for noun in nouns_of(parameter) if noun in CELLS), nouns_of(parameter)[0])
 
 
-def _number_before(reading: Reading, k: int) -> tuple[int | None, tuple[int, ...]]:
+def _number_before(reading: Reading, k: int) -> tuple[float | None, tuple[int, ...]]:
     """The number that counts the noun at word k, and its words; what describes the noun between them is left."""
     at = k - 1
     while at >= 0 and k - at <= 3:
         token = reading.tokens[at]
         if token.number is not None and at not in reading.used:
-            if token.number != int(token.number):
-                raise InputError(
-                    f"The text asks for {token.given} {reading.tokens[k].given}; only a whole number of them can be "
-                    "built."
-                )
             before, factor = reading.text(at - 1), reading.number(at - 2)
             if before in JOINING and at >= 2 and factor is not None:
-                return int(token.number) * int(factor), (at - 2, at - 1, at)
+                return token.number * factor, (at - 2, at - 1, at)
             if token.text == "dozen" and reading.text(at - 2) == "half":
                 return 6, (at - 2, at - 1, at)
             if token.text == "dozen":
                 times = reading.number(at - 1) if at else None
                 return 12 * int(times or 1), (at - 1, at) if times else (at,)
-            return int(token.number), (at - 1, at) if before in ARTICLES else (at,)
+            return token.number, (at - 1, at) if before in ARTICLES else (at,)
         if token.is_sign or at in reading.used or token.text in _NUMBER_ENDS:
             return None, ()
         at -= 1

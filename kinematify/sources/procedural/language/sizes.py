@@ -97,6 +97,15 @@ def _lengths(reading: Reading) -> None:
         k = end
 
 
+def read_bare_length(reading: Reading) -> None:
+    """`6 inch pliers`: of what has one length, or one diameter."""
+    name = next((name for name in ("length", "diameter") if reading.parameter(name) is not None), None)
+    for k in range(len(reading.tokens)):
+        length = length_at(reading, k) if k not in reading.used else None
+        if length is not None and name is not None and name not in reading.values:
+            reading.take(name, length[0], f"{name} {length[0]:g} m", *range(k, length[1]))
+
+
 def _dimension(reading: Reading, word: str, metres: float) -> str | None:
     """The parameter that a word for a size means in this family; of several, the first that can be so large."""
     lengths = {p.name: p for p in reading.family.all_parameters if p.unit == "m"}

@@ -14,8 +14,16 @@ from kinematify.sources.procedural.language.arrangement import layout_of
 from kinematify.sources.procedural.language.counts import read_counted_name, read_counts, read_grids
 from kinematify.sources.procedural.language.openness import FRACTIONS, OPENNESS, read_openness
 from kinematify.sources.procedural.language.reading import Reading, nouns_of
-from kinematify.sources.procedural.language.sizes import DIMENSIONS, read_sizes
-from kinematify.sources.procedural.language.words import ARTICLES, CHOICES, STOP_WORDS, Token, singular, tokens_of
+from kinematify.sources.procedural.language.sizes import DIMENSIONS, read_bare_length, read_sizes
+from kinematify.sources.procedural.language.words import (
+    ARTICLES,
+    CHOICES,
+    STOP_WORDS,
+    UNITS,
+    Token,
+    singular,
+    tokens_of,
+)
 from kinematify.sources.procedural.layout import CELLS
 from kinematify.sources.procedural.materials import COLORS, MATERIALS
 
@@ -27,6 +35,7 @@ if TYPE_CHECKING:
     _Name = tuple[tuple[str, ...], Family]
 
 _HEAD_ENDS = {"with", "having", "has", "whose", "that", "which", "featuring", "and", "made", "on", "in", ",", ":", ";"}
+_HAVING = ("with", "having", "has", "whose", "featuring", "containing")
 _PLACES = {
     *("left", "right", "above", "below", "under", "beneath", "over", "top", "bottom", "beside", "next", "stacked"),
     *("column", "row", "grid", "lower", "upper"),
@@ -67,8 +76,17 @@ def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
     family, where = _family(sentence, tokens, names)
     reading = Reading(tokens=tokens, family=family, used=set(where), named=frozenset(where))
     reading.understood.append(family.title)
-    read_counted_name(reading, where)
-    for step in (read_sizes, read_grids, read_counts, _choices, _parts_it_has, read_openness, _looks):
+    for step in (
+        read_sizes,
+        read_grids,
+        read_counts,
+        read_counted_name,
+        _choices,
+        _parts_it_has,
+        read_openness,
+        read_bare_length,
+        _looks,
+    ):
         step(reading)
     _arrangement(reading)
     ignored = tuple(
@@ -94,7 +112,8 @@ def _refuse_what_makes_no_sense(sentence: str, reading: Reading, ignored: tuple[
             "leave out one of the two."
         )
     words = sum(not token.is_sign for token in reading.tokens)
-    if len(ignored) > _STRANGE * words and not any(word in STOP_WORDS or word in _NOT for word in texts):
+    strange = sum(word.isalpha() and word not in UNITS for word in ignored)
+    if strange > _STRANGE * words and not any(word in STOP_WORDS or word in _NOT for word in texts):
         raise InputError(
             f"Of the text {sentence[:80]!r} only {', '.join(reading.understood)} was understood. Describe the object "
             "in English, e.g. 'a cabinet with two doors above three drawers'."
@@ -127,12 +146,16 @@ def _choice_words(parameter: Parameter, choice: str) -> tuple[str, ...]:
 
 
 def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) -> tuple[Family, range]:
-    """The family that the head of the sentence names: what stands before `with`, and there the last name."""
+    """The family that the head of the sentence names: what stands before `with`, and there the last name.
+
+    What an object has does not say what it is: a spaceship with a door is no door.
+    """
     end = next((k for k, token in enumerate(tokens) if k > 0 and token.text in _HEAD_ENDS), len(tokens))
     found = _named(tokens[:end], names)
     if found:
         return next((whole for whole in found[:-1] if _counts_parts(tokens, whole[0], found[-1][1])), found[-1])
-    anywhere = _named(tokens, names)
+    having = next((k for k, token in enumerate(tokens) if token.text in _HAVING), len(tokens))
+    anywhere = _named(tokens[:having], names)
     if anywhere:
         return anywhere[0]
     titles = {" ".join(words): family.title for words, family in names}
@@ -220,15 +243,24 @@ def _parts_it_has(reading: Reading) -> None:
 
 
 def _looks(reading: Reading) -> None:
-    """Colours and materials."""
-    for k, token in enumerate(reading.tokens):
-        if k in reading.used:
-            continue
-        if token.text in COLORS:
-            reading.take("color", token.text, token.text, k)
-        for name, material in MATERIALS.items():
-            if token.text in material.words:
-                reading.take("material", name, f"made of {name}", k)
+    """Colours and materials of the object; those of its handles cannot be chosen, and are left to be told."""
+    found = [(k, name, value, said) for k in range(len(reading.tokens)) for name, value, said in _look(reading, k)]
+    whole = [item for item in found if item[0] + 1 not in reading.used - reading.named]
+    for name in ("color", "material"):
+        looks = [item for item in whole if item[1] == name]
+        # `white doors` say what a cabinet looks like, unless it was said of the cabinet itself.
+        looks = looks or [item for item in found if item[1] == name and item[0] + 1 in reading.counted]
+        for k, _, value, said in looks:
+            reading.take(name, value, said, k)
+
+
+def _look(reading: Reading, k: int) -> list[tuple[str, str, str]]:
+    """Parameter, value and words for the user of a colour or material at word k."""
+    word = reading.text(k)
+    if k in reading.used:
+        return []
+    colors = [("color", word, word)] if word in COLORS else []
+    return colors + [("material", name, f"made of {name}") for name, item in MATERIALS.items() if word in item.words]
 
 
 def _arrangement(reading: Reading) -> None:

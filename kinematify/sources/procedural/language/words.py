@@ -46,7 +46,7 @@ _STOP_TEXT = """
     small big huge large medium tall short wide narrow compact little new old modern kitchen living room office
     household home bathroom containing featuring including plus also only just total all set kind type style shaped
     dark light pale bright looking real full size robot robotic mechanical electric object model thing stand
-    standing side
+    standing side arranged
 """
 STOP_WORDS = frozenset(_STOP_TEXT.split())
 """Words that carry nothing, or whose sense is left to the seed."""
