@@ -9,7 +9,7 @@ from kinematify.joints.candidate import JointType
 from kinematify.joints.kind import Siblings, decide_kind
 from kinematify.joints.panels import rank_turns
 from kinematify.joints.slides import rank_slides
-from kinematify.sources.procedural.solids import box
+from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
 from tests.known import known_object, sliding
 from tests.objects import BUILDERS
@@ -62,3 +62,14 @@ def test_evidence_moves_the_odds_the_stated_way() -> None:
     assert alone.kind is JointType.REVOLUTE
     assert paired.odds == pytest.approx(alone.odds + CONFIG.joints.kind.weights["sliding_pair"])
     assert set(alone.cues) == set(CONFIG.joints.kind.weights)
+
+
+@pytest.mark.parametrize(("depth", "slides"), [(0.2, True), (0.03, False)])
+def test_a_rod_deep_in_a_tube_is_drawn_out_and_a_short_one_turns(depth: float, slides: bool) -> None:
+    """The rod of a gas spring and a shaft with its seat: round, loose, alike but for how deep they are held."""
+    tube = cylinder(0.026, (0, 0, 0), (0, 0, 0.25)) - cylinder(0.0145, (0, 0, 0.249 - depth), (0, 0, 1))
+    rod = cylinder(0.014, (0, 0, 0.25 - depth), (0, 0, 0.27)) + cylinder(0.06, (0, 0, 0.26), (0, 0, 0.28))
+    joint = sliding("tube", "rod", (0, 0, 1), (0, 0, 0), (0.0, 0.1))
+    estimate = infer_joints(known_object("spring", {"tube": tube, "rod": rod}, joint))["rod"]
+    assert (estimate.kind is JointType.PRISMATIC) is slides
+    assert abs(float(estimate.axis[2])) > 0.999

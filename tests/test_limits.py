@@ -7,7 +7,10 @@ import pytest
 
 from kinematify.joints.candidate import JointType
 from kinematify.joints.limits import find_range
-from tests.joint_scenes import CONFIG, estimates_of, scene_of
+from kinematify.sources.procedural.pieces.bearings import barrel
+from kinematify.sources.procedural.solids import box, cylinder
+from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
+from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
 
 
@@ -56,3 +59,31 @@ def test_a_knob_turns_without_end() -> None:
 def test_arms_have_limits_to_both_sides() -> None:
     for estimate in estimates_of("serial_arm").values():
         assert -np.pi <= estimate.lower < 0.0 < estimate.upper <= np.pi
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_leaf_opens_to_the_side_of_its_barrels(side: float) -> None:
+    """Two leaves in a plane that both turn freely; only the barrels between them tell which way they fold."""
+    level = side * 0.03
+    anchors = ((-0.03, -0.006, 0.0, 0.02), (0.006, 0.03, 0.0, 0.02))
+    halves = barrel(0.1, 0.008, 4e-4, anchors)
+    solids = {}
+    for name, half, (left, right) in zip(("fixed", "leaf"), halves, ((-0.4, -0.01), (0.01, 0.4)), strict=True):
+        knuckles = half if side < 0 else half.mirror((0, 1, 0))
+        solids[name] = box((left, -0.015, -0.5), (right, 0.015, 0.5))
+        solids[name] += knuckles.translate((0, level, -0.3)) + knuckles.translate((0, level, 0.3))
+    joint = turning("fixed", "leaf", (0, 0, side), (0, level, 0), limits=(0.0, 2.5))
+    found = infer_joints(known_object("fold", solids, joint))["leaf"]
+    assert float(found.axis @ joint.axis) > 0.99
+
+
+def test_a_level_disc_on_top_is_lifted_and_a_button_is_pressed() -> None:
+    """Both are round, small and sit in a bore; a lid covers a fifth of its pot, a button a tenth."""
+    for radius, upwards in ((0.05, True), (0.02, False)):
+        pot = cylinder(0.12, (0, 0, 0), (0, 0, 0.2)) - cylinder(radius + 3e-4, (0, 0, 0.19), (0, 0, 0.3))
+        disc = cylinder(radius, (0, 0, 0.191), (0, 0, 0.206))
+        joint = sliding("pot", "disc", (0, 0, 1), (0, 0, 0.2), (0.0, 0.05))
+        known = known_object("pot", {"pot": pot, "disc": disc}, joint)
+        scene = scene_of(known, "disc")
+        found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
+        assert (found.sign > 0) is upwards

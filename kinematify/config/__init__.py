@@ -12,6 +12,7 @@ from kinematify.config.base import CONFIG_FOLDER, StageConfig, load_values, vali
 from kinematify.config.bearings import BearingConfig, QualityConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
 from kinematify.config.joints import (
+    FootingConfig,
     FramesConfig,
     GateConfig,
     JointsConfig,
@@ -21,6 +22,7 @@ from kinematify.config.joints import (
     PanelsConfig,
     PlayConfig,
     RailsConfig,
+    RockersConfig,
     SlidesConfig,
     SweepConfig,
 )
@@ -50,6 +52,7 @@ __all__ = [
     "Config",
     "ContactConfig",
     "FeedbackConfig",
+    "FootingConfig",
     "FramesConfig",
     "GateConfig",
     "JointsConfig",
@@ -66,6 +69,7 @@ __all__ = [
     "RailsConfig",
     "RefineConfig",
     "RewardWeights",
+    "RockersConfig",
     "RodinConfig",
     "SdfConfig",
     "SeamConfig",

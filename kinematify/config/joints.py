@@ -108,6 +108,12 @@ class KindConfig(StageConfig):
     """Log odds of sliding before any evidence."""
     cap: float
     """Largest influence of a single cue."""
+    deep_none: float
+    """Length over width up to which a round contact is a bearing."""
+    deep_full: float
+    """Length over width from which it is that of a telescope."""
+    drawn: float
+    """Share of that length by which the part can be drawn out."""
     stuck_candidates: int
     """Turning candidates that must all be blocked before a part counts as fixed."""
     stuck_factor: float
@@ -192,6 +198,10 @@ class LimitsConfig(StageConfig):
     """A panel within this angle of square to its body is closed [deg]."""
     closer: float
     """Closing an open panel brings it so much nearer to its body, ratio of mean distances."""
+    hinge_off: float
+    """A bearing farther from the middle of a panel than this fraction of its thickness lies at one face."""
+    even: float
+    """A part whose mean lies nearer to its line than this fraction of its reach is even about it: no lever."""
     unstopped_deg: float
     """A lever that turns farther both ways is stopped inside, where it cannot be seen [deg]."""
     lever_deg: float
@@ -208,6 +218,36 @@ class LimitsConfig(StageConfig):
     """A turning joint keeps at least this range [deg]."""
     least_slide: float
     """A sliding joint keeps at least this travel, fraction of the diagonal."""
+
+
+class RockersConfig(StageConfig):
+    """Plates whose front is folded across the middle."""
+
+    facing_deg: float
+    """Surface within this angle of the thin direction belongs to the front or back [deg]."""
+    least_share: float
+    """Share of a part's area that its front has at least."""
+    least_samples: int
+    """Samples of each half."""
+    least_deg: float
+    """Lean of each half, to opposite sides [deg]."""
+    even_deg: float
+    """Surface within this angle of the middle lean of its half is even [deg]."""
+    whole: float
+    """Share of each half that is even."""
+
+
+class FootingConfig(StageConfig):
+    """Pedals and wheels at the foot of a body."""
+
+    small: float
+    """Largest diagonal of such a part, fraction of the body's."""
+    low: float
+    """Largest height of its middle above the foot, fraction of the body's height."""
+    aside: float
+    """Least distance from the middle of the body, in halves of its narrower side."""
+    agreeing: float
+    """Length of the sum of the unit directions of all such parts, at least."""
 
 
 class RailsConfig(StageConfig):
@@ -264,3 +304,5 @@ class JointsConfig(StageConfig):
     limits: LimitsConfig
     journal: JournalConfig
     play: PlayConfig
+    rockers: RockersConfig
+    footing: FootingConfig

@@ -15,7 +15,7 @@ import numpy as np
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
 from kinematify.joints.play import contact_play
-from kinematify.joints.scene import is_cap
+from kinematify.joints.scene import eccentricity, is_cap
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def decide_kind(
         config: Weights; positive ones speak for sliding.
     """
     cues = {
-        **_room_cues(scene, turns, slides),
+        **_room_cues(scene, turns, slides, config),
         **_shape_cues(scene, turns),
         **_twin_cues(scene, siblings),
         **_play_cues(scene, turns, slides, config),
@@ -77,8 +77,10 @@ def decide_kind(
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
     cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
     cues["retained"] *= 1.0 - cues["capped"]
+    for held in ("keyed", "button", "flat_cap", "drawer", "box_inside", "row"):
+        cues[held] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
-        cues[round_thing] *= 1.0 - cues["keyed"]  # what is round but keyed is guided
+        cues[round_thing] *= 1.0 - max(cues["keyed"], cues["telescope"])  # what is round but keyed is guided
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
     if not is_cap(scene) and _stuck(scene, turns, slides, config):
@@ -136,7 +138,7 @@ def _near_best(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> I
     return np.flatnonzero(same)[: config.play.lines]
 
 
-def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> dict[str, float]:
+def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
     """Where the part can go: a drawer leaves one way and stops the other; a lift cannot turn at all."""
     own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
@@ -154,7 +156,28 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides) -> d
         "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
         "guided": large * float(scene.gated) * _guided(scene, slides),
+        "telescope": large * _telescope(scene, slides, config),
     }
+
+
+def _telescope(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
+    """1 for a rod that is held in a tube over many times its own width, and can be drawn out: pins are retained.
+
+    Bearings of what turns are about as long as wide, and hinges carry their part on one side.
+    """
+    axis, free = slides.axes[0], slides.free_parent[0]
+    if not scene.gated or scene.bearing is None or len(scene.contact.points) == 0:
+        return 0.0
+    line = scene.bearing.lines[0]
+    if abs(float(axis @ line.axis)) < 0.99 or eccentricity(scene, line.axis, line.pivot) > config.limits.even:
+        return 0.0
+    offset = scene.contact.points - line.pivot
+    width = 2.0 * float(scene.contact.weights @ np.linalg.norm(np.cross(offset, line.axis), axis=1))
+    length = float(np.ptp(offset @ line.axis))
+    drawn = free.max() * scene.diagonal > config.kind.drawn * length
+    return float(drawn) * float(
+        np.interp(length / max(width, 1e-12), (config.kind.deep_none, config.kind.deep_full), (0.0, 1.0))
+    )
 
 
 def _depth(scene: JointScene, slides: RankedSlides) -> float:
@@ -216,7 +239,9 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         "mechanism": scene.mechanism * large,
         "button": scene.smallness * float(not scene.gated) * (1.0 - scene.compact) * (1.0 - edge),
         "edge_contact": edge,
-        "wheel": float(_is_wheel(scene)),
+        "wheel": float(scene.rolls),
+        "rocker": float(scene.fold is not None and not scene.gated),
+        "pedal": float(scene.trodden.any()),
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
         "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
@@ -237,14 +262,6 @@ def _bridges_a_seam(scene: JointScene) -> bool:
         edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
     ]
     return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
-
-
-def _is_wheel(scene: JointScene) -> bool:
-    """A disc standing on the floor on which the whole object stands."""
-    cache = scene.cache
-    level = abs(float(scene.frame.axes[scene.frame.thin] @ UP)) < 0.1
-    lowest = cache.assembly.parts[scene.child].bounds[0, 2] - cache.assembly.bounds[0, 2]
-    return bool(scene.disc > 0.5 and level and lowest < 0.01 * scene.diagonal)
 
 
 def _twin_cues(scene: JointScene, siblings: Siblings) -> dict[str, float]:

@@ -16,7 +16,7 @@ from kinematify.assembly.robot import rotation_about
 from kinematify.joints.candidate import JointType
 from kinematify.joints.frames import UP
 from kinematify.joints.play import slide_play
-from kinematify.joints.scene import is_cap
+from kinematify.joints.scene import eccentricity, is_cap
 from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
 
 def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
     free = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
-    if free.min() >= np.pi and _turns_freely(scene, axis, pivot):
+    if free.min() >= np.pi and _turns_freely(scene, axis, pivot, config):
         return Range(
             kind=JointType.CONTINUOUS,
             sign=_clockwise_sign(scene, axis),
@@ -71,6 +71,10 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
             free_forward=np.pi,
             free_backward=np.pi,
         )
+    if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(np.radians(config.limits.square_deg)):
+        return _rocker_range(scene, axis, free, config)
+    if scene.trodden.any() and abs(float(axis @ UP)) < 0.1:
+        return _pedal_range(scene, axis, pivot, free, config)
     furniture = scene.mechanism <= 0.5
     if furniture and scene.panel:
         return _panel_range(scene, axis, pivot, free, config)
@@ -78,10 +82,10 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
         not scene.serial
         and scene.gated
         and free.min() > np.radians(config.limits.unstopped_deg)
-        and _is_lever(scene, axis)
+        and _is_lever(scene, axis, config)
     ):
         return _lever_range(scene, axis, free, config)
-    sign = _turn_sign(scene, axis, pivot, free)
+    sign = _turn_sign(scene, axis, pivot, free, config)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
     if scene.gated or not furniture:
         lower, upper = -float(backward), float(forward)
@@ -112,6 +116,32 @@ def _range(sign: float, lower: float, upper: float, free: FloatArray, config: Jo
     )
 
 
+# ---- rockers and pedals --------------------------------------------------------------------------------------------
+
+
+def _rocker_range(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> Range:
+    """A rocker tips until either half of its front is level with the face that it sits in; the longer way opens."""
+    fold = scene.fold
+    faces = scene.parent_frame.axes
+    thin = scene.frame.axes[scene.frame.thin]
+    face = faces[int(np.abs(faces @ thin).argmax())]
+    turns = np.zeros(2) if fold is None else fold.turns_level(face) * np.copysign(1.0, float(fold.axis @ axis))
+    reach = np.array([max(float(turns.max()), 0.0), max(-float(turns.min()), 0.0)])
+    reach = np.minimum(reach, np.maximum(free, np.radians(config.limits.least_deg)))
+    sign = _neutral_sign(scene, axis) if np.ptp(reach) < 0.1 * reach.max() else float(np.sign(reach[0] - reach[1]))
+    forward, backward = (reach[0], reach[1]) if sign > 0 else (reach[1], reach[0])
+    return _range(sign, -float(backward), float(forward), free, config)
+
+
+def _pedal_range(
+    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig
+) -> Range:
+    """A pedal goes down, by no more than a lever does."""
+    sign = 1.0 if float(np.cross(axis, scene.centre - pivot)[2]) < 0.0 else -1.0
+    down = float(free[0] if sign > 0 else free[1])
+    return _range(sign, 0.0, min(down, np.radians(config.limits.lever_deg)), free, config)
+
+
 # ---- panels --------------------------------------------------------------------------------------------------------
 
 
@@ -129,7 +159,7 @@ def _panel_range(
         forward = float(free[0] if sign > 0 else free[1])
         upper = min(forward, max(np.radians(limits.panel_deg) - closing, 0.0))
         return _range(sign, -closing, upper, free, config)
-    sign = _turn_sign(scene, axis, pivot, free)
+    sign = _turn_sign(scene, axis, pivot, free, config)
     forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
     if max(forward, backward) < np.radians(limits.held_deg):
         forward = np.pi  # its mesh overlaps the frame: no door is made to stay shut
@@ -193,13 +223,13 @@ def _closeness(scene: JointScene, axis: FloatArray, pivot: FloatArray, turn: flo
 # ---- knobs and levers ----------------------------------------------------------------------------------------------
 
 
-def _turns_freely(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> bool:
+def _turns_freely(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
     """A knob, wheel or turntable: a bearing through the part, or a round part, whose mass is even about the axis."""
     disc = scene.disc > 0.5 and abs(float(axis @ scene.frame.axes[scene.frame.thin])) > 0.99
-    if not (scene.gated or disc) or (scene.mechanism >= 1.0 and scene.smallness < 1.0):
+    if not (scene.gated or disc) or (scene.serial and scene.smallness < 1.0):
         return False
     anchor = scene.contact.centroid if scene.gated else pivot
-    return _eccentricity(scene, axis, anchor) < 0.25
+    return eccentricity(scene, axis, anchor) < config.limits.even
 
 
 def _clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
@@ -208,19 +238,12 @@ def _clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
     Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
     """
     knob = scene.smallness > 0.0 or not (scene.plate and scene.flat)
-    return (-1.0 if knob and scene.mechanism <= 0.5 else 1.0) * _neutral_sign(scene, axis)
+    return (-1.0 if knob and not scene.serial else 1.0) * _neutral_sign(scene, axis)
 
 
-def _is_lever(scene: JointScene, axis: FloatArray) -> bool:
+def _is_lever(scene: JointScene, axis: FloatArray, config: JointsConfig) -> bool:
     """An arm on a pivot."""
-    return _eccentricity(scene, axis, scene.contact.centroid) > 0.3
-
-
-def _eccentricity(scene: JointScene, axis: FloatArray, anchor: FloatArray) -> float:
-    """Distance of the child's mean from the line over the largest distance of any of its points."""
-    points = scene.cache.samples(scene.child).points
-    lever = np.linalg.norm(np.cross(points.mean(axis=0) - anchor, axis))
-    return float(lever / max(float(np.linalg.norm(np.cross(points - anchor, axis), axis=1).max()), 1e-12))
+    return eccentricity(scene, axis, scene.contact.centroid) >= config.limits.even
 
 
 def _lever_range(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> Range:
@@ -236,15 +259,31 @@ def _lever_range(scene: JointScene, axis: FloatArray, free: FloatArray, config: 
     return _range(sign, -min(float(backward), 2 * reach), min(float(forward), 2 * reach), free, config)
 
 
-def _turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
+def _turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig) -> float:
     """The freer direction opens; where both are alike, the one that leads out of the body or up."""
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
+    beside = _hinge_side(scene, axis, pivot, config)
+    if beside != 0.0:
+        return beside
     velocity = np.cross(axis, scene.centre - pivot)
     away = scene.outward if scene.outward.any() else UP
     if abs(float(velocity @ away)) < 0.05 * scene.frame.diagonal:
         return _neutral_sign(scene, axis)
     return 1.0 if float(velocity @ away) > 0.0 else -1.0
+
+
+def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> float:
+    """Sign of the turn towards the face of an upright panel at which its bearing lies, 0 without such a bearing.
+
+    Barrels stand on the side to which a door opens; on the other one its edge would run into what it hangs on.
+    """
+    normal = scene.frame.axes[scene.frame.thin]
+    off = float((pivot - scene.centre) @ normal)
+    aside = abs(off) > config.limits.hinge_off * float(scene.frame.extents[scene.frame.thin])
+    if not (scene.gated and scene.panel and scene.upright and aside):
+        return 0.0
+    return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
 
 
 def _neutral_sign(scene: JointScene, axis: FloatArray) -> float:
@@ -272,7 +311,7 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
     if scene.mechanism > 0.5:
         reach = config.limits.drawer * length
         lower, upper = -min(backward, reach), min(forward, reach)
-    elif scene.smallness > 0.5 or (scene.gated and sign * _outwards(scene, axis) < 0.0):
+    elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.gated and sign * _outwards(scene, axis) < 0.0):
         upper = _press(scene, sign * axis, forward, length, config)
     else:
         lower = -min(backward, _standing_out(scene, sign * axis))
@@ -323,11 +362,16 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
         play = slide_play(scene, outwards * axis, config)
         if play is not None and config.limits.room * scene.frame.diagonal < play[1] < np.inf:
             return -outwards
-    if scene.smallness > 0.5 and not scene.mechanism > 0.5:
+    if scene.smallness > 0.5 and not scene.mechanism > 0.5 and not _is_small_lid(scene):
         return -outwards
     if abs(free[0] - free[1]) > 0.02 * scene.diagonal:
         return 1.0 if free[0] > free[1] else -1.0
     return outwards
+
+
+def _is_small_lid(scene: JointScene) -> bool:
+    """A level disc on top that is larger than a button: it covers a mouth and is lifted."""
+    return scene.smallness < 1.0 and scene.on_top and scene.flat and scene.disc > 0.5
 
 
 def _outwards(scene: JointScene, axis: FloatArray) -> float:

@@ -110,8 +110,8 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
         (np.clip(weights[name] * value, -config.panels.cap, config.panels.cap) for name, value in cues.items()),
         start=np.zeros(len(lines.axes)),
     )
-    if scene.gated:
-        scores = scores + config.panels.bearing_bonus * np.array([source == "bearing" for source in lines.sources])
+    telling = "bearing" if scene.gated else "fold"
+    scores = scores + config.panels.bearing_bonus * np.array([source == telling for source in lines.sources])
     ranked = RankedTurns(
         lines=lines,
         scores=scores,
@@ -145,6 +145,8 @@ def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line]
             for line in scene.bearing.lines[int(scene.gated) : config.panels.bearings]
         ]
     found += _contact_lines(scene, config)
+    if scene.fold is not None:
+        found.append((scene.fold.axis, scene.fold.point, OTHER, "fold"))
     found += _box_lines(scene)
     found += [(line.axis, line.point, OTHER, GIVEN) for line in given]
     anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
@@ -414,7 +416,16 @@ def _gravity_cues(scene: JointScene, lines: Lines, with_parent: Sweep, outward: 
         "hinge_below": door * np.maximum(-height, 0.0),
         "lid_rise": lid * rise,
         "lid_backrest": lid * _body_behind(scene, arms),
+        "lid_behind": -lid * (arms @ scene.front) / np.maximum(length, 1e-9 * scene.diagonal),
+        "pedal": _heel(scene, lines, arms),
     }
+
+
+def _heel(scene: JointScene, lines: Lines, arms: FloatArray) -> FloatArray:
+    """Level lines across a pedal, from -1 at its tip to 1 at its end inside the body, shape (c,)."""
+    half = 0.5 * float(np.abs(scene.frame.axes @ scene.trodden) @ scene.frame.extents)
+    across = (np.abs(lines.axes @ UP) < 0.1) & (np.abs(lines.axes @ scene.trodden) < 0.5)
+    return np.where(across, np.clip(-arms @ scene.trodden / max(half, 1e-12), -1.0, 1.0), 0.0)
 
 
 def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.bearing import BearingLine, EdgeBearing
+from kinematify.joints.footing import foot_side, front_of, is_level_plate
 from kinematify.joints.frames import UP, body_axes, box_frame
 from kinematify.joints.journal import facing_faces, find_journal
+from kinematify.joints.rockers import find_fold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from kinematify.config import JointsConfig, RailsConfig
     from kinematify.joints.frames import BoxFrame
     from kinematify.joints.journal import Journal
+    from kinematify.joints.rockers import Fold
     from kinematify.joints.rooted import RootedTree
     from kinematify.joints.workspace import ContactView, PartCache
 
@@ -91,6 +94,14 @@ class JointScene:
     """The parent stands above the child's centre as well as below it."""
     inside: float
     """Share of the child's surface that lies inside the parent's box."""
+    rolls: bool
+    """The child is a disc standing on the floor."""
+    fold: Fold | None
+    """Where the front of the child is folded as a rocker's; not looked for in large lids, which may have a ridge."""
+    front: FloatArray
+    """Level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
+    trodden: FloatArray
+    """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
 
     @property
     def diagonal(self) -> float:
@@ -159,6 +170,10 @@ def joint_scene(
     journal = None if serial else _journal(cache, parent, child, frame, config)
     if journal is not None:
         bearing = _with_journal(bearing, edge, journal)
+    panel = bool(sides[0] < config.panel_thinness * sides[1] and smallness < 1.0)
+    plate = bool(sides[0] < config.panel_thinness * sides[1])
+    on_top = bool(frame.centre[2] > low + 0.75 * (high - low))
+    folds = plate and not (panel and on_top and up > config.flat_cosine)
     return JointScene(
         cache=cache,
         parent=parent,
@@ -171,8 +186,8 @@ def joint_scene(
         outward=outward,
         handle=_handle(cache, tree, child, frame, outward),
         smallness=smallness,
-        panel=bool(sides[0] < config.panel_thinness * sides[1] and smallness < 1.0),
-        plate=bool(sides[0] < config.panel_thinness * sides[1]),
+        panel=panel,
+        plate=plate,
         disc=_disc(cache, child, frame),
         upright=up < config.upright_cosine,
         flat=up > config.flat_cosine,
@@ -184,11 +199,15 @@ def joint_scene(
         rounded=0.0 < _rail_lead(bearing) < config.rails.rounded_lead,
         compact=compact,
         mechanism=1.0 if serial else compact,
-        on_top=bool(frame.centre[2] > low + 0.75 * (high - low)),
+        on_top=on_top,
         parent_moves=parent != tree.root,
         enclosed=float(walls.mean()),
         covered=bool(walls[np.abs(np.concatenate([frame.axes, -frame.axes]) @ UP) > config.flat_cosine].all()),
         inside=_inside(cache, child, frame, body_box),
+        rolls=rolls(cache, child, frame),
+        fold=find_fold(cache.samples(child), frame, config.rockers) if folds else None,
+        front=_front(cache, tree, parent, frames, config),
+        trodden=_trodden(cache, parent, child, frame, config),
     )
 
 
@@ -279,6 +298,13 @@ def located_support(points: FloatArray, normals: FloatArray, weights: FloatArray
     return float(2.0 * np.linalg.eigvalsh((across * fit[:, None]).T @ across)[1] / max(float(weights.sum()), 1e-300))
 
 
+def eccentricity(scene: JointScene, axis: FloatArray, anchor: FloatArray) -> float:
+    """Distance of the child's mean from a line over the largest distance of any of its points, in [0, 1]."""
+    points = scene.cache.samples(scene.child).points
+    lever = np.linalg.norm(np.cross(points.mean(axis=0) - anchor, axis))
+    return float(lever / max(float(np.linalg.norm(np.cross(points - anchor, axis), axis=1).max()), 1e-12))
+
+
 def _compactness(frame: BoxFrame, contact: ContactView, config: JointsConfig) -> float:
     if len(contact.points) == 0:
         return 0.0
@@ -297,6 +323,35 @@ def _disc(cache: PartCache, part: int, frame: BoxFrame) -> float:
     np.maximum.at(radius, sector, np.linalg.norm(flat, axis=1))
     ratio = float(radius.min() / max(float(radius.max()), 1e-12))
     return float(np.clip((ratio - 0.75) / 0.15, 0.0, 1.0))
+
+
+def rolls(cache: PartCache, part: int, frame: BoxFrame) -> bool:
+    """Whether a part is a disc standing on the floor on which the whole object stands."""
+    level = abs(float(frame.axes[frame.thin] @ UP)) < 0.1
+    lowest = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
+    return bool(level and lowest < 0.01 * cache.diagonal and _disc(cache, part, frame) > 0.5)
+
+
+def _stands(cache: PartCache, part: int, config: JointsConfig) -> bool:
+    """Whether a part reaches the floor, or nearly so, as a bin on wheels."""
+    rise = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
+    return bool(rise < config.footing.low * np.ptp(cache.assembly.bounds[:, 2]))
+
+
+def _front(
+    cache: PartCache, tree: RootedTree, body: int, frames: Mapping[int, BoxFrame], config: JointsConfig
+) -> FloatArray:
+    if not _stands(cache, body, config):
+        return np.zeros(3)
+    carried = tree.children[body]
+    rolling = [rolls(cache, part, frames[part]) for part in carried]
+    return front_of(cache.assembly.parts[body].bounds, [frames[part] for part in carried], rolling, config.footing)
+
+
+def _trodden(cache: PartCache, body: int, part: int, frame: BoxFrame, config: JointsConfig) -> FloatArray:
+    if not is_level_plate(frame) or not _stands(cache, body, config):
+        return np.zeros(3)
+    return foot_side(frame, cache.assembly.parts[body].bounds, config.footing)
 
 
 def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> NDArray[np.bool_]:
