@@ -10,7 +10,7 @@ from kinematify.config import load_config
 from kinematify.topology.base import base_by_degree, rank_bases
 from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.stats import part_stats
-from tests.topology_objects import Machine, X, Y, Z, graph_of
+from tests.topology_objects import Machine, X, Y, Z, box, graph_of
 
 CONFIG = load_config().topology.base
 
@@ -216,3 +216,44 @@ def test_what_alone_stands_on_the_ground_is_the_base_however_small_it_is() -> No
 def test_degree_rule_takes_the_lowest_index_on_a_tie() -> None:
     graph = graph_of(4, {(0, 1): 0.1, (1, 2): 0.1, (2, 3): 0.1})
     assert [item.part for item in base_by_degree(graph)] == [1, 2, 0, 3]
+
+
+def pitched(blade: Part) -> Part:
+    """A box turned by 17 deg about x through its middle."""
+    c, s = np.cos(0.3), np.sin(0.3)
+    middle = blade.vertices.mean(axis=0)
+    vertices = (blade.vertices - middle) @ np.array([[1, 0, 0], [0, c, s], [0, -s, c]]) + middle
+    return Part(name=blade.name, vertices=vertices, faces=blade.faces)
+
+
+def ceiling_fan(*, pillar: bool = False) -> Machine:
+    """A motor on a rod under the ceiling and wide, pitched blades below it; on request a pillar under them."""
+    machine = Machine()
+    machine.add((0, 0, 2.3), (0.2, 0.2, 0.4))
+    machine.add((0, 0, 2.05), (1.2, 0.15, 0.01), 0, Z)
+    machine.parts[1] = pitched(machine.parts[1])
+    if pillar:
+        machine.add((0, 0, 1.0), (0.3, 0.3, 2.0), 1, Z)
+    return machine
+
+
+@pytest.mark.parametrize(("pillar", "base"), [(False, 0), (True, 2)])
+def test_what_hangs_has_its_base_at_the_ceiling_unless_something_stands(pillar: bool, base: int) -> None:
+    machine = ceiling_fan(pillar=pillar)
+    ranked = rank_bases(machine.edges, machine.stats, machine.clusters, machine.evidence, CONFIG)
+    assert ranked[0].part == base
+
+
+def test_blades_above_a_small_cap_are_no_foot() -> None:
+    """The hull of a rotor is nearly level below, but only its cap touches the floor; a flat blade does lie on it."""
+    cap, flat = box("cap", (0, 0, 0.0), (0.04, 0.04, 0.03)), box("blade", (0, 0, 0.015), (1.2, 0.15, 0.05))
+    shares = []
+    for blade in (flat, pitched(box("blade", (0, 0, 0.025), (1.2, 0.15, 0.01)))):
+        rotor = Part(
+            name="rotor",
+            vertices=np.concatenate([blade.vertices, cap.vertices]),
+            faces=np.concatenate([blade.faces, cap.faces + len(blade.vertices)]),
+        )
+        shares.append(part_stats(rotor).flat_bottom)
+    assert shares[0] > 0.5
+    assert shares[1] == 0.0

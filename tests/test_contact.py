@@ -106,7 +106,7 @@ def test_bridges_are_the_smallest_gaps_that_join_all_components(seed: int, count
     lower = rng.uniform(0, 20, (count, 3))
     corners = [(low, low + rng.uniform(0.2, 1.0, 3)) for low in lower]
     assembly = boxes(*corners)
-    found = find_bridges(assembly, part_surfaces(assembly, config=CONFIG.surface), [])
+    found = find_bridges(assembly, part_surfaces(assembly, config=CONFIG.surface), [], near=1.0, limit=np.inf)
     gaps = {pair: box_distance(corners[pair[0]], corners[pair[1]]) for pair in combinations(range(count), 2)}
     rows, columns = zip(*gaps, strict=True)
     weights = np.maximum(list(gaps.values()), 1e-12)  # scipy takes zero for no edge
@@ -120,8 +120,17 @@ def test_connected_parts_need_no_bridges() -> None:
     assembly = BUILDERS["serial_arm"]().assembly
     surfaces = part_surfaces(assembly, config=CONFIG.surface)
     chain = [(k, k + 1) for k in range(len(assembly.parts) - 1)]
-    assert find_bridges(assembly, surfaces, chain) == {}
-    assert list(find_bridges(assembly, surfaces, chain[:-1])) == [chain[-1]]
+    assert find_bridges(assembly, surfaces, chain, near=1.25, limit=np.inf) == {}
+    assert list(find_bridges(assembly, surfaces, chain[:-1], near=1.25, limit=np.inf)) == [chain[-1]]
+
+
+@pytest.mark.parametrize(("gap", "joined"), [(0.12, True), (0.14, False)])
+def test_what_floats_is_joined_with_all_that_is_nearly_as_close(gap: float, joined: bool) -> None:
+    """A block 0.1 from its left neighbour and `gap` from its right one; these two are far from each other."""
+    corners = [(0.0, 1.0), (1.1, 2.0), (2.0 + gap, 3.0)]
+    assembly = boxes(*[(np.array([a, 0, 0]), np.array([b, 1, 1])) for a, b in corners])
+    found = find_bridges(assembly, part_surfaces(assembly, config=CONFIG.surface), [(0, 2)], near=1.25, limit=np.inf)
+    assert set(found) == ({(0, 1), (1, 2)} if joined else {(0, 1)})
 
 
 def test_what_floats_is_joined_and_marked() -> None:

@@ -40,6 +40,8 @@ class ContactConfig(StageConfig):
 
     tolerance: float
     """Largest gap that counts as contact."""
+    bridge_ratio: float
+    """Where parts touch nothing, gaps up to this many times the smallest one count as contact."""
     band: float
     """Samples farther from the other part than this say nothing about the joint."""
     samples: int

@@ -19,7 +19,9 @@ class BaseConfig(StageConfig):
     stand_flat: float
     """Share of its footprint with which what stands alone must lie on the ground."""
     stand_weight: float
-    """Score of what alone stands on the ground."""
+    """Score of what alone stands on the ground, and of what alone lies under the ceiling with all else below."""
+    hang_flat: float
+    """Nothing hangs where something lies on the ground with more than this share of its footprint."""
     body_share: float
     """Share of all other parts that the largest part must carry directly to be the body of an object."""
     body_weight: float
@@ -63,6 +65,10 @@ class RewardWeights(StageConfig):
     """R_hier: children no larger than parents."""
     base: float
     """Score of the root under the base rule."""
+    direct: float
+    """R_direct: what touches the base hangs on it; not in the paper's reward."""
+    stack: float
+    """R_stack: what turns about one line hangs side by side; not in the paper's reward."""
 
 
 class TopologyConfig(StageConfig):
@@ -96,10 +102,18 @@ class TopologyConfig(StageConfig):
     """Edges outside the spanning tree that are searched at most."""
     keep: int
     """Distinct trees that are kept."""
+    stack_deg: float
+    """Axes within this angle are one line [deg]."""
+    stack_distance: float
+    """The same for their distance, in diagonals."""
     virtual_distance: float
     """``d_max``: centroids farther apart are joined only when nothing nearer is left, in diagonals."""
     proximity_weight: float
     """Share of contact strength in an edge's weight; breaks ties between equal joints."""
+    held_quality: float
+    """Least quality of an edge whose one part holds the other all around a line."""
+    skip_penalty: float
+    """Factor on the quality of an edge between two leaves on one pin with a third one between them."""
     cluster_penalty: float
     """Factor on the quality of an edge inside a cluster that has a rival."""
     decisive_ratio: float

@@ -20,6 +20,8 @@ from kinematify.contact.symmetry import find_clusters
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import Assembly, FloatArray, IntArray
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface, Samples
@@ -43,8 +45,8 @@ def build_contact_graph(
     """
     tolerance = config.tolerance * assembly.diagonal
     gaps = {pair: gap for pair in near_pairs(assembly, tolerance) if (gap := exact_gap(surfaces, pair)) <= tolerance}
-    bridges = find_bridges(assembly, surfaces, list(gaps))
     band = config.band * assembly.diagonal
+    bridges = find_bridges(assembly, surfaces, list(gaps), near=config.bridge_ratio, limit=band)
     raw = [
         (pair, gap, *_contact_samples(surfaces, pair, max(band, 3 * gap), config.samples, seed))
         for pair, gap in sorted({**gaps, **bridges}.items())
@@ -81,23 +83,38 @@ def exact_gap(surfaces: Sequence[PartSurface], pair: Pair) -> float:
     return surfaces[pair[0]].gap(surfaces[pair[1]])
 
 
-def find_bridges(assembly: Assembly, surfaces: Sequence[PartSurface], pairs: Sequence[Pair]) -> dict[Pair, float]:
+def find_bridges(
+    assembly: Assembly, surfaces: Sequence[PartSurface], pairs: Sequence[Pair], *, near: float, limit: float
+) -> dict[Pair, float]:
     """Join the components of the contact graph by their smallest gaps (Kruskal over exact distances).
 
-    Exact distances are taken in the order of the bounding boxes' distance, which is a lower bound, so that few are
-    needed.
+    An object has one clearance: a part that touches nothing is joined with all that is nearly as close to it as the
+    nearest. Exact distances are taken in the order of the bounding boxes' distance, which is a lower bound, so that
+    few are needed.
+
+    Args:
+        assembly: The parts.
+        surfaces: Derived geometry of each part, same order.
+        pairs: Parts that touch.
+        near: Gaps up to this many times the smallest one are nearly as close.
+        limit: Largest clearance [m]; what is farther apart is joined by its smallest gap alone.
 
     Returns:
         Gap [m] of every added pair.
     """
     n = len(assembly.parts)
+    touching = {part for pair in pairs for part in pair}
     bridges: dict[Pair, float] = {}
+    for part in range(n):
+        if part not in touching and n > 1:
+            gaps = _smallest_gaps(assembly, surfaces, np.arange(n) == part, near)
+            bridges |= {pair: gap for pair, gap in gaps.items() if gap <= limit}
     while True:
         labels = _component_labels(n, [*pairs, *bridges])
         if labels.max() == 0:
             return bridges
-        pair, gap = _smallest_gap(assembly, surfaces, labels)
-        bridges[pair] = gap
+        smallest = int(np.argmin(np.bincount(labels)))
+        bridges |= dict([_smallest(_smallest_gaps(assembly, surfaces, labels == smallest, 1.0))])
 
 
 def _component_labels(n: int, pairs: Sequence[Pair]) -> IntArray:
@@ -107,26 +124,30 @@ def _component_labels(n: int, pairs: Sequence[Pair]) -> IntArray:
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def _smallest_gap(assembly: Assembly, surfaces: Sequence[PartSurface], labels: IntArray) -> tuple[Pair, float]:
-    """Closest pair between the smallest component and the rest."""
-    counts = np.bincount(labels)
-    inside = np.flatnonzero(labels == int(np.argmin(counts)))
-    outside = np.flatnonzero(labels != int(np.argmin(counts)))
+def _smallest_gaps(
+    assembly: Assembly, surfaces: Sequence[PartSurface], chosen: NDArray[np.bool_], near: float
+) -> dict[Pair, float]:
+    """Closest pair between the chosen parts (n,) and the rest, and all that are at most `near` times as far apart."""
+    inside, outside = np.flatnonzero(chosen), np.flatnonzero(~chosen)
     bounds = np.array([part.bounds for part in assembly.parts])
     apart = np.maximum(
         bounds[inside, None, 0] - bounds[None, outside, 1], bounds[None, outside, 0] - bounds[inside, None, 1]
     )
     lower_bound = np.linalg.norm(np.maximum(apart, 0), axis=2)
-    best: tuple[Pair, float] = ((-1, -1), np.inf)
+    found: dict[Pair, float] = {}
+    smallest = np.inf
     for flat in np.argsort(lower_bound, axis=None, kind="stable"):
         row, column = np.unravel_index(flat, lower_bound.shape)
-        if lower_bound[row, column] >= best[1]:
+        if lower_bound[row, column] > near * smallest:
             break
         pair = (int(min(inside[row], outside[column])), int(max(inside[row], outside[column])))
-        gap = exact_gap(surfaces, pair)
-        if gap < best[1]:
-            best = (pair, gap)
-    return best
+        found[pair] = exact_gap(surfaces, pair)
+        smallest = min(smallest, found[pair])
+    return {pair: gap for pair, gap in found.items() if gap <= near * smallest}
+
+
+def _smallest(gaps: dict[Pair, float]) -> tuple[Pair, float]:
+    return min(gaps.items(), key=lambda item: (item[1], item[0]))
 
 
 def _contact_samples(

@@ -18,10 +18,13 @@ from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearing import fit_bearings
 from kinematify.joints.decide import estimate_joints
+from kinematify.joints.held import held_pairs, leaf_pairs, passing_pairs
 from kinematify.joints.quality import edge_quality
+from kinematify.joints.workspace import PartCache
 from kinematify.model.build import build_model
 from kinematify.pipeline.pieces import joints_of_pieces, pair_of_pieces, tree_of_pieces
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.evidence import EdgeEvidence, coaxial_carriers
+from kinematify.topology.quality import on_cycles
 from kinematify.topology.search import search_trees
 from kinematify.topology.stats import assembly_stats
 
@@ -109,7 +112,7 @@ def infer(
         with clock.stage("bearings", 0.2):
             bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
     with clock.stage("tree", 0.6):
-        evidence = gather_evidence(graph, bearings, config)
+        evidence = gather_evidence(assembly, graph, bearings, config)
         trees = search_trees(graph, assembly_stats(assembly), evidence, config.topology, seed=config.seed, base=root)
     with clock.stage("joints", 0.7):
         joints = choose_joints(assembly, graph, trees[0], bearings, config)
@@ -169,15 +172,41 @@ def _cut_parts(assembly: Assembly, groups: Groups, mains: Sequence[int]) -> list
 
 
 def gather_evidence(
-    graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+    assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
 ) -> dict[Pair, EdgeEvidence]:
-    """What the tree search needs to know of each contact edge: quality and direction of its best joint."""
-    evidence = {}
-    for pair, edge in graph.by_pair.items():
-        bearing = bearings.get(pair)
-        axis = bearing.lines[0].axis if bearing is not None and bearing.lines else None
-        evidence[pair] = EdgeEvidence(quality=edge_quality(edge, bearing, config.quality), axis=axis)
-    return evidence
+    """What the tree search needs to know of each contact edge: quality and line of its best joint, and what holds it.
+
+    Costly questions are asked only of edges whose answer the search needs: those that others could replace and that
+    have no clear bearing or join congruent parts, and those between parts that a third one bears on the same line.
+    """
+    lines = {pair: bearing.lines[0] for pair, bearing in bearings.items() if bearing.lines}
+    evidence = {
+        pair: EdgeEvidence(
+            quality=edge_quality(edge, bearings.get(pair), config.quality),
+            axis=lines[pair].axis if pair in lines else None,
+            point=lines[pair].pivot if pair in lines else None,
+        )
+        for pair, edge in graph.by_pair.items()
+    }
+    topology = config.topology
+    bounds = {"angle": topology.stack_deg, "distance": topology.stack_distance * assembly.diagonal}
+    carriers = coaxial_carriers(evidence, **bounds)
+    contested = [pair for pair in on_cycles(graph.by_pair, graph.n_parts) if pair in lines]
+    doubtful = [pair for pair in contested if evidence[pair].quality < topology.held_quality or _are_twins(graph, pair)]
+    cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
+    held = held_pairs(cache, doubtful, config.joints)
+    passing = passing_pairs(cache, {pair: lines[pair] for pair in carriers}, config.joints)
+    triples = sorted({tuple(sorted((a, b, c))) for (a, b), found in carriers.items() for c in found})
+    leafed, skipping = leaf_pairs(cache, triples, lines, passing, config.joints)
+    return {
+        pair: replace(item, held=pair in held, passing=pair in passing, leafed=pair in leafed, skips=pair in skipping)
+        for pair, item in evidence.items()
+    }
+
+
+def _are_twins(graph: ContactGraph, pair: Pair) -> bool:
+    first, second = (graph.cluster_of[part] for part in pair)
+    return first >= 0 and first == second
 
 
 def choose_joints(

@@ -68,7 +68,7 @@ def search_again(
     base: int | None,
 ) -> tuple[KinematicTree, ...]:
     """Search the trees again, warm, with what the simulation had against edges."""
-    evidence = gather_evidence(contacts.graph, contacts.bearings, config)
+    evidence = gather_evidence(assembly, contacts.graph, contacts.bearings, config)
     simulated = SimulatedEdges(
         survival={edge: memory.survival(edge) for edge in memory.against}, weight=config.refine.survival_weight
     )

@@ -1,7 +1,7 @@
 """Which part is the base link: the paper's degree rule, and a scored rule that knows how machines stand.
 
 No single cue finds the base (feasibility.md 3): it is the end of an arm, the hub of a hand, the junction of legs.
-The scored rule therefore asks six physical questions, each a function that returns one value in [0, 1] per part,
+The scored rule therefore asks seven physical questions, each a function that returns one value in [0, 1] per part,
 and ranks the parts by their best answer. Only the vertical direction of the world is used.
 """
 
@@ -69,6 +69,7 @@ def rank_bases(
     skeleton = Skeleton(edges, stats, clusters, evidence, config)
     cues = (
         ("It alone stands on the ground.", stand(skeleton)),
+        ("It alone reaches the ceiling, and all the rest hangs below.", canopy(skeleton)),
         ("It carries most other parts directly and is the largest.", body(skeleton)),
         ("It is the standing end of a chain.", pedestal(skeleton)),
         ("It joins the limbs that stand lowest.", limb_junction(skeleton)),
@@ -107,10 +108,14 @@ class Skeleton:
         self.hull = np.array([item.hull_volume for item in stats])
         self.bulk = self.hull / self.hull.max()
         self.flat = np.array([item.flat_bottom for item in stats])
+        self.flat_above = np.array([item.flat_top for item in stats])
+        self.top = np.array([item.top for item in stats])
+        self.middle = np.array([float(item.centroid[2]) for item in stats])
         lower = np.min([item.bounds[0] for item in stats], axis=0)
         upper = np.max([item.bounds[1] for item in stats], axis=0)
         self.bottom = np.array([item.bottom for item in stats])
         self.rise = (self.bottom - lower[2]) / max(float(np.linalg.norm(upper - lower)), 1e-12)
+        self.low = self.rise <= config.stand_band
         self.upright = np.array([self._upright_share(i, evidence) for i in range(self.n)])
         self.twin = np.zeros(self.n, dtype=bool)
         self.twin[[part for cluster in clusters for part in cluster]] = True
@@ -137,10 +142,21 @@ class Skeleton:
 
 def stand(skeleton: Skeleton) -> FloatArray:
     """Globes, taps, lamps, staplers: what alone reaches the ground, and lies flat on it, carries all the rest."""
-    grounded = skeleton.rise <= skeleton.config.stand_band
     flat = skeleton.flat > skeleton.config.stand_flat
-    alone = grounded & flat & ~skeleton.twin & (grounded.sum() == 1)
+    alone = skeleton.low & flat & ~skeleton.twin & (skeleton.low.sum() == 1)
     return np.where(alone, skeleton.config.stand_weight, 0.0)
+
+
+def canopy(skeleton: Skeleton) -> FloatArray:
+    """Ceiling fans, hanging lamps: nothing lies flat on the ground, and one part lies flat above all others."""
+    highest = int(skeleton.top.argmax())
+    others = np.delete(skeleton.top, highest)
+    hangs = len(others) > 0 and others.max() < skeleton.middle[highest]
+    flat = skeleton.flat_above[highest] > skeleton.config.stand_flat and not skeleton.twin[highest]
+    stands = (skeleton.flat[skeleton.low] > skeleton.config.hang_flat).any()
+    score = np.zeros(skeleton.n)
+    score[highest] = skeleton.config.stand_weight * float(hangs and flat and not stands)
+    return score
 
 
 def body(skeleton: Skeleton) -> FloatArray:

@@ -2,7 +2,8 @@
 
 The paper forbids edges inside a cluster, which cuts true ones (neighbouring links of an arm are congruent). Here such
 an edge is only weakened, and only as far as it has a rival: it keeps its quality where nothing else connects the two
-parts, or where it is decisively better than what it would replace.
+parts, where it is decisively better than what it would replace, or where one part holds the other by a pin (the leaves
+of a folding door).
 """
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import ContactGraph
@@ -32,8 +33,12 @@ def effective_quality(
         config: `proximity_weight` of the tie-break, `cluster_penalty` and `decisive_ratio` of the soft penalty.
     """
     quality = {pair: _quality_with_tie_break(graph, evidence, pair, config.proximity_weight) for pair in graph.by_pair}
+    held = {pair for pair, item in evidence.items() if item.held}
+    quality |= {pair: max(quality[pair], config.held_quality) for pair in held}
+    quality |= {pair: quality[pair] * config.skip_penalty for pair, item in evidence.items() if item.skips}
     label = graph.cluster_of
-    inside = [(a, b) for a, b in quality if label[a] >= 0 and label[a] == label[b]]
+    kept = held | {pair for pair, item in evidence.items() if item.leafed}
+    inside = [(a, b) for a, b in quality if label[a] >= 0 and label[a] == label[b] and (a, b) not in kept]
     weakened = {**quality, **{pair: quality[pair] * config.cluster_penalty for pair in inside}}
     result = dict(weakened)
     for pair in inside:
@@ -69,6 +74,19 @@ def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
         steps.append((min(node, parent), max(node, parent)))
         node = parent
     return tuple(steps) if node == ends[0] else ()
+
+
+def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
+    """Edges that others could replace: without one of them, all parts that it joins are still connected."""
+    kept = list(edges)
+    replaceable = []
+    for edge in kept:
+        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
+        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
+        labels = connected_components(matrix, directed=False)[1]
+        if labels[edge[0]] == labels[edge[1]]:
+            replaceable.append(edge)
+    return replaceable
 
 
 def parents_from(edges: Sequence[Pair], n: int, root: int) -> list[int]:

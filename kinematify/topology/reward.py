@@ -11,10 +11,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.topology.evidence import coaxial_carriers, pair
 from kinematify.topology.quality import effective_quality
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    BoolArray = NDArray[np.bool_]
 
     from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import TopologyConfig
@@ -152,6 +157,35 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
     return float(np.mean(scores)) if scores else 1.0
 
 
+def side_by_side(tree: TreeLayout, carriers: Mapping[Pair, frozenset[int]]) -> float:
+    """Our R_stack in [0, 1]: share of the children that could not as well hang on their grandparent.
+
+    Shafts one in another (the hands of a clock) turn about one line and past each other, so that both trees move
+    alike; each is driven from the body, on its own.
+    """
+    children = tree.children
+    parents = tree.parents[children]
+    stacked = [
+        int(tree.parents[parent]) in carriers.get(pair(parent, child), ())
+        for parent, child in zip(parents.tolist(), children.tolist(), strict=True)
+    ]
+    return 1.0 - float(np.mean(stacked))
+
+
+def on_the_base(tree: TreeLayout, touches: BoolArray) -> float:
+    """Our R_direct in [0, 1]: share of the children that hang on the base or do not touch it.
+
+    Doors and drawers touch their neighbours as they touch the body, and no joint need show at either contact.
+
+    Args:
+        tree: The tree.
+        touches: Which parts touch, shape (n, n).
+    """
+    children = tree.children
+    elsewhere = (tree.parents[children] != tree.order[0]) & touches[tree.order[0], children]
+    return 1.0 - float(elsewhere.mean())
+
+
 def log_hierarchy(tree: TreeLayout, hulls: FloatArray) -> float:
     """Our R_hier in (0, 1]: ``1 / (1 + mean max(0, log h_v / h_u))`` with hull volumes.
 
@@ -195,9 +229,19 @@ class TreeReward:
         self.quality = contact_strength(graph) if self.is_paper else effective_quality(graph, evidence, config)
         if simulated is not None:
             self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
+        stacks = coaxial_carriers(evidence, angle=config.stack_deg, distance=config.stack_distance * self.diagonal)
+        self.stacks = {edge: carriers for edge, carriers in stacks.items() if evidence[edge].passing}
+        self.touches = np.zeros((graph.n_parts, graph.n_parts), dtype=bool)
         self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
         for (a, b), value in self.quality.items():
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
+            self.touches[a, b] = self.touches[b, a] = True
+
+    def weights_for(self, base: int) -> dict[Pair, float]:
+        """Edge weights whose maximum spanning tree has the best sum of R_contact and R_direct for a base link."""
+        weights = self.config.weights
+        bonus = 0.0 if self.is_paper or weights.contact <= 0.0 else weights.direct / weights.contact
+        return {edge: value + bonus * (base in edge) for edge, value in self.quality.items()}
 
     def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
         """Value of every term in [0, 1]; the paper's R_sym is halved here and its weight doubled in `total`.
@@ -222,6 +266,9 @@ class TreeReward:
             "hier": hier,
             "base": base_score,
         }
+        if not self.is_paper:
+            found["stack"] = side_by_side(tree, self.stacks)
+            found["direct"] = on_the_base(tree, self.touches)
         return found if self.simulated is None else {**found, "sim": self._survived(tree)}
 
     def _survived(self, tree: TreeLayout) -> float:
@@ -232,7 +279,7 @@ class TreeReward:
 
     def total(self, terms: Mapping[str, float]) -> float:
         """Weighted mean of the terms, in [0, 1]."""
-        weights = self.config.weights.model_dump()
+        weights = {name: value for name, value in self.config.weights.model_dump().items() if name in terms}
         if self.is_paper:
             weights["sym"] *= 2
         if self.simulated is not None:

@@ -63,7 +63,7 @@ def search_trees(
     found: dict[Parents, tuple[float, dict[str, float]]] = {}
     for candidate in bases:
         known = [tree.parents for tree in warm if tree.root == candidate.part]
-        seen = _trees_of_base(reward, edges, candidate, len(bases), seed=seed, known=known)
+        seen = _trees_of_base(reward, candidate, len(bases), seed=seed, known=known)
         best = sorted(seen, key=lambda parents: -seen[parents])[: config.keep]
         found |= {parents: (seen[parents], reward.terms(parents, candidate.score)) for parents in best}
     ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[: config.keep]
@@ -125,7 +125,6 @@ def open_edges(weights: Mapping[Pair, float], tree: Sequence[Pair], n: int, conf
 
 def _trees_of_base(
     reward: TreeReward,
-    edges: Sequence[Pair],
     candidate: BaseCandidate,
     n_bases: int,
     *,
@@ -134,6 +133,8 @@ def _trees_of_base(
 ) -> dict[Parents, float]:
     """Reward of every complete tree seen for one base link under the configured mode."""
     config, graph = reward.config, reward.graph
+    weights = reward.weights_for(candidate.part)
+    edges = spanning_edges(weights, reward.centroids)
 
     def judge(parents: Parents) -> float:
         return reward.total(reward.terms(parents, candidate.score))
@@ -144,7 +145,7 @@ def _trees_of_base(
     if config.mode == "bfs":
         breadth_first = breadth_first_tree(graph, candidate.part, reward.centroids)
         return {breadth_first: judge(breadth_first)}
-    problem = _search_problem(reward, edges, candidate.part, judge)
+    problem = _search_problem(reward, weights, edges, candidate.part, judge)
     warm = oriented
     if reward.is_paper or problem.forbidden:
         warm = breadth_first_tree(graph, candidate.part, reward.centroids, problem.forbidden)
@@ -156,14 +157,18 @@ def _trees_of_base(
 
 
 def _search_problem(
-    reward: TreeReward, edges: Sequence[Pair], root: int, judge: Callable[[Parents], float]
+    reward: TreeReward,
+    weights: Mapping[Pair, float],
+    edges: Sequence[Pair],
+    root: int,
+    judge: Callable[[Parents], float],
 ) -> SearchProblem:
     """The paper's search uses every contact; ours the spanning tree and what could compete with it."""
     graph, config = reward.graph, reward.config
     if reward.is_paper:
         usable = OpenEdges(usable=frozenset(touching_pairs(graph)), certain=frozenset())
     else:
-        usable = open_edges(reward.quality, edges, graph.n_parts, config)
+        usable = open_edges(weights, edges, graph.n_parts, config)
     neighbours: list[list[int]] = [[] for _ in range(graph.n_parts)]
     for a, b in sorted(usable.usable):
         neighbours[a].append(b)

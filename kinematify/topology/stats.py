@@ -17,6 +17,12 @@ _VOLUME_FLOOR = 1e-12
 """Smallest volume of a part in units of its cubed diagonal; keeps ratios of flat parts finite."""
 _LEVEL = float(np.cos(np.radians(3.0)))
 """A hull facet is level when its normal is within 3 degrees of the vertical."""
+_TOUCHES = 1e-3
+"""What lies this far above the lowest point touches the floor, in diagonals of the part."""
+_NEAR = 0.03
+"""So do level faces up to this height: real bottoms are a little tilted, or have small feet."""
+_FOOT = 0.05
+"""What touches the floor spans at least this share of the footprint, or nothing could stand on it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,6 +39,8 @@ class PartStats:
     """Axis-aligned bounds [m], shape (2, 3). Read-only."""
     flat_bottom: float
     """Share of the part's footprint that stands flat on a level floor, in [0, 1]."""
+    flat_top: float = 0.0
+    """Share of the part's footprint that lies flat against a level ceiling, in [0, 1]."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "centroid", read_only(self.centroid, np.float64))
@@ -53,6 +61,11 @@ class PartStats:
         """Lowest point [m]."""
         return float(self.bounds[0, 2])
 
+    @property
+    def top(self) -> float:
+        """Highest point [m]."""
+        return float(self.bounds[1, 2])
+
 
 def assembly_stats(assembly: Assembly) -> tuple[PartStats, ...]:
     """Measure every part of an assembly, in order."""
@@ -62,7 +75,7 @@ def assembly_stats(assembly: Assembly) -> tuple[PartStats, ...]:
 def part_stats(part: Part) -> PartStats:
     """Measure one part; flat and open meshes get a small positive volume."""
     floor = _VOLUME_FLOOR * max(part.diagonal, 1e-9) ** 3
-    hull_volume, flat_bottom = _hull_measures(part.vertices[np.unique(part.faces)])
+    hull_volume, flat_bottom, flat_top = _hull_measures(part)
     hull_volume = max(hull_volume, floor)
     enclosed = abs(_signed_volume(part)) if _is_closed(part) else hull_volume
     return PartStats(
@@ -71,21 +84,43 @@ def part_stats(part: Part) -> PartStats:
         hull_volume=hull_volume,
         bounds=part.bounds,
         flat_bottom=flat_bottom,
+        flat_top=flat_top,
     )
 
 
-def _hull_measures(points: FloatArray) -> tuple[float, float]:
-    """Hull volume [m^3] and share of the footprint that is a level bottom; (0, 0) for a flat part."""
+def _hull_measures(part: Part) -> tuple[float, float, float]:
+    """Hull volume [m^3] and shares of the footprint that are a level bottom and top; zeros for a flat part."""
+    points = part.vertices[np.unique(part.faces)]
     try:
         hull = ConvexHull(points)
     except QhullError:
-        return 0.0, 0.0
-    corners = points[hull.simplices]
-    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        return 0.0, 0.0, 0.0
+    sides = points[hull.simplices]
+    areas = 0.5 * np.linalg.norm(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0]), axis=1)
     up = hull.equations[:, 2]
     footprint = 0.5 * float((areas * np.abs(up)).sum())
-    level = float(areas[up < -_LEVEL].sum())
-    return float(hull.volume), min(level / footprint, 1.0) if footprint > 0 else 0.0
+    if footprint <= 0.0:
+        return float(hull.volume), 0.0, 0.0
+    corners = part.vertices[part.faces]
+    below = float(areas[up < -_LEVEL].sum()) * _rests(corners, part.diagonal, footprint)
+    above = float(areas[up > _LEVEL].sum()) * _rests(-corners, part.diagonal, footprint)
+    return float(hull.volume), min(below / footprint, 1.0), min(above / footprint, 1.0)
+
+
+def _rests(corners: FloatArray, diagonal: float, footprint: float) -> bool:
+    """Whether the surface that lies on the floor spans a fair share of the footprint.
+
+    The hull of blades around a small cap is nearly level below, and there is nothing but the cap.
+    """
+    height = corners[:, :, 2] - corners[:, :, 2].min()
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    level = np.abs(normals[:, 2]) > _LEVEL * np.linalg.norm(normals, axis=1)
+    lying = level & (height.max(axis=1) < _NEAR * diagonal)
+    touching = np.concatenate([corners[lying].reshape(-1, 3), corners[height < _TOUCHES * diagonal]])[:, :2]
+    try:
+        return bool(ConvexHull(touching).volume > _FOOT * footprint)
+    except (QhullError, ValueError):
+        return False
 
 
 def _is_closed(part: Part) -> bool:

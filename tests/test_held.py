@@ -1,0 +1,135 @@
+"""What is asked of contacts before the tree: folding leaves are held by their barrels, hands of a clock pass."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from kinematify.config import load_config
+from kinematify.joints.bearing import BearingLine
+from kinematify.joints.held import held_pairs, leaf_pairs, middle_leaf, passing_pairs
+from kinematify.joints.workspace import PartCache
+from kinematify.pipeline.infer import infer
+from kinematify.sources.procedural.families import FAMILIES
+from kinematify.sources.procedural.family import build
+from kinematify.sources.procedural.solids import bore, box, cylinder
+from kinematify.sources.procedural.truth import ground_truth
+from tests.joint_scenes import evidence
+from tests.known import known_object, turning
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+
+    from tests.known import KnownObject
+
+CONFIG = load_config()
+
+
+def clock(*, clearance: float = 3e-4, extra: Manifold | None = None) -> KnownObject:
+    """A case and two hands on shafts one in the other."""
+    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1))
+    case -= bore(0.006, clearance, (0, -1, 0), (0, 0.03 + clearance, 0))
+    solids = {"case": case}
+    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
+        level = -0.003 - 0.004 * k
+        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
+            0.01, (0, level - 0.002, 0), (0, level, 0)
+        )
+        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
+    if extra is not None:
+        solids["hand_1"] += extra
+    solids["hand_0"] -= bore(0.003, clearance, (0, -1, 0), (0, 1, 0))
+    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
+    return known_object("clock", solids, *joints)
+
+
+def test_hands_of_a_clock_hang_side_by_side() -> None:
+    known = clock()
+    tree = infer(known.assembly, config=CONFIG).trees[0]
+    case = known.index["case"]
+    assert tree.root == case
+    assert all(tree.parents[known.index[name]] == case for name in ("hand_0", "hand_1"))
+
+
+@pytest.mark.parametrize("pegged", [False, True])
+def test_a_hand_with_a_peg_does_not_pass_the_other_one(pegged: bool) -> None:
+    known = clock()
+    if pegged:
+        peg = box((0.002, -0.009, 0.02), (0.012, -0.001, 0.03))
+        known = clock(extra=peg)
+    _, graph, bearings = evidence(known)
+    pair = (known.index["hand_0"], known.index["hand_1"])
+    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
+    assert (pair in passing_pairs(cache, {pair: bearings[pair].lines[0]}, CONFIG.joints)) is not pegged
+
+
+def test_leaves_of_a_folding_door_hang_on_each_other() -> None:
+    blueprint = build(FAMILIES["door"], {"kind": "folding", "leaves": 2}, seed=1)
+    truth = ground_truth(blueprint)
+    inference = infer(blueprint.assembly, config=CONFIG)
+    names = blueprint.assembly.names
+    found = {names[child]: names[parent] for parent, child in inference.trees[0].edges()}
+    assert found == {truth.part_names[j.child]: truth.part_names[j.parent] for j in truth.joints}
+
+
+def test_doors_side_by_side_do_not_hold_each_other() -> None:
+    body = box((-0.4, 0.0, 0.0), (0.4, 0.4, 0.8)) - box((-0.38, -0.1, 0.02), (0.38, 0.38, 0.78))
+    solids = {"body": body}
+    for k, (left, right) in enumerate(((-0.39, -0.0005), (0.0005, 0.39))):
+        solids[f"door_{k}"] = box((left, -0.02, 0.01), (right, 0.0, 0.79))
+    joints = [turning("body", f"door_{k}", (0, 0, 1), (s * 0.39, 0, 0), (0, 1.5)) for k, s in enumerate((-1, 1))]
+    known = known_object("doors", solids, *joints)
+    _, graph, _ = evidence(known)
+    cache = PartCache(known.assembly, graph, samples=500, seed=0)
+    assert (1, 2) in graph.by_pair
+    assert held_pairs(cache, graph.by_pair, CONFIG.joints) == frozenset()
+
+
+def leaves(*angles: float) -> KnownObject:
+    """Boards 10 cm long and 3 mm thick on one pin along x, standing off the level at these angles [deg]."""
+    solids = {}
+    for k, angle in enumerate(angles):
+        eye = cylinder(0.008, (-0.02 + 0.01 * k, 0, 0), (-0.012 + 0.01 * k, 0, 0))
+        board = box((-0.02, 0.012, -0.0015), (0.02, 0.1, 0.0015))
+        arm = box((-0.02 + 0.01 * k, 0.0, -0.0015), (-0.012 + 0.01 * k, 0.02, 0.0015))
+        solids[f"leaf_{k}"] = (eye + arm + board).rotate((angle, 0, 0))
+    joints = [turning("leaf_0", f"leaf_{k}", (1, 0, 0), (0, 0, 0), (0, 1)) for k in (1, 2)]
+    return known_object("leaves", solids, *joints)
+
+
+@pytest.mark.parametrize(("angles", "middle"), [((0, 10, 20), 1), ((10, 0, 20), 0), ((0, 25, 12), 2)])
+def test_the_leaf_between_the_others_carries_the_outer_one(angles: tuple[float, ...], middle: int) -> None:
+    known = leaves(*angles)
+    _, graph, _ = evidence(known)
+    cache = PartCache(known.assembly, graph, samples=800, seed=0)
+    pin = BearingLine(
+        axis=np.array([1.0, 0, 0]), pivot=np.zeros(3), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
+    )
+    lines = dict.fromkeys([(0, 1), (0, 2), (1, 2)], pin)
+    beside, skipping = leaf_pairs(cache, [(0, 1, 2)], lines, frozenset(), CONFIG.joints)
+    assert beside == {pair for pair in lines if middle in pair}
+    assert skipping == set(lines) - beside
+    nothing = (frozenset(), frozenset())
+    assert leaf_pairs(cache, [(0, 1, 2)], lines, beside, CONFIG.joints) == nothing
+
+
+def test_hands_of_a_clock_are_no_leaves() -> None:
+    """Their shafts lie about the line; and leaves spread all around have no middle one."""
+    spread = {0: np.array([0, 1.0, 0]), 1: np.array([0, -0.5, 0.9]), 2: np.array([0, -0.5, -0.9])}
+    line = BearingLine(
+        axis=np.array([1.0, 0, 0]), pivot=np.zeros(3), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
+    )
+    assert middle_leaf(spread, line, dict.fromkeys(spread, 1.0), CONFIG.joints) is None
+    shaft = {0: np.array([0, 1.0, 0]), 1: np.array([0, 0.9, 0.1]), 2: np.array([0, 0.01, 0])}
+    assert middle_leaf(shaft, line, dict.fromkeys(shaft, 1.0), CONFIG.joints) is None
+
+
+def test_the_arm_of_a_stapler_hangs_on_its_magazine() -> None:
+    blueprint = build(FAMILIES["stapler"], {}, seed=0)
+    truth = ground_truth(blueprint)
+    inference = infer(blueprint.assembly, config=CONFIG)
+    names = blueprint.assembly.names
+    found = {names[child]: names[parent] for parent, child in inference.trees[0].edges()}
+    assert found == {truth.part_names[j.child]: truth.part_names[j.parent] for j in truth.joints}
