@@ -36,9 +36,21 @@ def main() -> None:
     # Seeds outside: what an early stop leaves says something of every family.
     wanted = [(family, seed) for seed in range(arguments.seeds) for family in families]
     start = time.perf_counter()
+    if not arguments.tables_only:
+        _run(wanted, done, ledger, arguments.workers)
+    chosen = f" --families {' '.join(arguments.families)}" if arguments.families else ""
+    results = [done[job] for job in wanted if job in done]
+    facts = environment(load_settings(), seconds=time.perf_counter() - start, interrupted=len(results) < len(wanted))
+    command = f"python benchmarks/families.py --seeds {arguments.seeds}{chosen}"
+    print(write_tables(results, facts, arguments.output, command=command, wanted=len(wanted)))
+
+
+def _run(wanted: list[tuple[str, int]], done: dict[tuple[str, int], Result], ledger: Path, workers: int) -> None:
+    """Run the objects that have no result yet, or an old one; every result is kept at once."""
+    start = time.perf_counter()
     # Not a pool of `multiprocessing`, whose processes must not start others, as validation does.
     context = multiprocessing.get_context("spawn")
-    with ledger.open("a", encoding="utf-8") as file, ProcessPoolExecutor(arguments.workers, mp_context=context) as pool:
+    with ledger.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers, mp_context=context) as pool:
         futures = {pool.submit(run_job, *job, done[job]["key"] if job in done else None): job for job in wanted}
         for number, future in enumerate(as_completed(futures), start=1):
             result = future.result()
@@ -49,14 +61,6 @@ def main() -> None:
                 _tell(result)
             if number % 20 == 0 or number == len(wanted):
                 print(f"{number} of {len(wanted)}, {time.perf_counter() - start:.0f} s", flush=True)
-    chosen = f" --families {' '.join(arguments.families)}" if arguments.families else ""
-    facts = environment(load_settings(), seconds=time.perf_counter() - start, interrupted=False)
-    results = [done[job] for job in wanted]
-    print(
-        write_tables(
-            results, facts, arguments.output, command=f"python benchmarks/families.py --seeds {arguments.seeds}{chosen}"
-        )
-    )
 
 
 def _tell(result: Result) -> None:
@@ -79,6 +83,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "kinematify-families",
                         help="folder for the results so far")  # fmt: skip
+    parser.add_argument("--tables-only", action="store_true", help="write the tables of the results so far")
     parser.add_argument("-o", "--output", type=Path, default=Path("results"))
     return parser.parse_args()
 

@@ -17,16 +17,19 @@ TITLES = ("family", "objects", "joints", "truth without error", "inferred withou
           "errors of the inferred", "angle [deg]", "types", "TED", "seconds")  # fmt: skip
 
 
-def write_tables(results: Sequence[Result], facts: Mapping[str, Any], folder: Path, *, command: str) -> str:
-    """Write families.json and families.md, and return the latter's table."""
+def write_tables(
+    results: Sequence[Result], facts: Mapping[str, Any], folder: Path, *, command: str, wanted: int
+) -> str:
+    """Write families.json and families.md, and return the latter's table; `wanted` objects make it complete."""
     groups = _worst_first(results)
     lines = [row(name, group) for name, group in groups.items()]
     lines.append(row("**all**", results))
     table = "\n".join(f"| {' | '.join(cells)} |" for cells in (TITLES, ("---",) * len(TITLES), *lines))
     machine = ", ".join(f"{name} {facts[name]}" for name in ("kinematify", "python", "platform") if name in facts)
+    stopped = f" (stopped early: {len(results)} of its {wanted} objects)" if len(results) < wanted else ""
     text = f"""# families
 
-- command: `{command}`
+- command: `{command}`{stopped}
 - {machine}
 
 Objects of every family of `kinematify generate`, drawn by seeds. The model with the known joints and the model that was
@@ -45,6 +48,7 @@ brackets: in how many objects a check says so. Angle, types and TED compare the 
     rows = {name: _numbers(group) for name, group in groups.items()}
     record = {
         "command": command,
+        "wanted": wanted,
         "environment": facts,
         "all": _numbers(results),
         "families": rows,
