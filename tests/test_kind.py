@@ -73,3 +73,15 @@ def test_a_rod_deep_in_a_tube_is_drawn_out_and_a_short_one_turns(depth: float, s
     estimate = infer_joints(known_object("spring", {"tube": tube, "rod": rod}, joint))["rod"]
     assert (estimate.kind is JointType.PRISMATIC) is slides
     assert abs(float(estimate.axis[2])) > 0.999
+
+
+@pytest.mark.parametrize(("depth", "slides"), [(0.08, True), (0.004, False)])
+def test_a_plate_deep_in_a_shaft_travels_and_a_flush_one_is_a_lid(depth: float, slides: bool) -> None:
+    shaft = box((-0.08, -0.15, 0), (0.08, 0.15, 0.2)) - box((-0.05, -0.12, 0.02), (0.05, 0.12, 1.0))
+    top = 0.2 - depth
+    plate = box((-0.0497, -0.1197, top - 0.006), (0.0497, 0.1197, top))
+    joint = sliding("body", "plate", (0, 0, 1), (0, 0, top), (-0.1, 0.0))
+    estimate = infer_joints(known_object("shaft", {"body": shaft, "plate": plate}, joint))["plate"]
+    assert (estimate.kind is JointType.PRISMATIC) is slides
+    if slides:
+        assert abs(float(estimate.axis[2])) > 0.999

@@ -88,3 +88,21 @@ def test_a_level_disc_on_top_that_is_larger_than_a_button_is_lifted() -> None:
     found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
     assert found.sign > 0.0
     assert found.upper >= 0.006
+
+
+def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
+    """The middle of the lamp lies above the button, and what hangs on the post makes a machine of joints in series."""
+    foot = box((-0.1, -0.1, 0), (0.1, 0.1, 0.03)) - box((-0.0105, -0.0905, 0.018), (0.0105, -0.0695, 0.1))
+    solids = {"lamp": foot + cylinder(0.01, (0, 0, 0.02), (0, 0, 0.6))}
+    solids["button"] = box((-0.01, -0.09, 0.022), (0.01, -0.07, 0.033))
+    joints = [sliding("lamp", "button", (0, 0, -1), (0, -0.08, 0.03), (0.0, 0.003))]
+    for k in range(3):
+        solids[f"link_{k}"] = box((-0.02, 0.011 + 0.05 * k, 0.5), (0.02, 0.06 + 0.05 * k, 0.52))
+        joints.append(
+            turning(f"link_{k - 1}" if k else "lamp", f"link_{k}", (0, 0, 1), (0, 0.011 + 0.05 * k, 0.5), (-1, 1))
+        )
+    scene = scene_of(known_object("lamp", solids, *joints), "button")
+    assert scene.serial
+    found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joints[0].pivot, CONFIG.joints)
+    assert found.sign < 0.0
+    assert found.upper < 0.011

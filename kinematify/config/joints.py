@@ -108,6 +108,12 @@ class KindConfig(StageConfig):
     """Log odds of sliding before any evidence."""
     cap: float
     """Largest influence of a single cue."""
+    shaft: float
+    """Share of the directions in which the walls of a shaft stand, at least."""
+    sunk_none: float
+    """Depth of a plate below the outside of its body at which it may be a door, in diagonals."""
+    sunk_full: float
+    """Depth from which it is none."""
     deep_none: float
     """Length over width up to which a round contact is a bearing."""
     deep_full: float
@@ -212,6 +218,8 @@ class LimitsConfig(StageConfig):
     """A drawer whose front stands out by more than this fraction of its length is open."""
     room: float
     """A round part with this much room behind it is pressed, fraction of its diagonal."""
+    one_way: float
+    """A slide that is free farther one way by this fraction of the diagonal has an open side."""
     button: float
     """Travel of a button as a fraction of what stands out of the surface around it."""
     least_deg: float

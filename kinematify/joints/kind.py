@@ -70,8 +70,8 @@ def decide_kind(
         "rail": scene.mechanism * _held_rail(scene, turns, config),
     }
     cues["panel"] *= 1.0 - max(
-        cues["blocked_turn"], cues["keyed"], cues["capped"]
-    )  # a plate that cannot turn is no door
+        cues["blocked_turn"], cues["keyed"], cues["capped"], cues["carriage"]
+    )  # a plate that cannot turn, or lies inside, is no door
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
@@ -156,8 +156,20 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
         "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
         "guided": large * float(scene.gated) * _guided(scene, slides),
+        "carriage": furniture * _carriage(scene, slides, config),
         "telescope": large * _telescope(scene, slides, config),
     }
+
+
+def _carriage(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
+    """1 for a plate deep inside a shaft that it can travel along, as what carries the bread of a toaster."""
+    frame, thin = scene.frame, scene.frame.thin
+    if not scene.panel or scene.enclosed < config.kind.shaft or abs(float(slides.axes[0] @ frame.axes[thin])) < 0.99:
+        return 0.0
+    to_sides = (frame.slab_lower[thin] - scene.body_box[0, thin], scene.body_box[1, thin] - frame.slab_upper[thin])
+    sunk = float(min(to_sides)) / scene.diagonal
+    travels = float(slides.free_parent[0].max()) * scene.diagonal > frame.extents[thin]
+    return float(travels) * float(np.interp(sunk, (config.kind.sunk_none, config.kind.sunk_full), (0.0, 1.0)))
 
 
 def _telescope(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
@@ -185,7 +197,7 @@ def _depth(scene: JointScene, slides: RankedSlides) -> float:
     along = np.abs(scene.frame.axes @ slides.axes[0])
     extents = scene.frame.upper - scene.frame.lower
     face = np.sort(extents[np.argsort(-along)[1:]])
-    return float(np.clip((float(along @ extents) / max(float(face[0]), 1e-12) - 0.25) / 0.25, 0.0, 1.0))
+    return float(np.clip((float(along @ extents) / max(float(face[0]), 1e-12) - 0.4) / 0.5, 0.0, 1.0))
 
 
 def _channel(scene: JointScene, slides: RankedSlides) -> float:

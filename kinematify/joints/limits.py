@@ -300,7 +300,7 @@ def _neutral_sign(scene: JointScene, axis: FloatArray) -> float:
 def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
     points = moving_points(scene.cache, scene.child, config.sweep)
     # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
-    obstacles = (scene.parent, *scene.others) if scene.mechanism > 0.5 else (scene.parent,)
+    obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
     limit = scene.diagonal
     sweep = sweep_slides(scene.cache, points, axis[None], obstacles, limit=limit, config=config.sweep)
     free = sweep.free(config.sweep.share)[0]
@@ -308,7 +308,7 @@ def _slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> R
     sign = _slide_sign(scene, axis, free, config)
     forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
     lower, upper = 0.0, 0.0
-    if scene.mechanism > 0.5:
+    if _in_linkage(scene):
         reach = config.limits.drawer * length
         lower, upper = -min(backward, reach), min(forward, reach)
     elif (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.gated and sign * _outwards(scene, axis) < 0.0):
@@ -358,15 +358,22 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
     outwards = _outwards(scene, axis)
     if is_cap(scene):
         return outwards
-    if scene.gated and scene.mechanism <= 0.5:
+    longer = 1.0 if free[0] > free[1] else -1.0
+    one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
+    if scene.smallness >= 1.0 and not (scene.gated or _in_linkage(scene)) and one_way:
+        return -longer  # there is a floor below a button and nothing before it; round ones are told below from collars
+    if scene.gated and not _in_linkage(scene):
         play = slide_play(scene, outwards * axis, config)
         if play is not None and config.limits.room * scene.frame.diagonal < play[1] < np.inf:
             return -outwards
-    if scene.smallness > 0.5 and not scene.mechanism > 0.5 and not _is_small_lid(scene):
+    if scene.smallness > 0.5 and not _in_linkage(scene) and not _is_small_lid(scene):
         return -outwards
-    if abs(free[0] - free[1]) > 0.02 * scene.diagonal:
-        return 1.0 if free[0] > free[1] else -1.0
-    return outwards
+    return longer if one_way else outwards
+
+
+def _in_linkage(scene: JointScene) -> bool:
+    """A link of a machine, whose motion has no outside; buttons on the base of a lamp or fan are none."""
+    return scene.mechanism > 0.5 and (scene.smallness < 1.0 or (scene.serial and scene.parent_moves))
 
 
 def _is_small_lid(scene: JointScene) -> bool:
