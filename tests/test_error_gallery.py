@@ -34,7 +34,8 @@ def test_wrong_joints_are_shown_worst_first(tmp_path: Path) -> None:
     assert "## 1. three_parts, secret_slide: revolute instead of prismatic" in text
     assert "wrong in 2 of 2 runs" in text
     assert told == ["picture of three_parts, secret_slide"]
-    assert Image.open(tmp_path / "out" / "errors" / "01.webp").size[0] == 600
+    with Image.open(tmp_path / "out" / "errors" / "01.webp") as picture:
+        assert picture.size[0] == 600
 
 
 def test_the_panels_differ_where_the_joints_do() -> None:

@@ -47,11 +47,18 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
         (["=prismatic"], "PART=TYPE"),
         (["door_1=prismatic", "door_1=revolute"], "contradict"),
         (["lid:axis=x", "lid:axis=z"], "both x and z"),
+        (["lid:axis=x", "lid=fixed"], "cannot be fixed and have an axis"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_with_the_choices(texts: list[str], said: str) -> None:
     with pytest.raises(InputError, match=said):
         parse_hints(texts, PARTS)
+
+
+def test_a_hint_on_the_part_that_is_to_be_the_base_is_refused_before_anything_is_computed() -> None:
+    with pytest.raises(InputError, match="is the base link"):
+        parse_hints(["lid=revolute"], PARTS, base="lid")
+    assert parse_hints(["lid=revolute"], PARTS, base="body")
 
 
 def test_a_type_is_obeyed_and_the_rest_is_found() -> None:

@@ -130,7 +130,7 @@ def command(
         use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
-        told = parse_hints(hints, given.names)
+        told = parse_hints(hints, given.names, base=base)
         inference = infer(given, config=settings, base=base, progress=progress)
         inference, heard = _with_votes(inference, vlm, progress)
         status = 0

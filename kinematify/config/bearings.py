@@ -85,8 +85,28 @@ class BearingConfig(StageConfig):
     """Score of a fully round part without any bearing on the other side."""
     turned_samples: int
     """Samples, and pairs of normals, for the axis of a whole part."""
+    noisy_normal_tolerance: float
+    """`normal_tolerance` where a part's vertices are noisy [deg]."""
+    noisy_fine_tolerance: float
+    """`fine_tolerance` there [deg]."""
+    noisy_circle_tolerance: float
+    """`circle_tolerance` there [deg]."""
+    noisy_least_arc: float
+    """`least_arc` there: noise breaks edges into pieces."""
     rail: RailConfig
     """The counterpart for sliding joints, fitted to the same samples."""
+
+    @property
+    def for_noise(self) -> BearingConfig:
+        """The same with the tolerances of noisy parts."""
+        return self.model_copy(
+            update={
+                "normal_tolerance": self.noisy_normal_tolerance,
+                "fine_tolerance": self.noisy_fine_tolerance,
+                "circle_tolerance": self.noisy_circle_tolerance,
+                "least_arc": self.noisy_least_arc,
+            }
+        )
 
     @property
     def normal_tolerance_sine(self) -> float:

@@ -88,6 +88,8 @@ class TopologyConfig(StageConfig):
     """``k`` of R_struct."""
     max_bases: int
     """Base links that are tried at most."""
+    base_doubt: float
+    """A tree with another base link whose reward is within this of the best one makes the base doubtful."""
     base_margin: float
     """A base link is tried when its score is at most this far below the best."""
     iterations: int

@@ -19,6 +19,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.assembly.vectors import crossed, lengths_of
+from kinematify.geometry.denoise import ROUGH, bends_both_ways, filtered_normals
 from kinematify.geometry.sampling import curve_order, place_samples
 
 if TYPE_CHECKING:
@@ -122,8 +123,27 @@ class PartSurface:
         return edges, inverse.reshape(-1), np.repeat(np.arange(len(faces)), 3)
 
     @cached_property
+    def noisy(self) -> bool:
+        """Whether the vertices are so noisy that single faces do not tell how the surface runs."""
+        vertices, faces = self.welded
+        normals, areas = self.face_normals
+        return bends_both_ways(vertices[faces].mean(axis=1), normals, areas, self._adjacent[:, :2]) > ROUGH
+
+    @cached_property
+    def surface_normals(self) -> FloatArray:
+        """Unit normals of the faces (F, 3), averaged over the faces around where vertices are noisy."""
+        normals, areas = self.face_normals
+        return filtered_normals(normals, areas, self._adjacent[:, :2]) if self.noisy else normals
+
+    @cached_property
     def smooth_pairs(self) -> tuple[IntArray, FloatArray]:
         """Pairs of faces that share an edge (P, 3: face, face, edge) and the cosine between their normals (P,)."""
+        pairs, normals = self._adjacent, self.surface_normals
+        return pairs, np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]])
+
+    @cached_property
+    def _adjacent(self) -> IntArray:
+        """Pairs of faces that share an edge which no other face has, shape (P, 3): face, face, edge."""
         edges, edge_of_side, face_of_side = self._edge_table
         order = np.argsort(edge_of_side, kind="stable")
         sorted_edges = edge_of_side[order]
@@ -132,10 +152,7 @@ class PartSurface:
         manifold = counts[sorted_edges[starts]] == 2
         first = order[starts[manifold]]
         second = order[starts[manifold] + 1]
-        pairs = np.stack([face_of_side[first], face_of_side[second], edge_of_side[first]], axis=1)
-        normals, _ = self.face_normals
-        cosines = np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]])
-        return pairs, cosines
+        return np.stack([face_of_side[first], face_of_side[second], edge_of_side[first]], axis=1)
 
     @cached_property
     def feature_edges(self) -> IntArray:
@@ -192,7 +209,7 @@ class PartSurface:
     def corner_normals(self) -> FloatArray:
         """Unit normal at each corner of each welded face, shape (F, 3, 3), angle-weighted over its smooth fan."""
         vertices, faces = self.welded
-        normals, _ = self.face_normals
+        normals = self.surface_normals
         fan = self._corner_fans()
         weights = _corner_angles(vertices, faces).reshape(-1)
         sums = np.zeros((fan.max() + 1, 3))

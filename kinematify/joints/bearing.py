@@ -105,6 +105,8 @@ def fit_edge(
 ) -> EdgeBearing:
     """Propose, score and refine the lines of one contact edge; `diagonal` is that of the assembly [m]."""
     rng = np.random.default_rng([seed, edge.a, edge.b])
+    if surfaces[edge.a].noisy or surfaces[edge.b].noisy:
+        config = config.for_noise
     sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
     centroid = contact_centroid(sides)
     proposals = propose_lines(sides, centroid, diagonal=diagonal, config=config, rng=rng)
@@ -125,6 +127,8 @@ def score_line(
     surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, *, diagonal: float, config: BearingConfig
 ) -> BearingLine:
     """Score one given line as a bearing of a contact edge, as `fit_edge` scores its own, without refining it."""
+    if surfaces[edge.a].noisy or surfaces[edge.b].noisy:
+        config = config.for_noise
     sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
     return _scored(sides, line, contact_centroid(sides), diagonal, config)
 

@@ -126,7 +126,11 @@ def infer(
         joints=joints,
         timings=MappingProxyType(clock.seconds),
         peak_mb=_peak_mb(),
-        warnings=(*assembly.warnings, *_floating_parts(assembly, graph, trees[0])),
+        warnings=(
+            *assembly.warnings,
+            *_doubtful_base(assembly, trees, config.topology.base_doubt),
+            *_floating_parts(assembly, graph, trees[0]),
+        ),
     )
 
 
@@ -246,6 +250,18 @@ def _base_index(assembly: Assembly, base: str | None) -> int | None:
     if base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
     return assembly.names.index(base)
+
+
+def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: float) -> list[str]:
+    """Warn where another part would serve as base link nearly as well."""
+    best = trees[0]
+    rivals = [tree.root for tree in trees if tree.root != best.root and tree.reward >= best.reward - doubt]
+    if not rivals:
+        return []
+    others = " or ".join(assembly.names[part] for part in dict.fromkeys(rivals))
+    taken = assembly.names[best.root]
+    said = f"Which part stands still is not clear: {taken} was taken, {others} would do nearly as well. "
+    return [said + "Give --base to choose."]
 
 
 def _floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:

@@ -15,6 +15,7 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate, JointType
 from kinematify.refinement.candidates import CandidateJoints
+from kinematify.refinement.words import described
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,12 +41,13 @@ class Hint:
     """Of `AXES`."""
 
 
-def parse_hints(texts: Sequence[str], parts: Sequence[str]) -> tuple[Hint, ...]:
+def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None = None) -> tuple[Hint, ...]:
     """Read hints as they are typed; those on one part are taken together.
 
     Args:
         texts: ``PART=TYPE`` and ``PART:axis=AXIS``.
         parts: Names that there are.
+        base: Part that is said to be the base link, if any.
 
     Raises:
         InputError: A hint cannot be read, names no part, or contradicts another one; the message has the choices.
@@ -62,7 +64,22 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str]) -> tuple[Hint, ...]:
                     "Keep one of them."
                 )
         found[hint.part] = Hint(part=hint.part, kind=hint.kind or known.kind, axis=hint.axis or known.axis)
+    for hint in found.values():
+        if hint.kind is JointType.FIXED and hint.axis is not None:
+            raise InputError(
+                f"The hints contradict each other: {hint.part} cannot be fixed and have an axis along {hint.axis}. "
+                "Keep one of them."
+            )
+        if hint.part == base:
+            raise _about_the_base(hint.part)
     return tuple(found.values())
+
+
+def _about_the_base(part: str) -> InputError:
+    return InputError(
+        f"A hint is about {part}, which is the base link and has no joint above it. Give another base with --base, or "
+        "leave out the hint."
+    )
 
 
 def _parsed(text: str, parts: Sequence[str]) -> Hint:
@@ -94,12 +111,10 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
     for hint in hints:
         place = next((k for k, joint in enumerate(joints) if names[joint.child] == hint.part), None)
         if place is None:
-            raise InputError(
-                f"A hint is about {hint.part}, which is the base link and has no joint above it. Give another base "
-                "with --base, or leave out the hint."
-            )
-        joints[place] = _hinted(inference, maker, joints[place], hint)
-        warnings += _objections(joints[place], hint, inference)
+            raise _about_the_base(hint.part)
+        before = joints[place]
+        joints[place] = _hinted(inference, maker, before, hint)
+        warnings += _objections(joints[place], hint, inference, before)
     return replace(inference, joints=tuple(joints), warnings=tuple(warnings))
 
 
@@ -145,8 +160,8 @@ def _of_estimate(joint: JointEstimate) -> JointCandidate | None:
     return JointCandidate(kind=kind, axis=joint.axis, pivot=joint.pivot, score=0.0, source="chosen")
 
 
-def _objections(joint: JointEstimate, hint: Hint, inference: Inference) -> list[str]:
-    """What speaks against a hint that was followed: the part can hardly move that way."""
+def _objections(joint: JointEstimate, hint: Hint, inference: Inference, before: JointEstimate) -> list[str]:
+    """What speaks against a hint that was followed: the part can hardly move that way; and what the geometry says."""
     if joint.kind is JointType.FIXED:
         return []
     free = max(joint.evidence.get("free_forward", np.inf), joint.evidence.get("free_backward", np.inf))
@@ -157,4 +172,5 @@ def _objections(joint: JointEstimate, hint: Hint, inference: Inference) -> list[
         stopped = f"slides by {1e3 * free:.1f} mm"
     else:
         return []
-    return [f"The hint on {hint.part} is followed, but the part only {stopped} before it meets another one."]
+    said = f"The hint on {hint.part} is followed, but the part only {stopped} before it meets another one."
+    return [f"{said} Without the hint it is {described(before)}."]

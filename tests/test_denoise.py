@@ -1,0 +1,68 @@
+"""Noisy meshes are told from designs, their normals are averaged, and bearings are still found on them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from kinematify.assembly.part import Assembly, Part
+from kinematify.config import load_config
+from kinematify.contact.build import build_contact_graph
+from kinematify.geometry.surface import PartSurface, part_surfaces
+from kinematify.joints.bearing import fit_bearings
+
+CONFIG = load_config()
+
+
+def fine(mesh: trimesh.Trimesh, edge: float) -> trimesh.Trimesh:
+    return trimesh.Trimesh(*trimesh.remesh.subdivide_to_size(mesh.vertices, mesh.faces, edge))
+
+
+def part_of(mesh: trimesh.Trimesh, noise: float, name: str = "part") -> Part:
+    mesh = trimesh.Trimesh(mesh.vertices, mesh.faces)  # one vertex at each place
+    moved = mesh.vertices + noise * np.random.default_rng(0).normal(size=mesh.vertices.shape)
+    return Part(name=name, vertices=moved, faces=mesh.faces)
+
+
+DESIGNS = {
+    "box": trimesh.creation.box((1, 1, 1)),
+    "ball": trimesh.creation.icosphere(subdivisions=4),
+    "ring": trimesh.creation.torus(1.0, 0.3),
+    "pipe": trimesh.creation.annulus(0.4, 0.5, 1.0),
+}
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_designs_are_not_noisy_and_keep_their_normals(name: str) -> None:
+    surface = PartSurface(part_of(DESIGNS[name], 0.0), crease_angle=0.52)
+    assert not surface.noisy
+    np.testing.assert_array_equal(surface.surface_normals, surface.face_normals[0])
+
+
+def test_normals_of_a_noisy_box_are_averaged_within_its_sides() -> None:
+    smooth = fine(DESIGNS["box"], 0.06)
+    smooth.merge_vertices()
+    surface = PartSurface(part_of(smooth, 0.01), crease_angle=0.52)
+    true = smooth.face_normals
+    assert surface.noisy
+
+    def miss(normals: np.ndarray) -> float:
+        return float(np.degrees(np.median(np.arccos(np.clip((normals * true).sum(axis=1), -1, 1)))))
+
+    assert miss(surface.face_normals[0]) > 12.0
+    assert miss(surface.surface_normals) < 0.4 * miss(surface.face_normals[0])
+
+
+def test_the_bearing_of_a_noisy_pin_is_found() -> None:
+    pin = fine(trimesh.creation.cylinder(radius=0.1, height=0.6, sections=40), 0.02)
+    sleeve = fine(trimesh.creation.annulus(0.102, 0.2, 0.3, sections=40), 0.02)
+    parts = tuple(part_of(mesh, 0.0015, name) for mesh, name in ((pin, "pin"), (sleeve, "sleeve")))
+    assembly = Assembly(parts=parts, source="test")
+    surfaces = part_surfaces(assembly, config=CONFIG.surface)
+    assert all(surface.noisy for surface in surfaces)
+    graph = build_contact_graph(assembly, surfaces, config=CONFIG.contact, seed=0)
+    best = fit_bearings(assembly, surfaces, graph, config=CONFIG.bearing, seed=0)[0, 1].lines[0]
+    assert abs(best.axis[2]) > np.cos(np.radians(2.0))
+    assert np.linalg.norm(best.pivot[:2]) < 0.01
+    assert best.surface > 0.2
