@@ -7,9 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from objects import BUILDERS
 
 from kinematify.benchmark.calibration import Judged, is_right, reliability, write_calibration
 from kinematify.benchmark.metrics import JointScore
+from kinematify.config import Config, load_config
+from kinematify.pipeline import infer
 
 HEADER = {"command": "c", "date": "d", "code": "x", "objects": 1, "corpus_seed": 2, "conditions": ["rest"]}
 
@@ -66,3 +69,19 @@ def test_the_page_shows_the_curve_and_names_the_confident_errors(tmp_path: Path)
     assert text.index("| o | j1 | 0.95 |") < text.index("| o | j0 | 0.20 |")
     assert json.loads(data.read_text())["joints"] == 4
     assert picture.stat().st_size > 1000
+
+
+def test_trees_that_are_nearly_as_good_and_close_types_cost_confidence() -> None:
+    assembly = BUILDERS["hinge_pin"]().assembly
+    config = load_config()
+
+    def said(**changes: float) -> float:
+        doubt = config.joints.confidence.model_copy(update=changes)
+        joints = config.joints.model_copy(update={"confidence": doubt})
+        changed: Config = config.model_copy(update={"joints": joints})
+        return infer(assembly, config=changed).joints[0].confidence
+
+    usual = said()
+    assert 0.6 < usual < 1.0
+    assert said(parent_margin=1e3) == pytest.approx(0.5 * said(parent_margin=1e-6), rel=0.01)
+    assert said(kind_slope=0.0) < usual < said(kind_slope=100.0)

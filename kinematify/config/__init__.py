@@ -12,6 +12,7 @@ from kinematify.config.base import CONFIG_FOLDER, StageConfig, load_values, vali
 from kinematify.config.bearings import BearingConfig, QualityConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
 from kinematify.config.joints import (
+    ConfidenceConfig,
     FootingConfig,
     FramesConfig,
     GateConfig,
@@ -49,6 +50,7 @@ __all__ = [
     "BaseConfig",
     "BearingConfig",
     "CavlConfig",
+    "ConfidenceConfig",
     "Config",
     "ContactConfig",
     "FeedbackConfig",

@@ -275,6 +275,17 @@ class RailsConfig(StageConfig):
     """Below this lead a pair of end parts is hinged, not sliding."""
 
 
+class ConfidenceConfig(StageConfig):
+    """How likely a joint is right, from the margins of what was decided (benchmarks/calibration.py)."""
+
+    kind_slope: float
+    """Log odds that the type is right, per log odds of sliding against turning."""
+    without_bearing: float
+    """Factor for what turns in a chain of links where no bearing holds it."""
+    parent_margin: float
+    """Lead in reward over trees with another parent at which that parent is e times less likely."""
+
+
 class JointsConfig(StageConfig):
     """Choice of each joint's type, axis, direction and limits."""
 
@@ -282,6 +293,7 @@ class JointsConfig(StageConfig):
     """Bearings, panels and slides, or the paper's DW-CAVL alone."""
     samples: int
     """Surface samples per part."""
+    confidence: ConfidenceConfig
     alternatives: int
     """Distinct candidates kept per type."""
     contact_band: float

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import Assembly, FloatArray
-    from kinematify.config import JointsConfig
+    from kinematify.config import ConfidenceConfig, JointsConfig
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.bearing import EdgeBearing
     from kinematify.joints.frames import BoxFrame
@@ -79,7 +79,7 @@ def _estimate(
         pivot=pivot,
         lower=found.lower,
         upper=found.upper,
-        confidence=_confidence(decision, turns, slides),
+        confidence=_confidence(weighed, config.confidence),
         alternatives=_alternatives(scene, decision, turns, slides, config),
         evidence={
             **decision.cues,
@@ -210,19 +210,19 @@ def _chosen_line(
     return turns.lines.axes[0], turns.lines.pivots[0]
 
 
-def _confidence(decision: KindDecision, turns: RankedTurns, slides: RankedSlides) -> float:
-    """Probability-like margin over another type or another direction, whichever is closer."""
-    kind_margin = abs(decision.odds)
+def _confidence(weighed: WeighedJoints, config: ConfidenceConfig) -> float:
+    """How likely type and direction are right, by their margins; the parent is taken for granted."""
+    scene, turns, slides, decision = weighed.scene, weighed.turns, weighed.slides, weighed.decision
     if decision.kind is JointType.PRISMATIC:
         axes, scores = slides.axes, slides.scores
     else:
         axes, scores = turns.lines.axes, turns.scores
     other = np.abs(axes @ axes[0]) < np.cos(np.radians(10.0))
     margin = float(scores[0] - scores[other].max()) if other.any() else np.inf
-    same_direction = abs(float(turns.lines.axes[0] @ slides.axes[0])) > np.cos(np.radians(10.0))
     direction = 1.0 / (1.0 + np.exp(-2.0 * margin - 0.5))
-    kind = 1.0 / (1.0 + np.exp(-kind_margin))
-    return float(direction * (1.0 if same_direction else kind))
+    kind = 1.0 / (1.0 + np.exp(-config.kind_slope * abs(decision.odds)))
+    unborne = decision.kind is JointType.REVOLUTE and scene.mechanism > 0.5 and not scene.gated
+    return float(direction * kind * (config.without_bearing if unborne else 1.0))
 
 
 def _alternatives(

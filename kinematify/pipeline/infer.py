@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import resource
 import sys
 import time
@@ -116,6 +117,7 @@ def infer(
         trees = search_trees(graph, assembly_stats(assembly), evidence, config.topology, seed=config.seed, base=root)
     with clock.stage("joints", 0.7):
         joints = choose_joints(assembly, graph, trees[0], bearings, config)
+        joints = _with_doubt_of_parents(joints, trees, config.joints.confidence.parent_margin)
     clock.progress("done", 1.0)
     return Inference(
         assembly=assembly,
@@ -227,6 +229,24 @@ def choose_joints(
     from kinematify.joints.paper import estimate_paper_joints  # noqa: PLC0415
 
     return estimate_paper_joints(assembly, graph, tuple(tree.edges()), config=config)
+
+
+def _with_doubt_of_parents(
+    joints: Sequence[JointEstimate], trees: Sequence[KinematicTree], margin: float
+) -> tuple[JointEstimate, ...]:
+    """Joints with less confidence where trees that are nearly as good hang the part on another one."""
+    best = trees[0]
+    found = []
+    for joint in joints:
+        rivals: dict[int, float] = {}
+        for tree in trees[1:]:
+            above = tree.parents[joint.child]
+            if above != joint.parent:
+                rivals[above] = max(rivals.get(above, -math.inf), tree.reward)
+        right = 1.0 / (1.0 + sum(math.exp((reward - best.reward) / margin) for reward in rivals.values()))
+        evidence = {**joint.evidence, "parent_likely": right}
+        found.append(replace(joint, confidence=joint.confidence * right, evidence=evidence))
+    return tuple(found)
 
 
 class _StageClock:
