@@ -11,7 +11,7 @@ from kinematify.joints.panels import rank_turns
 from kinematify.joints.slides import rank_slides
 from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
-from tests.known import known_object, sliding
+from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
 
 
@@ -85,3 +85,16 @@ def test_a_plate_deep_in_a_shaft_travels_and_a_flush_one_is_a_lid(depth: float, 
     assert (estimate.kind is JointType.PRISMATIC) is slides
     if slides:
         assert abs(float(estimate.axis[2])) > 0.999
+
+
+def test_a_round_flap_in_pins_across_its_mouth_swings() -> None:
+    bin_ = cylinder(0.15, (0, 0, 0), (0, 0, 0.4)) - cylinder(0.146, (0, 0, 0.004), (0, 0, 1.0))
+    bin_ -= cylinder(0.0045, (-1, 0, 0.36), (1, 0, 0.36))
+    flap = cylinder(0.14, (0, 0, 0.357), (0, 0, 0.363))
+    for side in (-1, 1):
+        flap += cylinder(0.004, (0.139 * side, 0, 0.36), (0.146 * side, 0, 0.36))
+        flap += cylinder(0.004, (0.146 * side, 0, 0.36), (0.15 * side, 0, 0.36), segments=24)
+    joint = turning("bin", "flap", (1, 0, 0), (0, 0, 0.36), (-1.0, 1.0))
+    estimate = infer_joints(known_object("bin", {"bin": bin_, "flap": flap}, joint))["flap"]
+    assert estimate.kind.turns
+    assert abs(float(estimate.axis[0])) > 0.999

@@ -7,7 +7,7 @@ import pytest
 
 from kinematify.joints.panels import propose_lines, rank_turns
 from kinematify.sources.procedural.solids import box
-from tests.joint_scenes import CONFIG, scene_of
+from tests.joint_scenes import CONFIG, infer_joints, scene_of
 from tests.known import known_object, turning
 from tests.objects import BUILDERS
 
@@ -63,3 +63,20 @@ def test_no_cue_exceeds_the_cap() -> None:
     total = sum(np.clip(weights[name] * value, -cap, cap) for name, value in ranked.cues.items())
     bonus = CONFIG.joints.panels.bearing_bonus * np.array([source == "bearing" for source in ranked.lines.sources])
     np.testing.assert_allclose(ranked.scores, total + bonus * scene.gated, atol=1e-9)
+
+
+def test_thick_high_doors_side_by_side_are_hinged_at_their_outer_edges() -> None:
+    """Half as thick as wide, as in a fridge: neither drawers, nor hinged above or below."""
+    body = box((-0.2, 0.0, 0.0), (0.2, 0.5, 1.0)) - box((-0.18, -0.1, 0.02), (0.18, 0.48, 0.98))
+    solids, joints = {"body": body}, []
+    for k, side in enumerate((-1, 1)):
+        inner, outer = 0.001 * side, 0.2 * side
+        solids[f"door_{k}"] = box((min(inner, outer), -0.098, 0.001), (max(inner, outer), -0.001, 0.999))
+        joints.append(turning("body", f"door_{k}", (0, 0, side), (outer, -0.001, 0), (0.0, 1.8)))
+    found = infer_joints(known_object("fridge", solids, *joints))
+    for k, side in enumerate((-1, 1)):
+        estimate = found[f"door_{k}"]
+        assert estimate.kind.turns
+        assert abs(float(estimate.axis[2])) > 0.999
+        assert np.sign(estimate.pivot[0]) == side
+        assert abs(float(estimate.pivot[0])) > 0.15

@@ -304,6 +304,8 @@ class JointsConfig(StageConfig):
     """A part above this fraction of its parent's diagonal is not small."""
     panel_thinness: float
     """A panel is thinner than this fraction of its second side."""
+    thick_door: float
+    """So is an upright one below this, if it is thin beside the geometric mean of its other sides."""
     upright_cosine: float
     """A panel whose thin direction is less vertical than this is upright."""
     spread_full: float

@@ -75,6 +75,8 @@ def decide_kind(
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
+    if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
+        cues["round_lid"] = 0.0  # a flap in pins across its mouth is not lifted off
     cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
     cues["retained"] *= 1.0 - cues["capped"]
     for held in ("keyed", "button", "flat_cap", "drawer", "box_inside", "row"):

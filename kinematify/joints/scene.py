@@ -170,8 +170,8 @@ def joint_scene(
     journal = None if serial else _journal(cache, parent, child, frame, config)
     if journal is not None:
         bearing = _with_journal(bearing, edge, journal)
-    panel = bool(sides[0] < config.panel_thinness * sides[1] and smallness < 1.0)
-    plate = bool(sides[0] < config.panel_thinness * sides[1])
+    plate = _is_plate(sides, up < config.upright_cosine, config)
+    panel = plate and smallness < 1.0
     on_top = bool(frame.centre[2] > low + 0.75 * (high - low))
     folds = plate and not (panel and on_top and up > config.flat_cosine)
     return JointScene(
@@ -352,6 +352,14 @@ def _trodden(cache: PartCache, body: int, part: int, frame: BoxFrame, config: Jo
     if not is_level_plate(frame) or not _stands(cache, body, config):
         return np.zeros(3)
     return foot_side(frame, cache.assembly.parts[body].bounds, config.footing)
+
+
+def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:
+    """Whether a slab of these ascending sides is thin; narrow doors of fridges are thick, but high."""
+    if sides[0] < config.panel_thinness * sides[1]:
+        return True
+    thick = sides[0] < config.thick_door * sides[1]
+    return bool(upright and thick and sides[0] < config.panel_thinness * np.sqrt(sides[1] * sides[2]))
 
 
 def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> NDArray[np.bool_]:

@@ -172,18 +172,19 @@ def side_by_side(tree: TreeLayout, carriers: Mapping[Pair, frozenset[int]]) -> f
     return 1.0 - float(np.mean(stacked))
 
 
-def on_the_base(tree: TreeLayout, touches: BoolArray) -> float:
-    """Our R_direct in [0, 1]: share of the children that hang on the base or do not touch it.
+def on_the_base(tree: TreeLayout, touches: BoolArray, clear: BoolArray) -> float:
+    """Our R_direct in [0, 1]: share of the children that hang on the base, do not touch it, or show a joint elsewhere.
 
     Doors and drawers touch their neighbours as they touch the body, and no joint need show at either contact.
 
     Args:
         tree: The tree.
         touches: Which parts touch, shape (n, n).
+        clear: Which edges show a joint, shape (n, n).
     """
-    children = tree.children
-    elsewhere = (tree.parents[children] != tree.order[0]) & touches[tree.order[0], children]
-    return 1.0 - float(elsewhere.mean())
+    children, base = tree.children, tree.order[0]
+    parents = tree.parents[children]
+    return 1.0 - float(((parents != base) & touches[base, children] & ~clear[parents, children]).mean())
 
 
 def log_hierarchy(tree: TreeLayout, hulls: FloatArray) -> float:
@@ -238,10 +239,15 @@ class TreeReward:
             self.touches[a, b] = self.touches[b, a] = True
 
     def weights_for(self, base: int) -> dict[Pair, float]:
-        """Edge weights whose maximum spanning tree has the best sum of R_contact and R_direct for a base link."""
+        """Edge weights whose maximum spanning tree has about the best sum of R_contact and R_direct for a base link."""
         weights = self.config.weights
-        bonus = 0.0 if self.is_paper or weights.contact <= 0.0 else weights.direct / weights.contact
-        return {edge: value + bonus * (base in edge) for edge, value in self.quality.items()}
+        loss = 0.0 if self.is_paper or weights.contact <= 0.0 else weights.direct / weights.contact
+        return {
+            (a, b): value
+            - loss
+            * (base not in (a, b) and value < self.config.held_quality and bool(self.touches[base, [a, b]].any()))
+            for (a, b), value in self.quality.items()
+        }
 
     def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
         """Value of every term in [0, 1]; the paper's R_sym is halved here and its weight doubled in `total`.
@@ -268,7 +274,7 @@ class TreeReward:
         }
         if not self.is_paper:
             found["stack"] = side_by_side(tree, self.stacks)
-            found["direct"] = on_the_base(tree, self.touches)
+            found["direct"] = on_the_base(tree, self.touches, self.edge_weights >= self.config.held_quality)
         return found if self.simulated is None else {**found, "sim": self._survived(tree)}
 
     def _survived(self, tree: TreeLayout) -> float:
