@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import click
 import numpy as np
 import pytest
 import trimesh
 from objects import BUILDERS
+from test_benchmark_run import request, write_object
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.benchmark.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
-from kinematify.benchmark.perturb import DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
+from kinematify.benchmark.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
+from kinematify.benchmark.run import run_benchmark
+from kinematify.benchmark.tables import markdown
 from kinematify.benchmark.voxels import voxel_remeshed
+from kinematify.cli.bench import words_of
 from kinematify.config import load_config
 
 CONFIG = load_config()
@@ -103,3 +110,31 @@ def test_cut_parts_meet_edge_to_edge_and_make_up_the_part(name: str, count: int)
 
 def test_every_degradation_is_a_kind_of_input() -> None:
     assert set(DEGRADED) == {*DEGRADATIONS, *OVER_SEGMENTED}
+
+
+def test_every_kind_of_input_is_run_and_has_a_line_of_its_own(tmp_path: Path) -> None:
+    """The quick inference turns everything, so that no cut comes out as fixed."""
+    write_object(tmp_path / "data" / "three_parts", with_knob=True)
+    wanted = request(
+        tmp_path / "data", tmp_path / "work", "star", conditions=("rest",), inputs=(CLEAN, "gaps", "hulls", "cut-2")
+    )
+    report = run_benchmark(wanted)
+    assert [(run.input, run.status, run.cuts, run.cuts_mended) for run in report.results] == [
+        (CLEAN, "ok", 0, 0),
+        ("gaps", "ok", 0, 0),
+        ("hulls", "ok", 0, 0),
+        ("cut-2", "ok", 1, 0),
+    ]
+    rows = [
+        line for line in markdown(report, "rough").splitlines() if line.startswith(("| clean", "| gaps", "| cut-2"))
+    ]
+    assert [row.split(" | ")[-2] for row in rows] == ["-", "-", "0 of 1"]
+    mean = next(line for line in markdown(report, "rough").splitlines() if "hulls left out" in line)
+    assert mean.split(" | ")[-2] == "0 of 1"
+
+
+def test_unknown_faults_are_refused_with_the_known_ones() -> None:
+    with pytest.raises(click.UsageError, match="Known are all, voxels-300"):
+        words_of("gaps,rust", DEGRADED, "--degrade")
+    assert words_of("cut-2, gaps", DEGRADED, "--degrade") == ("gaps", "cut-2")
+    assert words_of("all", DEGRADED, "--degrade") == DEGRADED
