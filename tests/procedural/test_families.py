@@ -89,6 +89,18 @@ def test_a_style_changes_the_mesh_and_leaves_the_joints_free(style):
         assert not collisions(other.moved({"finger_1": value}))
 
 
+def test_a_drawer_that_is_out_cannot_be_lifted():
+    made = build(FAMILIES["table"], {"layout": "2*drawer | drawer", "open_distance": 0.15})
+    manager, lifted = manager_of(made), np.eye(4)
+    lifted[2, 3] = 0.005
+    for joint in made.joints:
+        manager.set_transform(joint.child, lifted)
+        hits = manager.in_collision_internal(return_names=True)[1]
+        assert ("body", joint.child) in hits
+        manager.set_transform(joint.child, np.eye(4))
+    assert not collisions(made)
+
+
 @pytest.mark.parametrize("name", FAMILIES)
 def test_a_seed_gives_the_same_object_and_another_seed_another_one(name):
     first, again, other = (build(FAMILIES[name], {}, seed=seed) for seed in (3, 3, 4))

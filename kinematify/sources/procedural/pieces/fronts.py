@@ -86,21 +86,36 @@ def add_drawer(workshop: Workshop, name: str, parent: str, opening: Opening, fit
     """Add a drawer that runs in the room behind an opening and comes out along -y."""
     clearance = fitting.clearance
     edge, wall = 0.5 * opening.wall + clearance, min(0.012, 0.1 * opening.width)
+    rim = opening.bottom + edge + 0.75 * (opening.height - 2.0 * edge)
     inner = tray(
         (opening.left + edge, -clearance - 1e-3, opening.bottom + edge),
-        (
-            opening.right - edge,
-            opening.depth - opening.wall - clearance,
-            opening.bottom + edge + 0.75 * (opening.height - 2.0 * edge),
-        ),
+        (opening.right - edge, opening.depth - opening.wall - clearance, rim),
         wall,
     )
+    workshop.add(parent, *_kickers(opening, rim + clearance, edge + wall))
     front = -clearance - opening.wall
     middle = (0.5 * (opening.left + opening.right), front, 0.5 * (opening.bottom + opening.top))
     solids = handle(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width))
     workshop.body(name, panel(opening, clearance), inner, *solids)
     travel = 0.8 * (opening.depth - opening.wall)
     workshop.slides(name, parent, (0, -1, 0), middle, (0.0, travel), rest=fitting.rest)
+
+
+def _kickers(opening: Opening, bottom: float, reach: float) -> list[Manifold]:
+    """Strips along both sides of a room, above the rim of the drawer, so that it neither lifts nor tips when it is out.
+
+    Args:
+        opening: Whose room it is.
+        bottom: Height of their undersides [m].
+        reach: How far they reach in from the sides of the opening [m].
+    """
+    hold, back, top = 0.25 * opening.wall, opening.depth - 0.75 * opening.wall, opening.top - 0.25 * opening.wall
+    if top - bottom < hold:
+        return []
+    return [
+        box((opening.left + hold, 0.0, bottom), (opening.left + reach, back, top)),
+        box((opening.right - reach, 0.0, bottom), (opening.right - hold, back, top)),
+    ]
 
 
 def add_door(
