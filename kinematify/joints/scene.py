@@ -99,7 +99,7 @@ class JointScene:
     fold: Fold | None
     """Where the front of the child is folded as a rocker's; not looked for in large lids, which may have a ridge."""
     front: FloatArray
-    """Level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
+    """Of lids, level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
     trodden: FloatArray
     """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
 
@@ -206,7 +206,7 @@ def joint_scene(
         inside=_inside(cache, child, frame, body_box),
         rolls=rolls(cache, child, frame),
         fold=find_fold(cache.samples(child), frame, config.rockers) if folds else None,
-        front=_front(cache, tree, parent, frames, config),
+        front=_front(cache, tree, parent, frames, config) if panel and up > config.flat_cosine else np.zeros(3),
         trodden=_trodden(cache, parent, child, frame, config),
     )
 
