@@ -185,7 +185,8 @@ def _write(results: Sequence[SentenceResult], facts: dict[str, Any], arguments: 
         "Sentences are read and built by the procedural source; the inference sees the parts alone; the joints that",
         "the object was built with are the truth. Read right: the category that a reader expects was built. Means",
         "are over the joints of an object, then over objects; types over all joints; a joint between the wrong parts",
-        f"counts 90 deg. All in all: sentence, parts, inference, model folder and {_JUDGED[arguments.quick]}.", "",
+        f"counts 90 deg. All in all: sentence, parts, inference, model folder and {_JUDGED[arguments.quick]}.",
+        "Times are wall times, and tell little where other work shared the machine.", "",
         *(f"| {' | '.join(cells)} |" for cells in table), "",
         "## What is wrong", "", *(_faults(results) or ["Nothing."]),
     ]  # fmt: skip
