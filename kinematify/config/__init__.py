@@ -12,6 +12,7 @@ from kinematify.config.base import CONFIG_FOLDER, StageConfig, load_values, vali
 from kinematify.config.bearings import BearingConfig, QualityConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
 from kinematify.config.joints import (
+    CompoundConfig,
     ConfidenceConfig,
     FootingConfig,
     FramesConfig,
@@ -50,6 +51,7 @@ __all__ = [
     "BaseConfig",
     "BearingConfig",
     "CavlConfig",
+    "CompoundConfig",
     "ConfidenceConfig",
     "Config",
     "ContactConfig",

@@ -258,6 +258,21 @@ class FootingConfig(StageConfig):
     """Length of the sum of the unit directions of all such parts, at least."""
 
 
+class CompoundConfig(StageConfig):
+    """Joints that are one mechanism together."""
+
+    meeting: float
+    """How near axes come to one point, fraction of the object's diagonal."""
+    spread: float
+    """Volume that three unit axes span, at least: 1 for right angles, 0 in one plane."""
+    square: float
+    """Cosine up to which two axes count as square; also how near to opposite the axes of fingers are."""
+    cross: float
+    """Largest diagonal of the part between the axes of a universal joint, fraction of either neighbour's."""
+    beside: float
+    """How far fingers may stand beside each other, fraction of their distance along the axis."""
+
+
 class RailsConfig(StageConfig):
     """When the rail of a contact speaks for sliding."""
 
@@ -328,3 +343,4 @@ class JointsConfig(StageConfig):
     play: PlayConfig
     rockers: RockersConfig
     footing: FootingConfig
+    compound: CompoundConfig

@@ -18,6 +18,7 @@ from kinematify.contact.seams import find_cuts, joined, largest_piece, rigid_pie
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearing import fit_bearings
+from kinematify.joints.compound import compounds, described
 from kinematify.joints.decide import estimate_joints
 from kinematify.joints.held import held_pairs, leaf_pairs, passing_pairs
 from kinematify.joints.quality import edge_quality
@@ -132,6 +133,7 @@ def infer(
             *assembly.warnings,
             *_doubtful_base(assembly, trees, config.topology.base_doubt),
             *_floating_parts(assembly, graph, trees[0]),
+            *_compound_joints(assembly, joints, graph, config),
         ),
     )
 
@@ -282,6 +284,14 @@ def _doubtful_base(assembly: Assembly, trees: Sequence[KinematicTree], doubt: fl
     taken = assembly.names[best.root]
     said = f"Which part stands still is not clear: {taken} was taken, {others} would do nearly as well. "
     return [said + "Give --base to choose."]
+
+
+def _compound_joints(
+    assembly: Assembly, joints: Sequence[JointEstimate], graph: ContactGraph, config: Config
+) -> list[str]:
+    """Tell of joints that are one mechanism together."""
+    found = compounds(assembly, joints, graph.clusters, config.joints.compound)
+    return [described(compound, assembly.names) for compound in found]
 
 
 def _floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:
