@@ -70,7 +70,7 @@ def _joint_problems(joint: JointScore, diagonal: float, settings: NightlySetting
     if joint.line_m is not None and joint.line_m > settings.problem_line * diagonal:
         yield _problem("line", name, f"The axis passes {1e3 * joint.line_m:.3g} mm beside the true one.")
     if joint.limit_iou < settings.problem_limits:
-        yield _problem("limits", name, f"The limits overlap with the true ones by {joint.limit_iou:.0%}.")
+        yield _problem("limits", name, f"The limits overlap with the true ones by {max(0.0, joint.limit_iou):.0%}.")
     if joint.opens is False:
         yield _problem("opens", name, "The positive direction closes it.")
 
