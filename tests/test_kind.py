@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from kinematify import infer
 from kinematify.joints.candidate import JointType
 from kinematify.joints.kind import Siblings, decide_kind
 from kinematify.joints.panels import rank_turns
 from kinematify.joints.slides import rank_slides
+from kinematify.sources.procedural.request import from_text
 from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
 from tests.known import known_object, sliding, turning
@@ -39,6 +41,13 @@ def test_types_of_known_objects(name: str) -> None:
         found = estimates[joint.child].kind
         assert found.turns == joint.kind.turns, joint.child
         assert (found is JointType.PRISMATIC) == (joint.kind is JointType.PRISMATIC), joint.child
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_drawer_behind_the_whole_front_of_a_cabinet_slides(seed: int) -> None:
+    """Half as deep as its front is high: no door, for it is inside its body."""
+    inference = infer(from_text("a cabinet with one drawer").build(seed=seed).assembly)
+    assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC]
 
 
 def test_a_part_that_cannot_move_at_all_is_fixed() -> None:

@@ -108,6 +108,14 @@ class KindConfig(StageConfig):
     """Log odds of sliding before any evidence."""
     cap: float
     """Largest influence of a single cue."""
+    box_none: float
+    """Depth over the smaller side of the front up to which a part inside its body is no drawer."""
+    box_full: float
+    """The same from which it is one."""
+    pulled_none: float
+    """`box_none` of parts that are not inside their body."""
+    pulled_full: float
+    """`box_full` of them."""
     shaft: float
     """Share of the directions in which the walls of a shaft stand, at least."""
     sunk_none: float

@@ -145,7 +145,10 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     own = np.abs(slides.axes[0] @ scene.frame.axes.T) @ scene.frame.extents / scene.diagonal
     travel = np.minimum(slides.free_parent[0] / max(float(own), 1e-9), 1.0)
     level = float(1.0 - abs(float(slides.axes[0] @ UP)))
-    box = float(_is_box(scene)) * _depth(scene, slides)
+    depth = float(_is_box(scene)) * _depth(scene, slides)
+    box = float(np.interp(depth, (config.kind.box_none, config.kind.box_full), (0.0, 1.0)))
+    # Outside of its body a box is told from a thick door by its depth alone.
+    deep = float(np.interp(depth, (config.kind.pulled_none, config.kind.pulled_full), (0.0, 1.0)))
     large = 1.0 - scene.smallness
     furniture = large * (1.0 - scene.mechanism)
     one_way = float(travel.max() > 0.5) * float(np.clip(1.0 - 4.0 * travel.min(), 0.0, 1.0))
@@ -154,7 +157,7 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     blocked = float(np.clip(1.0 - turn_room, 0.0, 1.0)) * float(travel.max() > 0.3)
     return {
         "drawer": furniture * box * level * scene.inside * max(one_way, channel),
-        "box_pulled": furniture * box * level * float(not scene.plate and not scene.gated and travel.max() > 0.5),
+        "box_pulled": furniture * deep * level * float(not scene.plate and not scene.gated and travel.max() > 0.5),
         "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
         "guided": large * float(scene.gated) * _guided(scene, slides),
@@ -195,11 +198,11 @@ def _telescope(scene: JointScene, slides: RankedSlides, config: JointsConfig) ->
 
 
 def _depth(scene: JointScene, slides: RankedSlides) -> float:
-    """1 for a part that reaches far along its best slide, as a drawer has a body behind its front; 0 for a leaf."""
+    """How far a part reaches along its best slide over the smaller side of its front, behind which drawers are deep."""
     along = np.abs(scene.frame.axes @ slides.axes[0])
     extents = scene.frame.upper - scene.frame.lower
     face = np.sort(extents[np.argsort(-along)[1:]])
-    return float(np.clip((float(along @ extents) / max(float(face[0]), 1e-12) - 0.4) / 0.5, 0.0, 1.0))
+    return float(along @ extents) / max(float(face[0]), 1e-12)
 
 
 def _channel(scene: JointScene, slides: RankedSlides) -> float:
