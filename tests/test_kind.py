@@ -10,6 +10,8 @@ from kinematify.joints.candidate import JointType
 from kinematify.joints.kind import Siblings, decide_kind
 from kinematify.joints.panels import rank_turns
 from kinematify.joints.slides import rank_slides
+from kinematify.sources.procedural.families import FAMILIES
+from kinematify.sources.procedural.family import build
 from kinematify.sources.procedural.request import from_text
 from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
@@ -48,6 +50,12 @@ def test_a_drawer_behind_the_whole_front_of_a_cabinet_slides(seed: int) -> None:
     """Half as deep as its front is high: no door, for it is inside its body."""
     inference = infer(from_text("a cabinet with one drawer").build(seed=seed).assembly)
     assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC]
+
+
+def test_a_gantry_slides_on_its_rails() -> None:
+    """Its bridge and its ram are thin as doors are, but rails hold them."""
+    inference = infer(build(FAMILIES["gantry"], {}, seed=0).assembly)
+    assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC] * 3
 
 
 def test_a_part_that_cannot_move_at_all_is_fixed() -> None:

@@ -70,8 +70,8 @@ def decide_kind(
         "rail": scene.mechanism * _held_rail(scene, turns, config),
     }
     cues["panel"] *= 1.0 - max(
-        cues["blocked_turn"], cues["keyed"], cues["capped"], cues["carriage"]
-    )  # a plate that cannot turn, or lies inside, is no door
+        cues["blocked_turn"], cues["keyed"], cues["capped"], cues["carriage"], cues["rail"]
+    )  # a plate that cannot turn, lies inside, or rides on a rail is no door
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
