@@ -58,6 +58,31 @@ def test_a_gantry_slides_on_its_rails() -> None:
     assert [joint.kind for joint in inference.joints] == [JointType.PRISMATIC] * 3
 
 
+def test_bars_in_short_sleeves_slide_in_machines() -> None:
+    """The ram of a coarse gantry and the spline of an arm: their rails are faint, but nothing about them is round."""
+    for family, child, style in (("gantry", "ram", "coarse"), ("scara", "spindle", "remeshed")):
+        blueprint = build(FAMILIES[family], {"style": style}, seed=0)
+        names = [part.name for part in blueprint.assembly.parts]
+        found = {names[item.child]: item.kind for item in infer(blueprint.assembly).joints}
+        assert found[child] is JointType.PRISMATIC, family
+
+
+@pytest.mark.parametrize(("ropes", "slides"), [((-0.02, 0.02), True), ((0.0,), False)])
+def test_a_block_on_two_ropes_slides_and_a_short_one_on_a_pin_turns(ropes: tuple[float, ...], slides: bool) -> None:
+    frame = box((-0.05, -0.02, 0.5), (0.05, 0.02, 0.52)) + box((-0.05, -0.02, -0.02), (0.05, 0.02, 0.0))
+    block = box((-0.03, -0.015, 0.4), (0.03, 0.015, 0.45))
+    for x in ropes:
+        frame += cylinder(0.004, (x, 0, 0), (x, 0, 0.5))
+        block -= cylinder(0.0045, (x, 0, 0), (x, 0, 1.0))
+    hook = cylinder(0.004, (0, 0.005, 0.36), (0, 0.005, 0.401)) + box((-0.02, 0, 0.35), (0.02, 0.01, 0.362))
+    joint = sliding("frame", "block", (0, 0, -1), (0, 0, 0.4), (0.0, 0.3))
+    scene = scene_of(known_object("hoist", {"frame": frame, "block": block + hook}, joint), "block")
+    turns = rank_turns(scene, CONFIG.joints)
+    slid = rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
+    alone = Siblings(count=1, gripping=False, overlapping=False)
+    assert (decide_kind(scene, alone, turns, slid, CONFIG.joints).cues["keyed"] == 1.0) is slides
+
+
 def test_a_part_that_cannot_move_at_all_is_fixed() -> None:
     shell = box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)) - box((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
     core = box((-0.0999, -0.0999, -0.0999), (0.0999, 0.0999, 0.0999))

@@ -76,6 +76,18 @@ def test_knobs_in_a_row_turn_although_buttons_in_a_row_are_pressed() -> None:
     assert all(found[f"button_{k}"].kind is JointType.PRISMATIC for k in (1, 2, 3))
 
 
+def test_knobs_on_rough_shafts_turn_in_a_row() -> None:
+    """Bumps hide the shaft from the search for journals, the bearing has it all the same."""
+    found = estimates("oven", style="bumpy", knobs=3)
+    assert all(found[f"knob_{k}"].kind.turns for k in (1, 2, 3))
+
+
+def test_a_round_cap_that_a_thread_holds_is_not_lifted() -> None:
+    cap = estimates("bottle", cap="screw", width=0.06, height=0.2, neck=0.028)["cap"]
+    assert cap.kind.turns
+    assert cap.evidence["retained"] == 1.0
+
+
 @pytest.mark.parametrize("opened", [0.0, 0.4])
 def test_an_open_door_closes_to_where_it_belongs(opened: float) -> None:
     blueprint = build(FAMILIES["cabinet"], {"doors": 1, "drawers": 1, "open": opened})

@@ -170,6 +170,18 @@ def test_shafts_that_pass_each_other_hang_side_by_side(passing: bool) -> None:
     assert chain == (0.5 if passing else 1.0)
 
 
+def test_shafts_are_driven_from_the_body_however_many_lie_between() -> None:
+    """Three hands: the last one touches the body and the second hand, which itself hangs on the first."""
+    line = {"quality": 0.9, "axis": np.array([0.0, 0.0, 1.0]), "point": np.zeros(3), "passing": True}
+    pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (2, 3)]
+    graph = graph_of(4, dict.fromkeys(pairs, 0.0))
+    stats = [stat((0, 0, 0), 2.0), *(stat((0, 0, k), 1.0 / k) for k in (1, 2, 3))]
+    evidence = {key: EdgeEvidence(**line) for key in pairs}  # type: ignore[arg-type]
+    reward = terms.TreeReward(graph, stats, evidence, CONFIG)
+    chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1, 2), (-1, 0, 0, 0)))
+    assert (chain, star) == (pytest.approx(1 / 3), 1.0)
+
+
 def test_what_touches_the_base_hangs_on_it_where_no_joint_shows() -> None:
     """A door that touches the drawer below it a little better than the body; a bearing outweighs the rule."""
     graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})

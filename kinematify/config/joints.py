@@ -128,6 +128,12 @@ class KindConfig(StageConfig):
     """Length over width from which it is that of a telescope."""
     drawn: float
     """Share of that length by which the part can be drawn out."""
+    bars_equal: float
+    """Least score of a second bearing beside the best one, as a share of its score."""
+    bars_apart: float
+    """Least distance between the two [fraction of the child's diagonal]."""
+    bars_deg: float
+    """A part that turns by more about the best one does not run on both [deg]."""
     stuck_candidates: int
     """Turning candidates that must all be blocked before a part counts as fixed."""
     stuck_factor: float

@@ -72,13 +72,18 @@ def decide_kind(
     cues["panel"] *= 1.0 - max(
         cues["blocked_turn"], cues["keyed"], cues["capped"], cues["carriage"], cues["rail"]
     )  # a plate that cannot turn, lies inside, or rides on a rail is no door
+    cues["edge_contact"] *= 1.0 - cues["rail"]  # the edge runs in the rail
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
+    whirls = float(scene.gated and turns.free_parent[0].min() >= np.radians(89.0))
+    for box in ("drawer", "box_inside"):
+        cues[box] *= 1.0 - whirls  # no drawer turns on a shaft
     if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
         cues["round_lid"] = 0.0  # a flap in pins across its mouth is not lifted off
     cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
     cues["retained"] *= 1.0 - cues["capped"]
+    cues["round_lid"] *= 1.0 - cues["retained"]  # what holds it down is turned first
     for held in ("keyed", "button", "flat_cap", "drawer", "box_inside", "row"):
         cues[held] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
@@ -110,23 +115,63 @@ def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
     guided = scene.gated or np.isinf(play.slide)
     if scene.serial:
-        # Links of machines overlap where they meet; only rods in bores that cannot turn as a whole either are guided.
-        guided = scene.gated and float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
+        # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
+        # what is extruded along its slide and nowhere round.
+        held = float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
+        guided = held if scene.gated else _extruded(scene, slides.axes[0], config)
     return {
-        "keyed": float(guided and play.slides_only(least, config.play.ratio)),
+        "keyed": float(_two_bores(scene, turns, config) or (guided and play.slides_only(least, config.play.ratio))),
         "retained": float(play.turns_only(least, config.play.ratio))
         * (1.0 - scene.smallness * (not scene.gated))
         * (not scene.serial),
     }
 
 
+def _extruded(scene: JointScene, way: FloatArray, config: JointsConfig) -> bool:
+    """Whether the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
+    rail = None if scene.bearing is None else scene.bearing.rail
+    return rail is not None and abs(float(rail.axis @ way)) > 0.99 and scene.lead > config.rails.lead_full
+
+
+def _two_bores(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> bool:
+    """Whether the child runs on two equal bars side by side: it would turn about either, if it were not for the other.
+
+    Play does not see that: bars are thin, and stop few samples.
+    """
+    if not scene.gated or scene.bearing is None or float(turns.free_parent[0].max()) > np.radians(config.kind.bars_deg):
+        return False
+    first, *others = scene.bearing.lines
+    for line in others:
+        apart = float(np.linalg.norm(np.cross(line.pivot - first.pivot, first.axis)))
+        equal = line.score > config.kind.bars_equal * first.score and abs(float(line.axis @ first.axis)) > 0.99
+        if equal and apart > config.kind.bars_apart * scene.frame.diagonal:
+            return True
+    return False
+
+
 def _shafted(scene: JointScene) -> float:
     """1 for a head on a thinner shaft that the parent holds all around, as knobs are made; caps of buttons are not."""
-    if scene.journal is None:
+    shaft = _shaft(scene)
+    if shaft is None:
         return 0.0
-    offset = scene.cache.samples(scene.child).points - scene.journal.pivot
-    head = float(np.linalg.norm(np.cross(offset, scene.journal.axis), axis=1).max())
-    return float(scene.journal.radius < 0.7 * head)
+    axis, pivot, radius = shaft
+    offset = scene.cache.samples(scene.child).points - pivot
+    return float(radius < 0.7 * float(np.linalg.norm(np.cross(offset, axis), axis=1).max()))
+
+
+def _shaft(scene: JointScene) -> tuple[FloatArray, FloatArray, float] | None:
+    """Axis, a point and the radius of what is round about the best line within the contact; None where nothing is."""
+    if scene.journal is not None:
+        return scene.journal.axis, scene.journal.pivot, scene.journal.radius
+    if not scene.gated or scene.bearing is None or len(scene.contact.points) == 0:
+        return None
+    line = scene.bearing.lines[0]
+    offset = scene.contact.points - line.pivot
+    radial = offset - (offset @ line.axis)[:, None] * line.axis
+    lengths = np.linalg.norm(radial, axis=1)
+    faces = np.abs(np.einsum("ij,ij->i", radial, scene.contact.normals)) > 0.95 * lengths
+    weights = scene.contact.weights * faces
+    return (line.axis, line.pivot, float(weights @ lengths / weights.sum())) if weights.sum() > 0 else None
 
 
 def _near_best(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> IntArray:
@@ -160,7 +205,7 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
         "box_pulled": furniture * deep * level * float(not scene.plate and not scene.gated and travel.max() > 0.5),
         "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
-        "guided": large * float(scene.gated) * _guided(scene, slides),
+        "guided": float(scene.gated) * _guided(scene, slides),
         "carriage": furniture * _carriage(scene, slides, config),
         "telescope": large * _telescope(scene, slides, config),
     }
@@ -250,7 +295,7 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         "panel": large
         * (1.0 - box * scene.inside)
         * float(scene.panel and not tray and not (top and scene.disc > 0.5)),
-        "tray": float(tray),
+        "tray": float(tray and scene.journal is None),
         "turntable": float(scene.panel and scene.flat and scene.disc > 0.5 and not top),
         "bearing": large * float(scene.gated and not top),
         "mechanism": scene.mechanism * large,

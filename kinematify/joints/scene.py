@@ -78,6 +78,8 @@ class JointScene:
     """The best line of the bearing passes the gate."""
     railed: float
     """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
+    lead: float
+    """Score of the contact's rail over that of its best line; 0 without a rail."""
     rounded: bool
     """The contact is about as round as it is extruded, or more."""
     compact: float
@@ -196,6 +198,7 @@ def joint_scene(
         serial=serial,
         gated=journal is not None or (bearing is not None and passes_gate(bearing, contact, config)),
         railed=_railed(bearing, config.rails),
+        lead=_rail_lead(bearing),
         rounded=0.0 < _rail_lead(bearing) < config.rails.rounded_lead,
         compact=compact,
         mechanism=1.0 if serial else compact,

@@ -158,17 +158,17 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
 
 
 def side_by_side(tree: TreeLayout, carriers: Mapping[Pair, frozenset[int]]) -> float:
-    """Our R_stack in [0, 1]: share of the children that could not as well hang on their grandparent.
+    """Our R_stack in [0, 1]: share of the children that could not as well hang on what carries their parent.
 
     Shafts one in another (the hands of a clock) turn about one line and past each other, so that both trees move
     alike; each is driven from the body, on its own.
     """
-    children = tree.children
-    parents = tree.parents[children]
-    stacked = [
-        int(tree.parents[parent]) in carriers.get(pair(parent, child), ())
-        for parent, child in zip(parents.tolist(), children.tolist(), strict=True)
-    ]
+    above: dict[int, frozenset[int]] = {tree.order[0]: frozenset()}
+    stacked = []
+    for child in tree.order[1:]:
+        parent = int(tree.parents[child])
+        above[child] = above[parent] | {parent}
+        stacked.append(not above[parent].isdisjoint(carriers.get(pair(parent, child), ())))
     return 1.0 - float(np.mean(stacked))
 
 
