@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -89,6 +91,30 @@ def test_twins_that_slide_towards_each_other_are_fingers() -> None:
     assert compounds(hand(offset=0.05), slides, ((1, 2),), CONFIG) == ()  # beside each other
     same_way = [slides[0], joint(0, 2, -X, (0, 0, 0), JointType.PRISMATIC)]
     assert compounds(hand(), same_way, ((1, 2),), CONFIG) == ()
+
+
+@pytest.mark.parametrize(
+    ("body", "inner", "told"),
+    [((0.03, 0.0), 0.0, True), ((0.03, 0.0), 0.02, False), ((0.07, 0.0), 0.0, False), ((0.03, 0.1), 0.0, False)],
+    ids=["cap", "ring: the neck goes through", "stopper: the neck goes around", "knob: the body lies aside"],
+)
+def test_a_part_that_closes_a_neck_may_come_off(body: tuple[float, float], inner: float, told: bool) -> None:
+    radius, aside = body
+    neck = trimesh.creation.cylinder(radius, 0.2).apply_translation((0, 0, -0.1))
+    if aside:
+        plate = trimesh.creation.box((1.0, 1.0, 0.05)).apply_translation((aside, 0, -0.3))
+        neck = trimesh.util.concatenate([neck, plate])
+    shell = trimesh.creation.annulus(0.035, 0.05, 0.08) if radius < 0.05 else trimesh.creation.cylinder(0.05, 0.08)
+    lid = trimesh.creation.annulus(inner, 0.05, 0.01) if inner else trimesh.creation.cylinder(0.05, 0.01)
+    cap = trimesh.util.concatenate([shell, lid.apply_translation((0, 0, 0.045))])
+    parts = tuple(
+        Part(name=n, vertices=mesh.vertices, faces=mesh.faces) for n, mesh in (("bottle", neck), ("cap", cap))
+    )
+    turning = replace(joint(0, 1, Z, (0, 0, 0)), evidence={"bearing_gate": 1.0})
+    found = compounds(Assembly(parts=parts, source="code"), [turning], (), CONFIG)
+    assert found == ((Compound(kind=CompoundKind.CAP, children=(1,)),) if told else ())
+    if told:
+        assert described(found[0], ("bottle", "cap")).startswith("cap closes the end of what it turns on")
 
 
 def test_the_inference_tells_of_fingers_of_a_gripper_and_of_nothing_in_a_cabinet() -> None:

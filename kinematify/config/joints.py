@@ -285,6 +285,8 @@ class CompoundConfig(StageConfig):
     """Largest diagonal of the part between the axes of a universal joint, fraction of either neighbour's."""
     beside: float
     """How far fingers may stand beside each other, fraction of their distance along the axis."""
+    coaxial: float
+    """How far the middle of a body may be from the line of its cap, fraction of the neck's radius."""
 
 
 class RailsConfig(StageConfig):
