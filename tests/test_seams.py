@@ -54,6 +54,21 @@ def test_a_sheet_cut_across_is_found() -> None:
     assert cuts(*cut_in_bands(sheet, X, [0.4])) == {(0, 1)}
 
 
+@pytest.mark.parametrize(("boards", "found"), [(8, True), (0, False)])
+def test_a_ragged_cut_through_boards_is_found_and_a_zigzag_around_a_door_is_not(boards: int, found: bool) -> None:
+    """Faces of a cupboard with shelves fall to either half as their centres do; the door's outline follows its mesh."""
+    front = trimesh.creation.box((1, 0.6, 1)).subdivide_to_size(0.13)
+    shelves = [trimesh.creation.box((0.9, 0.5, 0.02)).apply_translation((0, 0, 0.1 * k - 0.4)) for k in range(boards)]
+    mesh = trimesh.util.concatenate([front, *(shelf.subdivide_to_size(0.2) for shelf in shelves)])
+    centres = mesh.triangles_center
+    door = (centres[:, 1] < -0.29) & (np.abs(centres[:, [0, 2]]).max(axis=1) < 0.3)
+    side = centres[:, 0] > 0.03 * np.sin(40 * centres[:, 2]) if boards else door
+    assert side.any()
+    assert (
+        cuts(*(part_of(mesh.submesh([np.flatnonzero(half)])[0], "half") for half in (side, ~side))) != set()
+    ) is found
+
+
 def test_closed_parts_that_meet_are_no_pieces() -> None:
     left, right = (trimesh.creation.box((0.5, 0.3, 0.2)).apply_translation((x, 0, 0)) for x in (-0.25, 0.25))
     assert cuts(part_of(left, "a"), part_of(right, "b")) == set()

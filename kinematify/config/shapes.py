@@ -63,6 +63,11 @@ class SeamConfig(StageConfig):
     """A cut lies in a plane within this share of its own size (root mean square)."""
     through_complete: float
     """Share of the rims of both pieces in that plane that must coincide."""
+    through_facing: float
+    """Cosine between surface and plane up to which the plane crosses it."""
+    ragged: float
+    """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, that no outline of
+    a door has: a cut along the edges of a mesh, through the base link too."""
     share: float
     """Length over which two rims coincide and the surface goes on, in diagonals of the smaller part, from which the
     two are one part, however the seam runs; not asked of the base link."""

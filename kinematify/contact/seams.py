@@ -4,8 +4,10 @@ Where a mesh is cut along its edges or by a plane (labels per face, automatic se
 vertices there. That alone proves nothing: the parts of many collections are cut out of one closed shell, a knob along
 its foot, a door along its frame. There the surface mostly turns a corner; where one part was cut in two it goes
 straight on. Doors that lie flush in the body that they close go straight on as well. What tells them from a cut is that
-a plane that goes through a part leaves no rim in it that is not common, while a door has one towards the inside; seams
-that run otherwise never join anything with the base.
+a plane that goes through a part crosses its surface and leaves no rim in it that is not common, while a door's outline
+lies in the surface, or has another one towards the inside. A door's outline is also at most some six times as long as
+the door is big, both its sides together, while a ragged cut through boards and walls is longer. Seams that run
+otherwise never join anything with the base.
 """
 
 from __future__ import annotations
@@ -40,7 +42,7 @@ _SMOOTH = np.cos(np.radians(30.0))  # facets of a cylinder of 12 sides go on
 
 
 def find_cuts(assembly: Assembly, surfaces: Sequence[PartSurface], config: SeamConfig) -> dict[Pair, float]:
-    """Pairs (a < b) that one plane cut apart, with the length of the seam [m]; the base link may be among them.
+    """Pairs (a < b) that were one part beyond doubt, with the length of the seam [m]; the base link may be among them.
 
     Args:
         assembly: The parts.
@@ -56,7 +58,7 @@ def find_seams(assembly: Assembly, surfaces: Sequence[PartSurface], root: int, c
     Args:
         assembly: The parts.
         surfaces: Derived geometry of each part, same order.
-        root: The base link, with which only what a plane cut off it is joined.
+        root: The base link, with which only what was cut off it beyond doubt is joined.
         config: What counts as a cut.
     """
     found = {}
@@ -111,15 +113,19 @@ class _Seam:
     """Distance from the plane of the seam, as a share of its size (both root mean square)."""
     complete: float
     """Share of the rims in that plane that is common; that of the part where it is smaller."""
+    facing: float
+    """Cosine between the surface and that plane, mean size: 0 where the plane crosses it, 1 where it lies in it."""
     line: bool
     """It is one straight line, as where a sheet was cut, or where corners happen to meet."""
     smaller: float
     """Diagonal of the smaller part [m]."""
 
     def goes_through(self, config: SeamConfig) -> bool:
-        """Whether a plane cut one part in two there."""
+        """Whether one part was cut in two there, by a plane or along the edges of its mesh."""
         straight = self.smooth >= config.through_smooth and self.bend <= config.through_planar
-        return straight and self.complete >= config.through_complete and (self.long(config) or not self.line)
+        through = self.long(config) if self.line else self.facing <= config.through_facing
+        flat = straight and self.complete >= config.through_complete and through
+        return flat or self.smooth * self.length > config.ragged * self.smaller
 
     def long(self, config: SeamConfig) -> bool:
         """Whether the surface goes on over about the size of the smaller part."""
@@ -158,6 +164,7 @@ def _seam(
         length=float(lengths.sum()),
         smooth=float(lengths @ straight / lengths.sum()),
         bend=bend,
+        facing=float(lengths @ np.abs(first[1][mine] @ normal) / lengths.sum()),
         line=line,
         smaller=smaller,
         complete=min(
