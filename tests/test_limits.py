@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,9 @@ from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 
 @pytest.mark.parametrize("name", ["edge_door", "drawer", "piano_box"])
@@ -106,3 +111,23 @@ def test_a_button_on_the_foot_of_a_lamp_is_pressed_down() -> None:
     found = find_range(scene, JointType.PRISMATIC, np.array([0.0, 0.0, 1.0]), joints[0].pivot, CONFIG.joints)
     assert found.sign < 0.0
     assert found.upper < 0.011
+
+
+def test_what_stands_at_its_stop_opens_to_a_right_angle_at_most() -> None:
+    """Two crossed levers on a rivet whose jaws meet; the other way round nothing stops them."""
+
+    def lever(side: float) -> Manifold:
+        jaw = box((0.004, -0.15, 0), (0.024, -0.02, 0.012)) + box((-0.012, -0.03, 0), (0.024, 0.03, 0.012))
+        grip = box((0.002, 0.02, 0), (0.022, 0.16, 0.012))
+        return (jaw + grip).mirror((1, 0, 0)) if side < 0 else jaw + grip
+
+    rivet = cylinder(0.006, (0, 0, -0.001), (0, 0, 0.0262))
+    solids = {"lever": lever(1.0) + rivet}
+    solids["other"] = lever(-1.0).translate((0, 0, 0.0124)) - cylinder(0.0063, (0, 0, -1), (0, 0, 1))
+    solids["lever"] += box((0.0, -0.15, 0), (0.004, -0.13, 0.02))
+    joint = turning("lever", "other", (0, 0, 1), (0, 0, 0.012), (0.0, 1.0))
+    scene = scene_of(known_object("pliers", solids, joint), "other")
+    found = find_range(scene, JointType.REVOLUTE, np.array([0.0, 0.0, 1.0]), joint.pivot, CONFIG.joints)
+    assert found.free_forward > np.radians(100.0)
+    assert found.free_backward < np.radians(CONFIG.joints.limits.stopped_deg)
+    assert found.upper == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg))

@@ -218,6 +218,8 @@ class LimitsConfig(StageConfig):
     """A panel within this angle of square to its body is closed [deg]."""
     closer: float
     """Closing an open panel brings it so much nearer to its body, ratio of mean distances."""
+    lying: float
+    """A panel that has come so near to its body lies on it, ratio of mean distances."""
     hinge_off: float
     """A bearing farther from the middle of a panel than this fraction of its thickness lies at one face."""
     even: float
@@ -236,10 +238,33 @@ class LimitsConfig(StageConfig):
     """A slide that is free farther one way by this fraction of the diagonal has an open side."""
     button: float
     """Travel of a button as a fraction of what stands out of the surface around it."""
+    stopped_deg: float
+    """A turning joint that goes no farther than this the one way stands at its stop [deg]."""
     least_deg: float
     """A turning joint keeps at least this range [deg]."""
     least_slide: float
     """A sliding joint keeps at least this travel, fraction of the diagonal."""
+
+
+class GuideConfig(StageConfig):
+    """How far a part can slide before it leaves what it runs in or on."""
+
+    steps: int
+    """Travels that are looked at, up to the diagonal of the object."""
+    samples: int
+    """Samples of each side of the contact that are followed, at most about."""
+    least_samples: int
+    """Fewer samples along the way are no guide."""
+    band: float
+    """Surfaces within this distance guide each other, fraction of the child's diagonal."""
+    along_deg: float
+    """Surface within this angle of the way runs along it [deg]."""
+    kept: float
+    """A part begins to leave its guide where less than this share of the contact is left."""
+    gone: float
+    """It has left it where less than this share is left."""
+    runner: float
+    """What can slide this many times its own length is no button."""
 
 
 class RockersConfig(StageConfig):
@@ -357,6 +382,7 @@ class JointsConfig(StageConfig):
     limits: LimitsConfig
     journal: JournalConfig
     play: PlayConfig
+    guide: GuideConfig
     rockers: RockersConfig
     footing: FootingConfig
     compound: CompoundConfig

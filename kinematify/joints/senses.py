@@ -1,0 +1,81 @@
+"""Which way a turning joint opens, as the sign of its axis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.frames import UP
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.joints.scene import JointScene
+
+
+def turn_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig) -> float:
+    """The freer direction opens; where both are alike, the one that leads out of the body or up."""
+    if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
+        return 1.0 if free[0] > free[1] else -1.0
+    beside = _hinge_side(scene, axis, pivot, config)
+    if beside != 0.0:
+        return beside
+    velocity = np.cross(axis, scene.centre - pivot)
+    away = scene.outward if scene.outward.any() and not scene.serial else UP  # links of arms have no outer side
+    if abs(float(velocity @ away)) < 0.05 * scene.frame.diagonal:
+        return swing_sense(scene, axis, pivot)
+    return 1.0 if float(velocity @ away) > 0.0 else -1.0
+
+
+def swing_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
+    """Where neither way leads out of the parent or up: away from the middle of the object, else all to one side of it.
+
+    Knees and fingers that go both ways alike have no opening direction that could be seen; but those of two legs and
+    of all fingers have the same one, and hips that swing sideways have mirrored ones. The one side is that to which
+    small parts lie of large ones. What merely twists opens as knobs do.
+    """
+    parts = scene.cache.assembly.parts
+    centroids, areas = np.array([part.centroid for part in parts]), np.array([part.area for part in parts])
+    moving = np.setdiff1d(np.arange(len(parts)), (scene.parent, *scene.others))
+    limb = np.average(centroids[moving], axis=0, weights=areas[moving])
+    velocity = np.cross(axis, limb - pivot)
+    speed = float(np.linalg.norm(velocity))
+    if speed < 0.05 * scene.frame.diagonal:
+        return neutral_sense(scene, axis)
+    middle = np.average(centroids, axis=0, weights=areas)
+    apart = float((limb - middle) @ velocity) / speed
+    if abs(apart) > 0.05 * scene.diagonal:
+        return 1.0 if apart > 0.0 else -1.0
+    side = (centroids.mean(axis=0) - middle) * (1.0, 1.0, 0.0)  # up and down has been asked
+    return 1.0 if float(velocity @ side) >= 0.0 else -1.0
+
+
+def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> float:
+    """Sign of the turn towards the face of an upright panel at which its bearing lies, 0 without such a bearing.
+
+    Barrels stand on the side to which a door opens; on the other one its edge would run into what it hangs on.
+    """
+    normal = scene.frame.axes[scene.frame.thin]
+    off = float((pivot - scene.centre) @ normal)
+    aside = abs(off) > config.limits.hinge_off * float(scene.frame.extents[scene.frame.thin])
+    if not (scene.gated and scene.panel and scene.upright and aside):
+        return 0.0
+    return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
+
+
+def neutral_sense(scene: JointScene, axis: FloatArray) -> float:
+    """Where neither way opens: the axis points from the parent to the child, else up, as knobs and arms have it."""
+    apart = float((scene.centre - scene.parent_frame.centre) @ axis)
+    if abs(apart) < 0.02 * scene.parent_frame.diagonal:
+        apart = float(axis @ UP) if abs(float(axis @ UP)) > 0.1 else apart
+    return 1.0 if apart >= 0.0 else -1.0
+
+
+def clockwise_sense(scene: JointScene, axis: FloatArray) -> float:
+    """Knobs turn up clockwise as seen by who turns them (IEC 60447): the axis points into the part that carries them.
+
+    Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
+    """
+    knob = scene.smallness > 0.0 or not (scene.plate and scene.flat)
+    return (-1.0 if knob and not scene.serial else 1.0) * neutral_sense(scene, axis)

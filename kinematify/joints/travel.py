@@ -1,0 +1,173 @@
+"""Opening direction and limits of what slides."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.candidate import JointType
+from kinematify.joints.frames import UP
+from kinematify.joints.guide import guided_travel
+from kinematify.joints.joint_range import Range
+from kinematify.joints.play import slide_play
+from kinematify.joints.scene import is_cap
+from kinematify.joints.sweep import moving_points, sweep_slides
+
+if TYPE_CHECKING:
+    from kinematify.assembly.part import FloatArray
+    from kinematify.config import JointsConfig
+    from kinematify.joints.scene import JointScene
+
+
+def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:
+    """Sweep a slide both ways, and bound it by what kind of thing slides.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        config: Bounds.
+    """
+    points = moving_points(scene.cache, scene.child, config.sweep)
+    # A door in front of a tray moves away first, so furniture slides are bounded by the body alone.
+    obstacles = (scene.parent, *scene.others) if _in_linkage(scene) else (scene.parent,)
+    limit = scene.diagonal
+    sweep = sweep_slides(scene.cache, points, axis[None], obstacles, limit=limit, config=config.sweep)
+    free = sweep.free(config.sweep.share)[0]
+    length = float(np.ptp(scene.frame.local(points) @ (scene.frame.axes @ axis)))
+    runs = _in_linkage(scene) or _is_runner(scene, axis, free, length, config)
+    guided = free.copy()
+    if runs:
+        for side, way in enumerate((axis, -axis)):
+            guided[side] = _guided(scene, way, float(free[side]), length, config)
+    sign = _slide_sign(scene, axis, guided if _in_linkage(scene) else free, config)
+    ahead, behind = (0, 1) if sign > 0 else (1, 0)
+    forward, backward = float(free[ahead]), float(free[behind])
+    if runs:
+        lower, upper = -float(guided[behind]), float(guided[ahead])
+    else:
+        lower, upper = _ends(scene, sign * axis, (forward, backward), length, config)
+    return Range(
+        kind=JointType.PRISMATIC,
+        sign=sign,
+        lower=lower,
+        upper=max(upper, config.limits.least_slide * scene.diagonal),
+        free_forward=forward,
+        free_backward=backward,
+    )
+
+
+def _ends(
+    scene: JointScene, way: FloatArray, free: tuple[float, float], length: float, config: JointsConfig
+) -> tuple[float, float]:
+    """Lower and upper limit [m] of a button, drawer or lid that opens along `way`; `free` is forward and backward."""
+    forward, backward = free
+    if (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.gated and _outwards(scene, way) < 0.0):
+        return 0.0, _press(scene, way, forward, length, config)
+    ajar = min(backward, _standing_out(scene, way))
+    ajar = ajar if ajar > config.limits.ajar * length else 0.0
+    forward = max(forward, length) if is_cap(scene) else forward  # the shrunk skirt of a cap sweeps into the rim
+    return -ajar, min(forward, max(config.limits.drawer * length - ajar, _slotted(scene, way, forward, config)))
+
+
+def _guided(scene: JointScene, way: FloatArray, free: float, length: float, config: JointsConfig) -> float:
+    """Travel along `way` [m] up to the next stop, or until the guide lets the part go.
+
+    Where no guide is seen, by as much of its own length as drawers travel.
+    """
+    guided = guided_travel(scene, way, config)
+    return min(free, config.limits.drawer * length if guided is None else guided)
+
+
+def _slotted(scene: JointScene, way: FloatArray, free: float, config: JointsConfig) -> float:
+    """Travel along `way` [m] of a part that a stop awaits in its guide, as a lever at the end of its slot; else 0."""
+    if free > 0.99 * scene.diagonal:
+        return 0.0
+    return guided_travel(scene, way, config) or 0.0
+
+
+def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float, config: JointsConfig) -> bool:
+    """A small part that can slide farther than it is long without leaving its guide: a collar on a rod, no button."""
+    if scene.smallness < 1.0 or is_cap(scene) or _is_small_lid(scene):
+        return False
+    ways = (guided_travel(scene, sense * axis, config) or 0.0 for sense in (1.0, -1.0))
+    return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > config.guide.runner * length)
+
+
+def _standing_out(scene: JointScene, way: FloatArray) -> float:
+    """How far the front of a drawer stands before the body, its own handle left out [m]; 0 if it does not.
+
+    What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower.
+    """
+    if float(way @ UP) > 0.9:
+        return 0.0
+    own = scene.cache.samples(scene.child).points @ way
+    body = scene.cache.samples(scene.parent).points @ way
+    return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
+
+
+def _press(scene: JointScene, way: FloatArray, free: float, length: float, config: JointsConfig) -> float:
+    """Travel of a button pressed along `way` [m]: what stands out of the surface around it, or until it is stopped."""
+    own = scene.cache.samples(scene.child).points
+    body = scene.cache.samples(scene.parent).points
+    centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
+    wide = 2.0 * float(np.linalg.norm(np.cross(own - centre, way), axis=1).max())
+    around = body[np.linalg.norm(np.cross(body - centre, way), axis=1) < wide]
+    visible = length
+    if len(around) > 10:
+        visible = min(length, max(float((around @ way).min() - (own @ way).min()), 0.0))
+    # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
+    whole = min(length, wide)
+    reach = config.limits.button * (visible if visible > 0.1 * whole else whole)
+    return min(free, reach) if free > 0.2 * reach else reach
+
+
+def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> float:
+    """Drawers and lids leave by the longer way, outwards if both are alike; buttons go in.
+
+    What sits in a bore and has room behind it is pressed in, as a button that stands out before its pocket; a stopper
+    or cap has none, for it is in as far as it goes.
+    """
+    outwards = _outwards(scene, axis)
+    if is_cap(scene):
+        return outwards
+    longer = 1.0 if free[0] > free[1] else -1.0
+    one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
+    if scene.smallness >= 1.0 and not (scene.gated or _in_linkage(scene)) and one_way:
+        return -longer  # there is a floor below a button and nothing before it; round ones are told below from collars
+    if scene.gated and not _in_linkage(scene) and not _is_sheath(scene, axis):
+        play = slide_play(scene, outwards * axis, config)
+        if play is not None and config.limits.room * scene.frame.diagonal < play[1] < np.inf:
+            return -outwards
+    if scene.smallness > 0.5 and not _in_linkage(scene) and not _is_small_lid(scene):
+        return -outwards
+    return longer if one_way else outwards
+
+
+def _is_sheath(scene: JointScene, axis: FloatArray) -> bool:
+    """Whether the child goes round what it slides on, as caps and sleeves do: such a part is drawn off.
+
+    Buttons and stoppers sit in what they slide in.
+    """
+    contact = scene.contact
+    if len(contact.points) == 0:
+        return False
+    across = contact.normals - (contact.normals @ axis)[:, None] * axis
+    inwards = np.einsum("ij,ij->i", across, contact.points - contact.centroid) < 0.0
+    aside = np.linalg.norm(across, axis=1) > 0.5
+    return bool(contact.weights @ (inwards & aside) > 0.8 * max(float(contact.weights @ aside), 1e-12))
+
+
+def _in_linkage(scene: JointScene) -> bool:
+    """A link of a machine, whose motion has no outside; buttons on the base of a lamp or fan are none."""
+    return scene.mechanism > 0.5 and (scene.smallness < 1.0 or (scene.serial and scene.parent_moves))
+
+
+def _is_small_lid(scene: JointScene) -> bool:
+    """A level disc on top that is larger than a button: it covers a mouth and is lifted."""
+    return scene.smallness < 1.0 and scene.on_top and scene.flat and scene.disc > 0.5
+
+
+def _outwards(scene: JointScene, axis: FloatArray) -> float:
+    """+1 where the axis points from the middle of the parent to the child, -1 where it points back."""
+    return 1.0 if float((scene.centre - scene.parent_frame.centre) @ axis) >= 0.0 else -1.0

@@ -1,0 +1,48 @@
+"""Panels that stand open, and how far they close."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.joints.candidate import JointType
+from kinematify.joints.limits import find_range
+from kinematify.sources.procedural.solids import box, cylinder
+from tests.joint_scenes import CONFIG, scene_of
+from tests.known import known_object, moved, turning
+
+Y = np.array([0.0, 1.0, 0.0])
+
+
+def lid_range(angle: float, axis: np.ndarray) -> tuple[float, float]:
+    """Range of the screen of a laptop that stands open by `angle` [rad], in the sense of `axis`."""
+    solids = {"base": box((0, -0.15, 0), (0.2, 0.15, 0.02)), "screen": box((0, -0.15, 0.0202), (0.2, 0.15, 0.03))}
+    joint = turning("base", "screen", -Y, (0, 0, 0.0201), (0, 2.4))
+    scene = scene_of(moved(known_object("laptop", solids, joint), {"screen": angle}), "screen")
+    found = find_range(scene, JointType.REVOLUTE, axis, np.array([0.0, 0.0, 0.0201]), CONFIG.joints)
+    # Back into the sense of the true joint, whose positive direction opens.
+    return (found.lower, found.upper) if found.sign * float(axis @ -Y) > 0 else (-found.upper, -found.lower)
+
+
+@pytest.mark.parametrize("angle", [0.8, np.pi / 2, 1.9, 2.3])
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+def test_a_lid_that_stands_open_closes_by_as_much(angle: float, sense: float) -> None:
+    lower, upper = lid_range(angle, sense * Y)
+    assert lower == pytest.approx(-angle, abs=0.1)
+    assert 0.0 <= upper < np.pi - angle
+
+
+def test_a_closed_lid_opens() -> None:
+    lower, upper = lid_range(0.0, Y)
+    assert lower == pytest.approx(0.0, abs=0.1)
+    assert upper == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg), abs=0.1)
+
+
+def test_a_bail_lies_down_to_either_side() -> None:
+    pail = cylinder(0.1, (0, 0, 0), (0, 0, 0.2)) - cylinder(0.095, (0, 0, 0.005), (0, 0, 1))
+    bail = box((-0.004, -0.108, 0.19), (0.004, -0.1005, 0.33)) + box((-0.004, 0.1005, 0.19), (0.004, 0.108, 0.33))
+    bail += box((-0.004, -0.108, 0.32), (0.004, 0.108, 0.33))
+    known = known_object("pail", {"pail": pail, "bail": bail}, turning("pail", "bail", Y, (0, 0, 0.195), (-1.4, 1.4)))
+    found = find_range(scene_of(known, "bail"), JointType.REVOLUTE, Y, np.array([0.0, 0.0, 0.195]), CONFIG.joints)
+    assert found.upper == pytest.approx(-found.lower, abs=0.15)
+    assert found.upper > 1.2
