@@ -83,6 +83,16 @@ def test_a_block_on_two_ropes_slides_and_a_short_one_on_a_pin_turns(ropes: tuple
     assert (decide_kind(scene, alone, turns, slid, CONFIG.joints).cues["keyed"] == 1.0) is slides
 
 
+@pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])
+def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_turns(room: float, pressed: bool) -> None:
+    body = box((-0.2, 0, 0), (0.2, 0.1, 0.1)) - cylinder(0.0103, (0, -1, 0.05), (0, 0.02, 0.05))
+    plug = cylinder(0.01, (0, -0.006, 0.05), (0, 0.02 - room, 0.05))
+    joint = sliding("body", "plug", (0, 1, 0), (0, 0, 0.05), (0.0, 0.003))
+    estimate = infer_joints(known_object("panel", {"body": body, "plug": plug}, joint))["plug"]
+    assert (estimate.kind is JointType.PRISMATIC) is pressed
+    assert abs(float(estimate.axis[1])) > 0.999
+
+
 def test_a_part_that_cannot_move_at_all_is_fixed() -> None:
     shell = box((-0.2, -0.2, -0.2), (0.2, 0.2, 0.2)) - box((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
     core = box((-0.0999, -0.0999, -0.0999), (0.0999, 0.0999, 0.0999))

@@ -134,6 +134,12 @@ class KindConfig(StageConfig):
     """Least distance between the two [fraction of the child's diagonal]."""
     bars_deg: float
     """A part that turns by more about the best one does not run on both [deg]."""
+    plunger_even: float
+    """Eccentricity up to which a round plug bears no pointer."""
+    plunger_least: float
+    """Least room behind a plug that is pressed [fraction of its diagonal]."""
+    plunger_most: float
+    """Largest: with more, it would fall in."""
     stuck_candidates: int
     """Turning candidates that must all be blocked before a part counts as fixed."""
     stuck_factor: float

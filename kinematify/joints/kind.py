@@ -88,6 +88,8 @@ def decide_kind(
         cues[held] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
         cues[round_thing] *= 1.0 - max(cues["keyed"], cues["telescope"])  # what is round but keyed is guided
+    plunger = scene.smallness * _plunger(scene, slides, config)
+    cues["button"], cues["round_small"] = max(cues["button"], plunger), cues["round_small"] * (1.0 - plunger)
     weights, cap = config.kind.weights, config.kind.cap
     odds = config.kind.bias + sum(float(np.clip(weights[k] * v, -cap, cap)) for k, v in cues.items())
     if not is_cap(scene) and _stuck(scene, turns, slides, config):
@@ -157,6 +159,19 @@ def _shafted(scene: JointScene) -> float:
     axis, pivot, radius = shaft
     offset = scene.cache.samples(scene.child).points - pivot
     return float(radius < 0.7 * float(np.linalg.norm(np.cross(offset, axis), axis=1).max()))
+
+
+def _plunger(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
+    """1 for a round plug in a hole of its own width with room behind it: knobs have a shaft, or bottom out at once."""
+    shaft = _shaft(scene)
+    if shaft is None or not scene.gated or _shafted(scene):
+        return 0.0
+    axis, pivot, _ = shaft
+    along = np.abs(slides.axes @ axis) > 0.99
+    if not along.any() or eccentricity(scene, axis, pivot) > config.kind.plunger_even:
+        return 0.0  # a pointer is for turning
+    room = _slide_room(scene, slides.free_parent[along].min(axis=1) * scene.diagonal)
+    return float(config.kind.plunger_least < room < config.kind.plunger_most)
 
 
 def _shaft(scene: JointScene) -> tuple[FloatArray, FloatArray, float] | None:
