@@ -88,6 +88,13 @@ def test_a_door_flush_in_its_body_that_has_a_back_of_its_own_is_no_piece() -> No
     inside = opening.submesh([opening.face_normals[:, 0] < 0.5], append=True)
     hollow = trimesh.util.concatenate([trimesh.Trimesh(body.vertices, body.faces), inside])
     assert cuts(door, part_of(hollow, "body")) == set()
+    parts = (
+        door,
+        part_of(hollow, "body"),
+        part_of(trimesh.creation.box((3, 3, 0.1)).apply_translation((0, 0, -1)), "table"),
+    )
+    assembly = Assembly(parts=parts, source="test")
+    assert find_seams(assembly, part_surfaces(assembly, config=CONFIG.surface), 2, CONFIG.seam) == {}
 
 
 def test_seams_that_bend_join_parts_but_never_the_base() -> None:

@@ -63,7 +63,7 @@ def find_seams(assembly: Assembly, surfaces: Sequence[PartSurface], root: int, c
     """
     found = {}
     for pair, seam in _seams(assembly, surfaces, config):
-        long = seam.long(config) and seam.smooth > config.smooth and root not in pair
+        long = seam.long(config) and seam.smooth > config.smooth and root not in pair and not seam.leaves_rims(config)
         if seam.goes_through(config) or long:
             found[pair] = seam.length
     return found
@@ -126,6 +126,10 @@ class _Seam:
         through = self.long(config) if self.line else self.facing <= config.through_facing
         flat = straight and self.complete >= config.through_complete and through
         return flat or self.smooth * self.length > config.ragged * self.smaller
+
+    def leaves_rims(self, config: SeamConfig) -> bool:
+        """Whether it lies in a plane with rims of one part alone, as of a door towards the inside."""
+        return self.bend <= config.through_planar and self.complete < config.through_complete
 
     def long(self, config: SeamConfig) -> bool:
         """Whether the surface goes on over about the size of the smaller part."""
