@@ -78,4 +78,13 @@ def clockwise_sense(scene: JointScene, axis: FloatArray) -> float:
     Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
     """
     knob = scene.smallness > 0.0 or not (scene.plate and scene.flat)
-    return (-1.0 if knob and not scene.serial else 1.0) * neutral_sense(scene, axis)
+    if not knob or (scene.serial and scene.parent_moves):
+        return neutral_sense(scene, axis)
+    return -(_open_side(scene, axis) or neutral_sense(scene, axis))
+
+
+def _open_side(scene: JointScene, axis: FloatArray) -> float:
+    """Sign of the way along an axis on which the parent is not in front of the child; 0 where it is on both or none."""
+    steps = scene.cache.diagonal * np.array([axis, -axis])
+    blocked = np.isfinite(scene.cache.first_hits(scene.parent, np.tile(scene.centre, (2, 1)), steps))
+    return float(blocked[1]) - float(blocked[0])
