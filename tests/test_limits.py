@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from kinematify import infer
 from kinematify.joints.candidate import JointType
 from kinematify.joints.limits import find_range
+from kinematify.sources.procedural.families import FAMILIES
+from kinematify.sources.procedural.family import build
 from kinematify.sources.procedural.pieces.bearings import barrel
 from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
@@ -59,6 +62,17 @@ def test_a_knob_turns_without_end() -> None:
     estimate = estimates_of("knob")["knob"]
     assert estimate.kind is JointType.CONTINUOUS
     assert (estimate.lower, estimate.upper) == (-np.inf, np.inf)
+
+
+def test_wheels_turn_without_end_though_they_hang_on_castors() -> None:
+    """Castors, wheels, gas spring, seat and back are a chain as that of an arm, but wheels stand on the floor."""
+    blueprint = build(FAMILIES["office_chair"], {"castors": 4}, seed=0)
+    names = [part.name for part in blueprint.assembly.parts]
+    found = {names[joint.child]: joint for joint in infer(blueprint.assembly).joints}
+    wheels = [joint for name, joint in found.items() if name.startswith("wheel_")]
+    assert len(wheels) == 4
+    assert all(joint.kind is JointType.CONTINUOUS for joint in wheels)
+    assert found["back"].kind is JointType.REVOLUTE
 
 
 def test_arms_have_limits_to_both_sides() -> None:

@@ -169,7 +169,8 @@ def _panel_range(
 def _turns_freely(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
     """A knob, wheel or turntable: a bearing through the part, or a round part, whose mass is even about the axis."""
     disc = scene.disc > 0.5 and abs(float(axis @ scene.frame.axes[scene.frame.thin])) > 0.99
-    if not (scene.gated or disc) or (scene.serial and scene.smallness < 1.0):
+    link = scene.serial and scene.smallness < 1.0 and not scene.rolls
+    if not (scene.gated or disc) or link:
         return False
     anchor = scene.contact.centroid if scene.gated else pivot
     return eccentricity(scene, axis, anchor) < config.limits.even
