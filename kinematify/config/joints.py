@@ -226,6 +226,8 @@ class LimitsConfig(StageConfig):
     """Closing an open panel brings it so much nearer to its body, ratio of mean distances."""
     lying: float
     """A panel that has come so near to its body lies on it, ratio of mean distances."""
+    lying_deg: float
+    """Meshes at the hinge of such a panel may overlap before it gets there, by this angle [deg]."""
     hinge_off: float
     """A bearing farther from the middle of a panel than this fraction of its thickness lies at one face."""
     even: float

@@ -50,7 +50,8 @@ def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig)
 
     Where it then lies on its body all over, that it met something on the way is an overlap of the meshes at its hinge.
     """
-    overlap = np.radians(config.limits.held_deg) * (2.0 if ratio < config.limits.lying else 1.0)
+    limits = config.limits
+    overlap = np.radians(limits.lying_deg if ratio < limits.lying else limits.held_deg)
     return bool(abs(turn) < free[0 if turn > 0 else 1] + overlap)
 
 
