@@ -15,7 +15,7 @@ from kinematify.sources.procedural.family import build
 from kinematify.sources.procedural.pieces.bearings import barrel
 from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
-from tests.known import known_object, sliding, turning
+from tests.known import KnownObject, known_object, sliding, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -145,3 +145,15 @@ def test_what_stands_at_its_stop_opens_to_a_right_angle_at_most() -> None:
     assert found.free_forward > np.radians(100.0)
     assert found.free_backward < np.radians(CONFIG.joints.limits.stopped_deg)
     assert found.upper == pytest.approx(np.radians(CONFIG.joints.limits.panel_deg))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.6])
+def test_what_stands_ajar_opens_to_a_right_angle_from_its_stop(share: float) -> None:
+    """Arms of glasses stop at the frame one way, and meet nothing the other way round."""
+    made = build(FAMILIES["eyeglasses"], {"open": share}, seed=7)
+    joints = [turning(joint.parent, joint.child, joint.axis, joint.pivot, (0.0, 1.0)) for joint in made.joints]
+    parts = made.assembly.parts
+    glasses = KnownObject(name="glasses", parts=parts, joints=tuple(joints), root=parts[0].name)
+    for estimate in infer_joints(glasses).values():
+        assert estimate.upper - estimate.lower == pytest.approx(np.pi / 2, abs=0.15)
+        assert estimate.lower == pytest.approx(-share * np.pi / 2, abs=0.15)

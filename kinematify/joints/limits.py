@@ -71,7 +71,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     sign = turn_sense(scene, axis, pivot, free, config)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
     if scene.gated or not furniture:
-        lower, upper = -float(backward), _from_stop(float(forward), float(backward), config)
+        lower, upper = -float(backward), _from_stop(scene, float(forward), float(backward), config)
     else:
         lower = -float(backward) if backward < np.radians(config.limits.least_deg) else 0.0
         upper = min(float(forward), np.radians(config.limits.panel_deg))
@@ -87,13 +87,19 @@ def _free_turn(
     return np.asarray(sweep.free(config.sweep.share)[0])
 
 
-def _from_stop(forward: float, backward: float, config: JointsConfig) -> float:
-    """Upper limit [rad] of what turns freely: what stands at a stop opens to a right angle at most, as panels do.
+def _from_stop(scene: JointScene, forward: float, backward: float, config: JointsConfig) -> float:
+    """Upper limit [rad] of what turns freely: what has a stop opens to a right angle from there at most, as panels do.
 
     Blades of scissors, arms of glasses and ribs of umbrellas meet nothing on the way round, and none goes round.
+    Links that hang on moving ones are left alone unless they stand at the stop, for knees and elbows stop one way, too;
+    and so is what has no pin, as a handle that folds back.
     """
     limits = config.limits
-    return min(forward, np.radians(limits.panel_deg)) if backward < np.radians(limits.stopped_deg) else forward
+    if backward < np.radians(limits.stopped_deg):
+        return min(forward, np.radians(limits.panel_deg))
+    unstopped = forward >= np.pi and backward < np.radians(limits.panel_deg)
+    pinned = scene.gated and not scene.parent_moves
+    return np.radians(limits.panel_deg) - backward if unstopped and pinned else forward
 
 
 def _range(sign: float, lower: float, upper: float, free: FloatArray, config: JointsConfig) -> Range:
