@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.bearing_line import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.scene import JointScene
     from tests.known import KnownObject

@@ -26,8 +26,8 @@ from tests.known import known_object, posed, rotation, shuffled, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
-    from kinematify.joints.bearing import BearingLine, EdgeBearing
     from kinematify.joints.bearing_evidence import Sides
+    from kinematify.joints.bearing_line import BearingLine, EdgeBearing
     from tests.known import KnownJoint, KnownObject
 
 CONFIG = load_config()

@@ -7,9 +7,10 @@ import pytest
 import trimesh
 
 from kinematify.assembly.part import Assembly, Part
+from kinematify.benchmark.degrade import voxels as voxels_of
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
-from kinematify.geometry.surface import PartSurface, part_surfaces
+from kinematify.geometry.surface import FACETED, PartSurface, part_surfaces
 from kinematify.joints.bearing import fit_bearings
 
 CONFIG = load_config()
@@ -66,3 +67,39 @@ def test_the_bearing_of_a_noisy_pin_is_found() -> None:
     assert abs(best.axis[2]) > np.cos(np.radians(2.0))
     assert np.linalg.norm(best.pivot[:2]) < 0.01
     assert best.surface > 0.2
+
+
+def pin_in_sleeve(sections: int) -> Assembly:
+    """A pin that turns in a sleeve, askew."""
+    turn = trimesh.transformations.rotation_matrix(0.5, [1.0, 0.3, 0.0])
+    pin = trimesh.creation.cylinder(radius=0.1, height=0.6, sections=sections)
+    sleeve = trimesh.creation.annulus(0.105, 0.2, 0.3, sections=sections)
+    meshes = [mesh.apply_transform(turn) for mesh in (pin, sleeve)]
+    parts = tuple(Part(name=name, vertices=m.vertices, faces=m.faces) for name, m in zip("ab", meshes, strict=True))
+    return Assembly(parts=parts, source="test")
+
+
+def test_remeshed_parts_are_rough_and_designed_ones_are_not() -> None:
+    design = pin_in_sleeve(64)
+    assert all(surface.roughness < FACETED for surface in part_surfaces(design, config=CONFIG.surface))
+    voxels = voxels_of(30)(design, np.random.default_rng(0))
+    assert all(surface.roughness > FACETED for surface in part_surfaces(voxels, config=CONFIG.surface))
+
+
+def test_tolerances_follow_the_roughness() -> None:
+    clean, rough, noisy = (CONFIG.bearing.for_roughness(angle) for angle in (1.0, 10.0, np.inf))
+    assert clean is CONFIG.bearing
+    assert clean.normal_tolerance < rough.normal_tolerance < noisy.normal_tolerance
+    between = CONFIG.bearing.for_roughness(0.5 * (CONFIG.bearing.rough_from + CONFIG.bearing.rough_to))
+    assert between.normal_tolerance == pytest.approx(0.5 * (clean.normal_tolerance + rough.normal_tolerance))
+
+
+def test_the_bearing_of_voxels_is_found() -> None:
+    design = pin_in_sleeve(64)
+    voxels = voxels_of(30)(design, np.random.default_rng(0))
+    surfaces = part_surfaces(voxels, config=CONFIG.surface)
+    graph = build_contact_graph(voxels, surfaces, config=CONFIG.contact, seed=0)
+    best = fit_bearings(voxels, surfaces, graph, config=CONFIG.bearing, seed=0)[0, 1].lines[0]
+    axis = trimesh.transformations.rotation_matrix(0.5, [1.0, 0.3, 0.0])[:3, 2]
+    assert abs(best.axis @ axis) > np.cos(np.radians(1.5))
+    assert np.linalg.norm(np.cross(best.pivot, axis)) < 0.005

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.joints.bearing import BearingLine
+from kinematify.joints.bearing_line import BearingLine
 from kinematify.joints.held import held_pairs, leaf_pairs, middle_leaf, passing_pairs
 from kinematify.joints.workspace import PartCache
 from kinematify.pipeline.infer import infer

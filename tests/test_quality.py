@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from kinematify.config import load_config
 from kinematify.contact.graph import ContactEdge, ContactSamples
-from kinematify.joints.bearing import BearingLine, EdgeBearing
+from kinematify.joints.bearing_line import BearingLine, EdgeBearing
 from kinematify.joints.quality import edge_quality
 
 CONFIG = load_config().quality

@@ -32,6 +32,25 @@ class RailConfig(StageConfig):
         return math.sin(math.radians(self.edge_tolerance))
 
 
+class BearingTwinsConfig(StageConfig):
+    """Contacts of congruent parts share their bearing."""
+
+    clear: float
+    """Where each contact of a group has a line of this score, nothing is shared."""
+    samples: int
+    """Points per part that are laid upon each other."""
+    tolerance: float
+    """Largest mean distance between them, fraction of the smaller part's diagonal."""
+    alike: float
+    """Rough parts whose spreads along their principal axes differ by more are no twins, fraction of the largest."""
+    reach: float
+    """Contacts that lie farther apart after the motion are no twins, fraction of the part's diagonal."""
+    slack: float
+    """How far a line may move when it settles at a twin, in units of `apart_angle` and `apart`."""
+    most: int
+    """Twins that are asked about each contact."""
+
+
 class BearingConfig(StageConfig):
     """Fit of bearing lines to a contact edge."""
 
@@ -45,12 +64,20 @@ class BearingConfig(StageConfig):
     """Random pairs of normals per side."""
     circles: int
     """Circles through feature edges per side."""
+    directed_pairs: int
+    """Random pairs per side and main direction of the parts, for lines along it."""
+    directed_angle: float
+    """Lines that run this near to a main direction may as well run along it [deg]; of rough parts only."""
+    directed_bonus: float
+    """Factor on the score of a line along it against one that is off it."""
     coarse_samples: int
     """Samples per side for the first scoring of all lines."""
     shortlist: int
     """Distinct lines, best by area, that are refined."""
     shortlist_circles: int
     """Distinct lines, best by circles, that are refined as well."""
+    shortlist_directed: int
+    """Distinct lines along each main direction, best by area, that are refined as well."""
     keep: int
     """Distinct lines kept per edge."""
     apart_angle: float
@@ -85,6 +112,16 @@ class BearingConfig(StageConfig):
     """Score of a fully round part without any bearing on the other side."""
     turned_samples: int
     """Samples, and pairs of normals, for the axis of a whole part."""
+    rough_from: float
+    """Roughness of a part's surface from which the tolerances grow [deg]."""
+    rough_to: float
+    """Roughness at which they are those of noisy parts [deg]."""
+    rough_normal_tolerance: float
+    """`normal_tolerance` there [deg]."""
+    rough_directed_pairs: int
+    """`directed_pairs` for parts that are any rougher than `rough_from`."""
+    rough_turned_support: float
+    """`turned_support` at `rough_to`."""
     noisy_normal_tolerance: float
     """`normal_tolerance` where a part's vertices are noisy [deg]."""
     noisy_fine_tolerance: float
@@ -93,20 +130,26 @@ class BearingConfig(StageConfig):
     """`circle_tolerance` there [deg]."""
     noisy_least_arc: float
     """`least_arc` there: noise breaks edges into pieces."""
+    twins: BearingTwinsConfig
+    """Votes of congruent contacts."""
     rail: RailConfig
     """The counterpart for sliding joints, fitted to the same samples."""
 
-    @property
-    def for_noise(self) -> BearingConfig:
-        """The same with the tolerances of noisy parts."""
-        return self.model_copy(
-            update={
-                "normal_tolerance": self.noisy_normal_tolerance,
-                "fine_tolerance": self.noisy_fine_tolerance,
-                "circle_tolerance": self.noisy_circle_tolerance,
-                "least_arc": self.noisy_least_arc,
-            }
-        )
+    def for_roughness(self, roughness: float) -> BearingConfig:
+        """The same with the tolerances of parts of some roughness [deg], infinite for noisy ones."""
+        share = min(max((roughness - self.rough_from) / (self.rough_to - self.rough_from), 0.0), 1.0)
+        if share <= 0.0:
+            return self
+        normal = self.rough_normal_tolerance if math.isfinite(roughness) else self.noisy_normal_tolerance
+        rough = {
+            "normal_tolerance": normal,
+            "fine_tolerance": self.noisy_fine_tolerance,
+            "circle_tolerance": self.noisy_circle_tolerance,
+            "least_arc": self.noisy_least_arc,
+            "turned_support": self.rough_turned_support,
+        }
+        between = {name: (1.0 - share) * getattr(self, name) + share * value for name, value in rough.items()}
+        return self.model_copy(update={**between, "directed_pairs": self.rough_directed_pairs})
 
     @property
     def normal_tolerance_sine(self) -> float:

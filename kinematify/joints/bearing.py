@@ -9,18 +9,21 @@ feasibility.md section 4 measured why the paper's own pool and ranking (joints/c
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.assembly.part import read_only
+from kinematify.geometry.directions import distinct_directions
 from kinematify.joints.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
 from kinematify.joints.bearing_fit import refine_line
+from kinematify.joints.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line
 from kinematify.joints.bearing_proposals import normal_pair_lines, propose_lines
-from kinematify.joints.bearing_scores import circle_support, line_support, surface_support
-from kinematify.joints.line import Line, Lines
-from kinematify.joints.rail import Rail, fit_rail
+from kinematify.joints.bearing_scores import line_support, surface_support
+from kinematify.joints.bearing_twins import shared_by_twins
+from kinematify.joints.line import Line
+from kinematify.joints.rail import fit_rail
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,53 +33,9 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge, ContactGraph
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.bearing_evidence import Side, Sides
+    from kinematify.joints.line import Lines
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class BearingLine:
-    """A line about which the contact could turn, with its support on either part (each in [0, 1])."""
-
-    axis: FloatArray
-    """Unit direction, world frame, shape (3,). Read-only."""
-    pivot: FloatArray
-    """Point of the line nearest to the contact centroid, world frame [m], shape (3,). Read-only."""
-    score: float
-    """Combined support; comparable among edges of one assembly."""
-    surface_a: float
-    surface_b: float
-    circles_a: float
-    circles_b: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "axis", read_only(self.axis, np.float64))
-        object.__setattr__(self, "pivot", read_only(self.pivot, np.float64))
-
-    @property
-    def line(self) -> Line:
-        """The line alone."""
-        return Line(axis=self.axis, point=self.pivot)
-
-    @property
-    def surface(self) -> float:
-        """Geometric mean of the revolution support of both parts (F of feasibility.md section 4)."""
-        return float(np.sqrt(self.surface_a * self.surface_b))
-
-    @property
-    def circles(self) -> float:
-        """Geometric mean of the circle support of both parts (CS of feasibility.md section 4)."""
-        return float(np.sqrt(self.circles_a * self.circles_b))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EdgeBearing:
-    """Bearing lines of one contact edge, best first, and its rail; empty where nothing is round or extruded."""
-
-    a: int
-    b: int
-    centroid: FloatArray
-    """Weighted contact centroid, world frame [m], shape (3,). Read-only."""
-    lines: tuple[BearingLine, ...]
-    rail: Rail | None = None
+_EXACTLY = 0.1  # [deg] lines that were proposed along a direction
 
 
 def fit_bearings(
@@ -94,23 +53,56 @@ def fit_bearings(
     Returns:
         One entry per edge, keyed like `ContactGraph.by_pair`.
     """
-    return {
-        (edge.a, edge.b): fit_edge(surfaces, edge, diagonal=assembly.diagonal, config=config, seed=seed)
-        for edge in graph.edges
-    }
+    sides, bearings = {}, {}
+    for edge in graph.edges:
+        pair = edge.a, edge.b
+        own = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
+        sides[pair] = contact_sides(surfaces, edge, diagonal=assembly.diagonal, config=own)
+        found = _fitted(surfaces, edge, sides[pair], diagonal=assembly.diagonal, config=own, seed=seed)
+        bearings[pair] = found if own is config else _sharpened(found, sides[pair], assembly.diagonal, config)
+    return shared_by_twins(bearings, sides, surfaces, graph, diagonal=assembly.diagonal, config=config)
 
 
 def fit_edge(
     surfaces: Sequence[PartSurface], edge: ContactEdge, *, diagonal: float, config: BearingConfig, seed: int
 ) -> EdgeBearing:
     """Propose, score and refine the lines of one contact edge; `diagonal` is that of the assembly [m]."""
+    own = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
+    sides = contact_sides(surfaces, edge, diagonal=diagonal, config=own)
+    found = _fitted(surfaces, edge, sides, diagonal=diagonal, config=own, seed=seed)
+    return found if own is config else _sharpened(found, sides, diagonal, config)
+
+
+def _sharpened(found: EdgeBearing, sides: Sides, diagonal: float, config: BearingConfig) -> EdgeBearing:
+    """The best line moved to where the tolerances of clean parts put it, if it is a clear bearing to them as well.
+
+    Many contacts of rough parts are exact, and single parts of clean objects are rough elsewhere.
+    """
+    if not found.lines:
+        return found
+    first = found.lines[0]
+    moved = refine_line(sides, first.line, _tolerances(config), config)
+    sharp = scored_line(sides, moved, found.centroid, diagonal, config)
+    near = abs(float(sharp.axis @ first.axis)) > np.cos(np.radians(config.directed_angle))
+    if not near or sharp.score < config.twins.clear:
+        return found
+    return replace(found, lines=(replace(first, axis=sharp.axis, pivot=sharp.pivot), *found.lines[1:]))
+
+
+def _fitted(
+    surfaces: Sequence[PartSurface],
+    edge: ContactEdge,
+    sides: Sides,
+    *,
+    diagonal: float,
+    config: BearingConfig,
+    seed: int,
+) -> EdgeBearing:
     rng = np.random.default_rng([seed, edge.a, edge.b])
-    if surfaces[edge.a].noisy or surfaces[edge.b].noisy:
-        config = config.for_noise
-    sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
     centroid = contact_centroid(sides)
-    proposals = propose_lines(sides, centroid, diagonal=diagonal, config=config, rng=rng)
-    lines = _rank(sides, proposals, centroid, diagonal, config)
+    directions = _directions(surfaces, edge) if config.directed_pairs else np.empty((0, 3))
+    proposals = propose_lines(sides, centroid, directions, diagonal=diagonal, config=config, rng=rng)
+    lines = _rank(sides, proposals, centroid, directions, diagonal=diagonal, config=config)
     if not lines or lines[0].score < config.turned_score:
         turned = _turned_lines(surfaces, edge, centroid, config, rng)
         lines = sorted([*lines, *turned], key=lambda line: -line.score)
@@ -127,57 +119,61 @@ def score_line(
     surfaces: Sequence[PartSurface], edge: ContactEdge, line: Line, *, diagonal: float, config: BearingConfig
 ) -> BearingLine:
     """Score one given line as a bearing of a contact edge, as `fit_edge` scores its own, without refining it."""
-    if surfaces[edge.a].noisy or surfaces[edge.b].noisy:
-        config = config.for_noise
+    config = config.for_roughness(max(surfaces[edge.a].roughness, surfaces[edge.b].roughness))
     sides = contact_sides(surfaces, edge, diagonal=diagonal, config=config)
-    return _scored(sides, line, contact_centroid(sides), diagonal, config)
+    return scored_line(sides, line, contact_centroid(sides), diagonal, config)
+
+
+def _directions(surfaces: Sequence[PartSurface], edge: ContactEdge) -> FloatArray:
+    """Along which either part is built, shape (k, 3)."""
+    return distinct_directions(np.concatenate([surfaces[part].main_directions for part in (edge.a, edge.b)]))
 
 
 def _rank(
-    sides: Sides, proposals: Lines, centroid: FloatArray, diagonal: float, config: BearingConfig
+    sides: Sides,
+    proposals: Lines,
+    centroid: FloatArray,
+    directions: FloatArray,
+    *,
+    diagonal: float,
+    config: BearingConfig,
 ) -> list[BearingLine]:
     """Refine lines on few samples, keep the best distinct ones, finish them on all samples; best first."""
     few = thin(sides[0], config.refine_samples), thin(sides[1], config.refine_samples)
     tolerances = _tolerances(config)
-    rough = [_scored(few, refine_line(few, line, tolerances, config), centroid, diagonal, config) for line in proposals]
-    final = [
-        _scored(sides, refine_line(sides, line.line, tolerances[-2:], config), centroid, diagonal, config)
-        for line in _best_distinct(rough, diagonal, config)
-    ]
-    return _best_distinct(final, diagonal, config)
+    rough = []
+    for line in proposals:
+        # Lines along a main direction have little left to be refined, and the final rounds let them turn.
+        held = _along(line, directions, _EXACTLY) is not None
+        refined = refine_line(few, line, tolerances[-4:] if held else tolerances, config, turning=not held)
+        rough.append(scored_line(few, refined, centroid, diagonal, config))
+    final = []
+    for start in best_distinct(rough, diagonal, config):
+        free = refine_line(sides, start.line, tolerances[-2:], config)
+        best = scored_line(sides, free, centroid, diagonal, config)
+        along = _along(start.line, directions, config.directed_angle)
+        if along is not None:
+            straight = refine_line(sides, along, tolerances[-2:], config, turning=False)
+            held_line = scored_line(sides, straight, centroid, diagonal, config)
+            best = held_line if held_line.score * config.directed_bonus > best.score else best
+        final.append(best)
+    return best_distinct(final, diagonal, config)
+
+
+def _along(line: Line, directions: FloatArray, angle: float) -> Line | None:
+    """The same line along the nearest of some directions, if one is within an angle [deg]."""
+    if len(directions) == 0:
+        return None
+    cosines = directions @ line.axis
+    best = int(np.argmax(np.abs(cosines)))
+    if abs(cosines[best]) < np.cos(np.radians(angle)):
+        return None
+    return Line(axis=directions[best], point=line.point)
 
 
 def _tolerances(config: BearingConfig) -> FloatArray:
     """Sine of the tolerance of every round of refinement, coarse to fine."""
     return np.geomspace(config.normal_tolerance_sine, config.fine_tolerance_sine, config.refine_steps)
-
-
-def _best_distinct(lines: list[BearingLine], diagonal: float, config: BearingConfig) -> list[BearingLine]:
-    """The best lines, best first, without those that nearly repeat a better one."""
-    ordered = sorted(lines, key=lambda line: -line.score)
-    where = Lines(
-        axes=np.array([line.axis for line in ordered]).reshape(-1, 3),
-        points=np.array([line.pivot for line in ordered]).reshape(-1, 3),
-    )
-    kept = where.distinct(config.keep, angle=config.apart_angle, distance=config.apart * diagonal)
-    return [ordered[index] for index in kept]
-
-
-def _scored(sides: Sides, line: Line, centroid: FloatArray, diagonal: float, config: BearingConfig) -> BearingLine:
-    """Score a line; its pivot is the foot of the contact centroid."""
-    surface_a, surface_b = (line_support(side, line, config) for side in sides)
-    circles_a, circles_b = (circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
-    support = np.sqrt(surface_a * surface_b)
-    score = float(support * (config.circle_floor + np.sqrt(circles_a * circles_b)) / (config.circle_floor + 1))
-    return BearingLine(
-        axis=line.axis,
-        pivot=line.foot(centroid),
-        score=score,
-        surface_a=surface_a,
-        surface_b=surface_b,
-        circles_a=circles_a,
-        circles_b=circles_b,
-    )
 
 
 def _turned_lines(

@@ -31,7 +31,9 @@ class Rows:
     """Robust weight times evidence, shape (R,)."""
 
 
-def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: BearingConfig) -> Line:
+def refine_line(
+    sides: Sides, line: Line, tolerances: FloatArray, config: BearingConfig, *, turning: bool = True
+) -> Line:
     """Move a line to where most of the evidence turns into itself; the tolerance shrinks from coarse to fine.
 
     Each round linearises the angular residuals with frozen radii and weights them by exp(-(r / tolerance)^2). Both
@@ -42,6 +44,7 @@ def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: Bearin
         line: Where to start.
         tolerances: Sine of the tolerance of each round.
         config: `circle_weight`.
+        turning: Whether the direction may change as well as the place.
     """
     spread = sample_spread(sides)
     for tolerance in tolerances:
@@ -55,7 +58,9 @@ def refine_line(sides: Sides, line: Line, tolerances: FloatArray, config: Bearin
                 normal += rows.design.T @ (rows.design * rows.weight[:, None])
                 gradient += rows.design.T @ (rows.weight * rows.rest)
         damping = (1e-9 * np.trace(normal) + 1e-15) * np.eye(4)
-        step = -np.linalg.solve(normal + damping, gradient)
+        free = slice(0 if turning else 2, 4)
+        step = np.zeros(4)
+        step[free] = -np.linalg.solve((normal + damping)[free, free], gradient[free])
         step *= min(1.0, _LONGEST_STEP / max(float(np.linalg.norm(step)), 1e-12))
         line = moved_line(line, basis, step, spread=spread)
     return line

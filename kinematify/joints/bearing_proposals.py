@@ -12,16 +12,25 @@ from kinematify.joints.bearing_scores import surface_support
 from kinematify.joints.line import NO_LINES, Lines, join
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import FloatArray
     from kinematify.config import BearingConfig
     from kinematify.joints.bearing_evidence import Side, Sides
 
 _LEAST_SINE = 0.17  # below 10 deg between two normals their intersection is ill-conditioned
+_ALONG = np.cos(np.radians(1.0))
 _COARSE = 2.0  # proposals this much farther apart than what is kept: the refinement moves them
 
 
 def propose_lines(
-    sides: Sides, centroid: FloatArray, *, diagonal: float, config: BearingConfig, rng: np.random.Generator
+    sides: Sides,
+    centroid: FloatArray,
+    directions: FloatArray,
+    *,
+    diagonal: float,
+    config: BearingConfig,
+    rng: np.random.Generator,
 ) -> Lines:
     """Promising distinct lines: the best by area among all, and the best by circles among those through circles.
 
@@ -30,6 +39,7 @@ def propose_lines(
     Args:
         sides: Evidence of both parts.
         centroid: Of the contact, world frame [m], shape (3,).
+        directions: Along which lines are proposed besides, shape (k, 3).
         diagonal: Of the assembly [m].
         config: Numbers of proposals and of what is kept.
         rng: Draws the pairs and circles.
@@ -38,6 +48,7 @@ def propose_lines(
         Lines through their feet of the contact centroid; none where nothing is curved.
     """
     by_pairs = [normal_pair_lines(side, config.pairs, rng) for side in sides]
+    by_pairs += [directed_lines(side, directions, config.directed_pairs, rng) for side in sides]
     by_circles = [_circle_lines(side, config.circles, rng) for side in sides]
     lines = join([*by_circles, *by_pairs]).through_feet(centroid)
     if len(lines) == 0:
@@ -50,14 +61,21 @@ def propose_lines(
         lines.subset(slice(sum(n_circles))), n_circles[0], diagonal=diagonal, config=config
     )
     chosen: list[int] = []
-    for merit, count in ((area, config.shortlist), (votes, config.shortlist_circles)):
+    lists = [(area, config.shortlist), (votes, config.shortlist_circles)]
+    lists += [(area * along, config.shortlist_directed) for along in _running_along(lines, directions)]
+    for merit, count in lists:
         order = np.argsort(-merit, kind="stable")
         order = order[merit[order] > 0]
         picked = lines.subset(order).distinct(
             count, angle=_COARSE * config.apart_angle, distance=_COARSE * config.apart * diagonal
         )
         chosen += order[picked].tolist()
-    return lines.subset(chosen)
+    return lines.subset(list(dict.fromkeys(chosen)))
+
+
+def _running_along(lines: Lines, directions: FloatArray) -> NDArray[np.bool_]:
+    """Which lines run along each direction (k, 3), shape (k, L)."""
+    return np.asarray(np.abs(directions @ lines.axes.T) > _ALONG)
 
 
 def normal_pair_lines(side: Side, count: int, rng: np.random.Generator) -> Lines:
@@ -78,6 +96,31 @@ def normal_pair_lines(side: Side, count: int, rng: np.random.Generator) -> Lines
     # Solve x1 + s n1 = x2 + t n2 in the plane across the axis.
     along = np.einsum("ij,ij->i", crossed(offset, n2[good]), axes) / sine[good]
     return Lines(axes=axes, points=side.points[first][good] + along[:, None] * n1[good])
+
+
+def directed_lines(side: Side, directions: FloatArray, count: int, rng: np.random.Generator) -> Lines:
+    """Lines along given directions, each through the place where the normals of a random pair of samples meet.
+
+    Rough normals are several degrees off, and so is the direction that two of them give; seen along a given direction,
+    they still meet near the axis.
+
+    Args:
+        side: Evidence of one part.
+        directions: Unit directions, shape (k, 3).
+        count: Pairs per direction.
+        rng: Draws the pairs.
+    """
+    if len(side.weights) < 2 or count == 0 or len(directions) == 0:
+        return NO_LINES
+    chance = side.weights / side.weights.sum()
+    axes = np.repeat(directions, count, axis=0)
+    first, second = rng.choice(len(chance), (2, len(axes)), p=chance)
+    n1, n2 = (side.normals[k] - np.einsum("ij,ij->i", side.normals[k], axes)[:, None] * axes for k in (first, second))
+    offset = side.points[second] - side.points[first]
+    sine = np.einsum("ij,ij->i", crossed(n1, n2), axes)
+    good = np.abs(sine) > _LEAST_SINE
+    along = np.einsum("ij,ij->i", crossed(offset[good], n2[good]), axes[good]) / sine[good]
+    return Lines(axes=axes[good], points=side.points[first][good] + along[:, None] * n1[good])
 
 
 def _circle_lines(side: Side, count: int, rng: np.random.Generator) -> Lines:

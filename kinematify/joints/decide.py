@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, FloatArray
     from kinematify.config import ConfidenceConfig, JointsConfig
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.bearing_line import EdgeBearing
     from kinematify.joints.frames import BoxFrame
     from kinematify.joints.kind import KindDecision
     from kinematify.joints.line import Line

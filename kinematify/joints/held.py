@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.bearing import BearingLine
+    from kinematify.joints.bearing_line import BearingLine
     from kinematify.joints.workspace import PartCache
 
 Pair = tuple[int, int]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearing import BearingLine, EdgeBearing
+from kinematify.joints.bearing_line import BearingLine, EdgeBearing
 from kinematify.joints.footing import foot_side, front_of, is_level_plate
 from kinematify.joints.frames import UP, body_axes, box_frame
 from kinematify.joints.journal import facing_faces, find_journal

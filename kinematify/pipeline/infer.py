@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.bearing_line import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.pieces import Groups
@@ -134,6 +134,7 @@ def infer(
             *_doubtful_base(assembly, trees, config.topology.base_doubt),
             *_floating_parts(assembly, graph, trees[0]),
             *_compound_joints(assembly, joints, graph, config),
+            *_followed_twins(assembly, joints, bearings),
         ),
     )
 
@@ -292,6 +293,29 @@ def _compound_joints(
     """Tell of joints that are one mechanism together."""
     found = compounds(assembly, joints, graph.clusters, config.joints.compound)
     return [described(compound, assembly.names) for compound in found]
+
+
+def _followed_twins(
+    assembly: Assembly, joints: Sequence[JointEstimate], bearings: Mapping[Pair, EdgeBearing]
+) -> list[str]:
+    """Tell which joints took their line from congruent ones."""
+    said = []
+    for joint in joints:
+        a, b = min(joint.parent, joint.child), max(joint.parent, joint.child)
+        bearing = bearings.get((a, b))
+        if bearing is None or not bearing.follows or not _runs_along(joint, bearing.lines[0]):
+            continue
+        models = [f"{assembly.names[one]} and {assembly.names[other]}" for one, other in bearing.follows]
+        own = f"{assembly.names[joint.parent]} and {assembly.names[joint.child]}"
+        said.append(f"{own} turn as their congruent twins do ({'; '.join(models)})")
+    if not said:
+        return []
+    return [f"{'. '.join(said)}. By itself, the rough contact shows another line; what all twins show was taken."]
+
+
+def _runs_along(joint: JointEstimate, line: BearingLine) -> bool:
+    """Whether a joint has the direction of a line, to 1 deg."""
+    return bool(abs(float(joint.axis @ line.axis)) > math.cos(math.radians(1.0)))
 
 
 def _floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree) -> list[str]:

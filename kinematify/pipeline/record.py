@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactEdge
-    from kinematify.joints.bearing import BearingLine
+    from kinematify.joints.bearing_line import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.pipeline.infer import Inference
     from kinematify.topology.tree import KinematicTree

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.bearing_line import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.frames import BoxFrame
     from kinematify.joints.scene import JointScene

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearing import EdgeBearing
+    from kinematify.joints.bearing_line import EdgeBearing
 
 Pair = tuple[int, int]
 

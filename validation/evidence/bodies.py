@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearing import BearingLine, EdgeBearing
+    from kinematify.joints.bearing_line import BearingLine, EdgeBearing
     from kinematify.joints.line import Line
 
 Pair = tuple[int, int]

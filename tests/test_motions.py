@@ -1,0 +1,45 @@
+"""Motions between congruent clouds: they lay one upon the other, mirrored where the shape is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.contact.motions import motions_between
+from tests.known import rotation
+
+MIRROR = np.diag([1.0, -1.0, 1.0])
+
+
+def hook(count: int = 500, seed: int = 0) -> np.ndarray:
+    """Points in three bars of different lengths along three axes, a chiral shape."""
+    rng = np.random.default_rng(seed)
+    lows = np.array([[0, 0, 0], [0.9, 0, 0], [0.9, 0.5, 0]])
+    highs = np.array([[1.0, 0.1, 0.1], [1.0, 0.6, 0.1], [1.0, 0.6, 0.35]])
+    which = rng.integers(3, size=count)
+    return lows[which] + rng.random((count, 3)) * (highs - lows)[which]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_the_motion_of_a_chiral_shape_is_found(mirrored: bool) -> None:
+    turn = rotation(np.array([0.6, 0.0, 0.8]), 1.1) @ (MIRROR if mirrored else np.eye(3))
+    shift = np.array([0.3, -2.0, 0.7])
+    found = motions_between(hook(), hook(seed=1) @ turn.T + shift, tolerance=0.025)
+    assert len(found) == 1
+    assert np.sign(np.linalg.det(found[0].turn)) == (-1.0 if mirrored else 1.0)
+    np.testing.assert_allclose(found[0].turn, turn, atol=0.03)
+    np.testing.assert_allclose(found[0].points(hook()), hook() @ turn.T + shift, atol=0.03)
+    np.testing.assert_allclose(found[0].inverse.points(found[0].points(hook())), hook(), atol=1e-9)
+
+
+def test_a_box_lies_upon_another_one_in_all_its_ways() -> None:
+    rng = np.random.default_rng(0)
+    first, second = (rng.random((800, 3)) * (3.0, 2.0, 1.0) for _ in range(2))
+    found = motions_between(first, second, tolerance=0.15)
+    assert sorted(np.sign(np.linalg.det(motion.turn)) for motion in found[:8]) == [-1.0] * 4 + [1.0] * 4
+    for motion in found[:8]:
+        np.testing.assert_allclose(np.abs(motion.turn), np.eye(3), atol=0.2)
+
+
+def test_other_shapes_have_no_motion() -> None:
+    assert motions_between(hook(), hook() * (1.0, 1.6, 1.0), tolerance=0.03) == []
