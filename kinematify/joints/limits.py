@@ -96,10 +96,10 @@ def _from_stop(scene: JointScene, forward: float, backward: float, config: Joint
     """
     limits = config.limits
     if backward < np.radians(limits.stopped_deg):
-        return min(forward, np.radians(limits.panel_deg))
+        return float(min(forward, np.radians(limits.panel_deg)))
     unstopped = forward >= np.pi and backward < np.radians(limits.panel_deg)
     pinned = scene.gated and not scene.parent_moves
-    return np.radians(limits.panel_deg) - backward if unstopped and pinned else forward
+    return float(np.radians(limits.panel_deg)) - backward if unstopped and pinned else forward
 
 
 def _range(sign: float, lower: float, upper: float, free: FloatArray, config: JointsConfig) -> Range:
