@@ -48,7 +48,10 @@ def swing_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float
     if abs(apart) > 0.05 * scene.diagonal:
         return 1.0 if apart > 0.0 else -1.0
     side = (centroids.mean(axis=0) - middle) * (1.0, 1.0, 0.0)  # up and down has been asked
-    return 1.0 if float(velocity @ side) >= 0.0 else -1.0
+    towards = float(velocity @ side) / speed
+    if abs(towards) < 1e-3 * scene.diagonal:  # rounding would decide
+        return neutral_sense(scene, axis)
+    return 1.0 if towards > 0.0 else -1.0
 
 
 def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> float:

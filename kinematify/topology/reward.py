@@ -239,15 +239,20 @@ class TreeReward:
             self.touches[a, b] = self.touches[b, a] = True
 
     def weights_for(self, base: int) -> dict[Pair, float]:
-        """Edge weights whose maximum spanning tree has about the best sum of R_contact and R_direct for a base link."""
+        """Edge weights whose maximum spanning tree has about the best sum of R_contact and R_direct for a base link.
+
+        None is below 0: what competes with an edge is told by ratios.
+        """
         weights = self.config.weights
         loss = 0.0 if self.is_paper or weights.contact <= 0.0 else weights.direct / weights.contact
         return {
-            (a, b): value
-            - loss
-            * (base not in (a, b) and value < self.config.held_quality and bool(self.touches[base, [a, b]].any()))
+            (a, b): max(value - loss * self._elsewhere(base, a, b, value), 0.0)
             for (a, b), value in self.quality.items()
         }
+
+    def _elsewhere(self, base: int, a: int, b: int, value: float) -> bool:
+        """Whether two parts, one of which touches the base link, show no joint between them."""
+        return base not in (a, b) and value < self.config.held_quality and bool(self.touches[base, [a, b]].any())
 
     def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
         """Value of every term in [0, 1]; the paper's R_sym is halved here and its weight doubled in `total`.
