@@ -49,7 +49,7 @@ def swing_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float
         return 1.0 if apart > 0.0 else -1.0
     side = (centroids.mean(axis=0) - middle) * (1.0, 1.0, 0.0)  # up and down has been asked
     towards = float(velocity @ side) / speed
-    if abs(towards) < 1e-3 * scene.diagonal:  # rounding would decide
+    if abs(towards) < 1e-5 * scene.diagonal:  # rounding would decide
         return neutral_sense(scene, axis)
     return 1.0 if towards > 0.0 else -1.0
 
