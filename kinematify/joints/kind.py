@@ -118,9 +118,9 @@ def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     guided = scene.gated or np.isinf(play.slide)
     if scene.serial:
         # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
-        # what is extruded along its slide and nowhere round.
+        # what is extruded along its slide, nowhere round, and stopped within its clearance.
         held = float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
-        guided = held if scene.gated else _extruded(scene, slides.axes[0], config)
+        guided = held if scene.gated else _extruded(scene, slides.axes[0], config) and play.turn < 2.0 * least
     return {
         "keyed": float(_two_bores(scene, turns, config) or (guided and play.slides_only(least, config.play.ratio))),
         "retained": float(play.turns_only(least, config.play.ratio))
