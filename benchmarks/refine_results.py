@@ -27,7 +27,6 @@ ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- refine:begin -->", "<!-- refine:end -->"
 REPORTS = {
     "refine_everyday": "Everyday objects, clean input",
-    "refine_recent": "Some everyday objects with a later inference, clean input",
     "refine_tiers": "The dear tiers, some everyday objects, clean input",
     "refine_robots": "Robots, clean input",
     "refine_perturbed": "Everyday objects, perturbed input",
