@@ -243,8 +243,8 @@ def _describe_range(joint: Joint) -> str:
     if not math.isfinite(joint.upper - joint.lower):
         return "unlimited"
     if joint.kind.turns:
-        return f"{math.degrees(joint.lower):.0f} to {math.degrees(joint.upper):.0f} deg"
-    return f"{joint.lower * 1000:.0f} to {joint.upper * 1000:.0f} mm"
+        return f"{math.degrees(joint.lower):z.0f} to {math.degrees(joint.upper):.0f} deg"
+    return f"{joint.lower * 1000:z.0f} to {joint.upper * 1000:.0f} mm"
 
 
 def _describe_doubts(inference: Inference) -> list[str]:

@@ -29,5 +29,5 @@ def ranged(joint: JointEstimate) -> str:
     if not math.isfinite(joint.upper - joint.lower):
         return "unlimited"
     if joint.kind.turns:
-        return f"{math.degrees(joint.lower):.3g} to {math.degrees(joint.upper):.3g} deg"
-    return f"{joint.lower * 1e3:.3g} to {joint.upper * 1e3:.3g} mm"
+        return f"{math.degrees(joint.lower):z.3g} to {math.degrees(joint.upper):.3g} deg"
+    return f"{joint.lower * 1e3:z.3g} to {joint.upper * 1e3:.3g} mm"
