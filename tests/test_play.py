@@ -82,10 +82,18 @@ def test_knobs_on_rough_shafts_turn_in_a_row() -> None:
     assert all(found[f"knob_{k}"].kind.turns for k in (1, 2, 3))
 
 
+def test_the_hook_of_a_crane_slides_on_its_two_ropes() -> None:
+    """Thin ropes stop few samples, and the jib makes a machine of it, in which keys are doubted."""
+    hook = estimates("crane", kind="tower")["hook"]
+    assert hook.kind is JointType.PRISMATIC
+    assert hook.evidence["keyed"] == 1.0
+
+
 def test_a_round_cap_that_a_thread_holds_is_not_lifted() -> None:
     cap = estimates("bottle", cap="screw", width=0.06, height=0.2, neck=0.028)["cap"]
     assert cap.kind.turns
     assert cap.evidence["retained"] == 1.0
+    assert cap.evidence["round_lid"] == 0.0
 
 
 @pytest.mark.parametrize("opened", [0.0, 0.4])

@@ -164,7 +164,7 @@ def _shafted(scene: JointScene) -> float:
 def _plunger(scene: JointScene, slides: RankedSlides, config: JointsConfig) -> float:
     """1 for a round plug in a hole of its own width with room behind it: knobs have a shaft, or bottom out at once."""
     shaft = _shaft(scene)
-    if shaft is None or not scene.gated or _shafted(scene):
+    if shaft is None or _shafted(scene):
         return 0.0
     axis, pivot, _ = shaft
     along = np.abs(slides.axes @ axis) > 0.99
