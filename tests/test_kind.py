@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,14 +11,17 @@ from kinematify import infer
 from kinematify.joints.candidate import JointType
 from kinematify.joints.kind import Siblings, decide_kind
 from kinematify.joints.panels import rank_turns
+from kinematify.joints.scene import joint_scene, part_frames
 from kinematify.joints.slides import rank_slides
+from kinematify.joints.workspace import PartCache
 from kinematify.sources.procedural.families import FAMILIES
 from kinematify.sources.procedural.family import build
 from kinematify.sources.procedural.request import from_text
 from kinematify.sources.procedural.solids import box, cylinder
-from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
+from tests.joint_scenes import CONFIG, estimates_of, evidence, infer_joints, scene_of
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
+from tests.robots import parallel_gripper
 
 
 @pytest.mark.parametrize(
@@ -81,6 +86,33 @@ def test_a_block_on_two_ropes_slides_and_a_short_one_on_a_pin_turns(ropes: tuple
     slid = rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
     alone = Siblings(count=1, gripping=False, overlapping=False)
     assert (decide_kind(scene, alone, turns, slid, CONFIG.joints).cues["keyed"] == 1.0) is slides
+
+
+@pytest.mark.parametrize(("score", "rounded"), [(0.005, False), (0.05, True)])
+def test_a_finger_whose_rail_has_faded_is_hinged_only_if_its_contact_is_round(score: float, rounded: bool) -> None:
+    known = parallel_gripper()
+    tree, graph, bearings = evidence(known)
+    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
+    frames = part_frames(cache, tree, CONFIG.joints)
+    edge = (known.index["palm"], known.index["right_finger"])
+    found = bearings[edge]
+    assert found.rail is not None
+    faded = replace(found, lines=(replace(found.lines[0], score=score),), rail=replace(found.rail, score=1e-4))
+    scene = joint_scene(cache, tree, frames, edge, faded, config=CONFIG.joints)
+    assert scene.rounded is rounded
+
+
+@pytest.mark.parametrize(("lead", "slides"), [(2.0, False), (4.6, True)])
+def test_a_rail_that_leads_the_best_line_fourfold_guides(lead: float, slides: bool) -> None:
+    known = BUILDERS["square_lift"]()
+    tree, graph, bearings = evidence(known)
+    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
+    edge = next(iter(tree.edges()))
+    found = bearings[edge]
+    assert found.rail is not None
+    rough = replace(found, lines=(replace(found.lines[0], score=found.rail.score / lead),))
+    scene = joint_scene(cache, tree, part_frames(cache, tree, CONFIG.joints), edge, rough, config=CONFIG.joints)
+    assert (scene.railed == 1.0) == slides
 
 
 @pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])

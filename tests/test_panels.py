@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from kinematify.joints.panels import propose_lines, rank_turns
-from kinematify.sources.procedural.solids import box
+from kinematify.joints.panels import RankedTurns, propose_lines, rank_turns
+from kinematify.sources.procedural.solids import box, cylinder
 from tests.joint_scenes import CONFIG, infer_joints, scene_of
-from tests.known import known_object, turning
+from tests.known import KnownObject, known_object, turning
 from tests.objects import BUILDERS
 
 
@@ -52,6 +54,61 @@ def test_the_hinge_is_opposite_the_handle(side: float) -> None:
     ranked = rank_turns(scene, CONFIG.joints)
     assert abs(ranked.lines.axes[0][2]) > 0.99
     assert np.sign(ranked.lines.pivots[0][0]) == -side
+
+
+def trolley(rise: float) -> KnownObject:
+    """A cart whose wheels fill square wells, `rise` above the feet that it stands on."""
+    body, wheels, joints = box((-0.3, -0.2, 0.02), (0.3, 0.2, 0.3)), {}, []
+    for k, x in enumerate((-0.2, 0.2)):
+        body -= box((x - 0.0502, -0.2202, -1), (x + 0.0502, -0.1698, 0.1002))
+        wheels[f"wheel_{k}"] = cylinder(0.05, (x, -0.22, 0.05), (x, -0.17, 0.05))
+        joints.append(turning("cart", f"wheel_{k}", (0, 1, 0), (x, 0, 0.05), (-np.inf, np.inf)))
+    foot = box((-0.02, 0.15, -rise), (0.02, 0.19, 0.03))
+    return known_object("trolley", {"cart": body + foot, **wheels}, *joints)
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.1])
+def test_only_what_stands_on_the_floor_rolls_and_only_about_its_axle(rise: float) -> None:
+    ranked = rank_turns(scene_of(trolley(rise), "wheel_0"), CONFIG.joints)
+    along = np.abs(ranked.lines.axes[:, 1]) > 0.99
+    off = np.linalg.norm(ranked.lines.pivots[:, [0, 2]] - (-0.2, 0.05), axis=1)
+    rolling = ranked.cues["rolling"] > 0
+    if rise > 0:
+        assert not rolling.any()
+    else:
+        assert rolling.any()
+        assert (along[rolling] & (off[rolling] < 0.02)).all()
+
+
+def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) -> RankedTurns:
+    """The elbow of an arm whose bearing lines are those given, all too weak to decide."""
+    known = BUILDERS["serial_arm"]()
+    scene = scene_of(known, known.joints[1].child)
+    assert scene.mechanism == 1.0
+    assert scene.bearing is not None
+    best = scene.bearing.lines[0]
+    lines = tuple(replace(best, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
+    weak = replace(scene, gated=False, bearing=replace(scene.bearing, lines=lines))
+    return rank_turns(weak, CONFIG.joints)
+
+
+def test_lines_that_score_alike_count_alike() -> None:
+    ranked = weak_evidence(((0.6, 0.0, 0.8), 0.005), ((0.6, 0.0, -0.8), 0.004))
+    found = [k for k, source in enumerate(ranked.lines.sources) if source == "weak_bearing"]
+    near = 1.0 - ranked.cues["contact_radius"][found]
+    shares = ranked.cues["mechanism_bearing"][found] / near
+    np.testing.assert_allclose(sorted(shares), (0.8, 1.0))
+
+
+def test_axes_of_machines_run_along_their_parts() -> None:
+    ranked = weak_evidence(((0.6, 0.0, 0.8), 0.005), ((0.0, 1.0, 0.0), 0.0045), ((1.0, 0.0, 0.0), 0.0045))
+    square = {
+        tuple(axis.round(3).tolist()): cue
+        for axis, cue, source in zip(ranked.lines.axes, ranked.cues["square"], ranked.lines.sources, strict=True)
+        if source == "weak_bearing"
+    }
+    assert square == {(0.6, 0.0, 0.8): 0.0, (0.0, 1.0, 0.0): 1.0, (1.0, 0.0, 0.0): 1.0}
+    assert ranked.cues["square"][np.array(ranked.lines.sources) == "box_edge"].max() == 0.0
 
 
 def test_no_cue_exceeds_the_cap() -> None:

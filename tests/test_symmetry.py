@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.assembly.part import Assembly, Part
+from kinematify.benchmark.voxels import voxel_remeshed
 from kinematify.config import load_config
 from kinematify.contact.symmetry import aligned_chamfer, find_clusters
 from kinematify.geometry.surface import part_surfaces
@@ -48,6 +49,14 @@ def test_turned_and_mirrored_copies_cluster(seed: int, mirrored: bool) -> None:
     turn = rotation(axis / np.linalg.norm(axis), rng.uniform(0, np.pi)) @ (MIRROR if mirrored else np.eye(3))
     copy = placed(hook(), "copy", turn, tuple(rng.uniform(-3, 3, 3)))
     assert clusters_of(hook(), copy) == ((0, 1),)
+
+
+def test_copies_remeshed_on_a_coarse_grid_still_cluster() -> None:
+    turn = rotation(np.ones(3) / np.sqrt(3), np.radians(45))
+    copies = [voxel_remeshed(part, 0.14) for part in (hook(), placed(hook(), "copy", turn, (3.03, 0, 0)))]
+    areas = sorted(part.area for part in copies)
+    assert areas[0] < (1 - 4 * CONFIG.contact.cluster_tolerance) * areas[1]  # the tolerance of smooth parts
+    assert clusters_of(*copies) == ((0, 1),)
 
 
 def test_groups_are_ascending_and_singletons_are_left_out() -> None:

@@ -337,6 +337,8 @@ class RailsConfig(StageConfig):
     """Free turn about a line along the rail beyond which the rail is a pin [deg]."""
     rounded_lead: float
     """Below this lead a pair of end parts is hinged, not sliding."""
+    rounded_least: float
+    """Where the best bearing line scores less, the contact shows nothing round."""
 
 
 class ConfidenceConfig(StageConfig):

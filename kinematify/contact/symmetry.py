@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from kinematify.geometry.surface import FACETED
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from kinematify.geometry.surface import PartSurface
 
 _PROFILE_QUANTILES = np.linspace(0.02, 0.98, 9)
+_ROUGH = 1.5
+"""More of the tolerance for rough parts in the test by size and area: voxels of a tenth of a finger change both."""
 
 
 def find_clusters(
@@ -42,7 +46,8 @@ def find_clusters(
     prints = np.array([_fingerprint(points) for points in shapes])
     areas = np.array([surface.part.area for surface in surfaces])
     sizes = np.array([np.linalg.norm(points, axis=1).max() for points in shapes])
-    alike = _alike(prints, areas, sizes, config.cluster_tolerance)
+    slack = np.array([_ROUGH if surface.roughness > FACETED else 1.0 for surface in surfaces])
+    alike = _alike(prints, areas, sizes, config.cluster_tolerance * np.maximum(slack[:, None], slack[None]))
     labels = np.arange(len(surfaces))
     for a, b in zip(*np.nonzero(np.triu(alike, k=1)), strict=True):
         limit = config.cluster_tolerance * 2 * max(sizes[a], sizes[b])
@@ -85,8 +90,8 @@ def _fingerprint(points: FloatArray) -> FloatArray:
     return np.concatenate([radii, spreads])
 
 
-def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: float) -> NDArray[np.bool_]:
-    """Matrix of pairs that may be congruent."""
+def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: FloatArray) -> NDArray[np.bool_]:
+    """Matrix of pairs that may be congruent within a tolerance per pair, shape (n, n)."""
     scale = np.maximum(sizes[:, None], sizes[None])
     difference = np.abs(prints[:, None] - prints[None]).max(axis=2)
     area_ratio = np.minimum(areas[:, None], areas[None]) / np.maximum(np.maximum(areas[:, None], areas[None]), 1e-300)

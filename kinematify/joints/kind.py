@@ -70,8 +70,13 @@ def decide_kind(
         "rail": scene.mechanism * _held_rail(scene, turns, config),
     }
     cues["panel"] *= 1.0 - max(
-        cues["blocked_turn"], cues["keyed"], cues["capped"], cues["carriage"], cues["rail"]
-    )  # a plate that cannot turn, lies inside, or rides on a rail is no door
+        cues["blocked_turn"],
+        cues["keyed"],
+        cues["capped"],
+        cues["carriage"],
+        cues["rail"],
+        scene.mechanism * cues["gripper"],
+    )  # a plate that cannot turn, lies inside, rides on a rail or closes on its like is no door
     cues["edge_contact"] *= 1.0 - cues["rail"]  # the edge runs in the rail
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):

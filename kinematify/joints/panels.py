@@ -273,7 +273,7 @@ def _motion_cues(
     return {
         "free": mean_free[rows, best],
         "crossed": crossed[rows, best],
-        "outside": np.clip(sign * outward, 0.0, 1.0),
+        "outside": (1.0 - scene.mechanism) * np.clip(sign * outward, 0.0, 1.0),
         "separation": _separation(scene, lines, sign, config),
     }
 
@@ -455,6 +455,8 @@ def _shape_cues(scene: JointScene, lines: Lines, near: FloatArray) -> dict[str, 
     turned = np.maximum(_roundness(scene, lines), scene.disc * (place == CENTRE) * (thin > 0.99))
     turned *= 1.0 - scene.compact * (1.0 - near)
     clusters = (source == "contact_clusters") & (not (scene.panel and (scene.upright or scene.flat)))
+    by_contact = (source == "weak_bearing") | (source == "contact_axis")
+    stands = (place == CENTRE) | (by_contact if scene.mechanism > 0.5 else source == "contact_axis")
     normal = np.zeros(len(thin))
     if len(scene.contact.points):
         tensor = (scene.contact.normals * scene.contact.weights[:, None]).T @ scene.contact.normals
@@ -468,16 +470,36 @@ def _shape_cues(scene: JointScene, lines: Lines, near: FloatArray) -> dict[str, 
         "contact_line": (source == "contact_line").astype(np.float64),
         "clusters": clusters.astype(np.float64),
         "weak_bearing": (1.0 - scene.mechanism) * (source == "weak_bearing"),
-        "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _first_bearing(lines) * near,
-        "small_normal": max(scene.smallness, scene.compact) * normal * ((place == CENTRE) | (source == "contact_axis")),
+        "mechanism_bearing": scene.mechanism * (source == "weak_bearing") * _bearing_ratio(scene, lines) * near,
+        "small_normal": max(scene.smallness, scene.compact) * normal * stands,
         "round": turned,
+        "rolling": _rolling(scene, lines),
+        "square": scene.mechanism * by_contact * _squareness(scene, lines),
     }
 
 
-def _first_bearing(lines: Lines) -> FloatArray:
-    """1 for the best bearing line, less for the next ones."""
-    rank = np.cumsum([source in ("bearing", "weak_bearing") for source in lines.sources])
-    return np.asarray(1.0 / np.maximum(rank, 1.0))
+def _squareness(scene: JointScene, lines: Lines) -> FloatArray:
+    """1 for lines along an axis of the child's or the parent's frame, 0 from 8 deg off all of them, shape (c,)."""
+    axes = np.concatenate([scene.frame.axes, scene.parent_frame.axes])
+    nearest = np.minimum(np.abs(lines.axes @ axes.T).max(axis=1), 1.0)
+    return np.asarray(np.interp(np.degrees(np.arccos(nearest)), (4.0, 8.0), (1.0, 0.0)))
+
+
+def _rolling(scene: JointScene, lines: Lines) -> FloatArray:
+    """1 for the lines through the middle of a wheel on the floor, along its axle, shape (c,)."""
+    frame = scene.frame
+    along = np.abs(lines.axes @ frame.axes[frame.thin]) > np.cos(np.radians(10.0))
+    off = lengths_of(_arms(scene.centre, lines)) / float(frame.extents.max())
+    return float(scene.rolls) * (along & (off < 0.1)).astype(np.float64)
+
+
+def _bearing_ratio(scene: JointScene, lines: Lines) -> FloatArray:
+    """Score of each bearing line over that of the best one; 0 for other lines."""
+    if scene.bearing is None or not scene.bearing.lines:
+        return np.zeros(len(lines.sources))
+    scores = iter(line.score for line in scene.bearing.lines)
+    best = max(scene.bearing.lines[0].score, 1e-12)
+    return np.array([next(scores) / best if source in ("bearing", "weak_bearing") else 0.0 for source in lines.sources])
 
 
 def _roundness(scene: JointScene, lines: Lines) -> FloatArray:

@@ -124,6 +124,13 @@ def _rail_lead(bearing: EdgeBearing | None) -> float:
     return bearing.rail.score / max(best, 1e-3)
 
 
+def _rounded(bearing: EdgeBearing | None, config: RailsConfig) -> bool:
+    """Whether the contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
+    if bearing is None or not bearing.lines or bearing.lines[0].score < config.rounded_least:
+        return False
+    return 0.0 < _rail_lead(bearing) < config.rounded_lead
+
+
 def _railed(bearing: EdgeBearing | None, config: RailsConfig) -> float:
     lead = _rail_lead(bearing)
     if lead == 0.0 or bearing is None or bearing.rail is None:
@@ -199,7 +206,7 @@ def joint_scene(
         gated=journal is not None or (bearing is not None and passes_gate(bearing, contact, config)),
         railed=_railed(bearing, config.rails),
         lead=_rail_lead(bearing),
-        rounded=0.0 < _rail_lead(bearing) < config.rails.rounded_lead,
+        rounded=_rounded(bearing, config.rails),
         compact=compact,
         mechanism=1.0 if serial else compact,
         on_top=on_top,
