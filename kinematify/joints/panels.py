@@ -490,7 +490,7 @@ def _rolling(scene: JointScene, lines: Lines) -> FloatArray:
     frame = scene.frame
     along = np.abs(lines.axes @ frame.axes[frame.thin]) > np.cos(np.radians(10.0))
     off = lengths_of(_arms(scene.centre, lines)) / float(frame.extents.max())
-    return float(scene.rolls) * (along & (off < 0.1)).astype(np.float64)
+    return np.asarray(along & (off < 0.1) & scene.rolls, dtype=np.float64)
 
 
 def _bearing_ratio(scene: JointScene, lines: Lines) -> FloatArray:
