@@ -115,6 +115,21 @@ def test_a_rail_that_leads_the_best_line_fourfold_guides(lead: float, slides: bo
     assert (scene.railed == 1.0) == slides
 
 
+@pytest.mark.parametrize(("turn", "travel", "guides"), [(3.0, 0.25, False), (3.0, 1.0, True), (0.1, 0.25, True)])
+def test_a_rail_along_which_little_moves_guides_only_what_cannot_turn(turn: float, travel: float, guides: bool) -> None:
+    known = BUILDERS["square_lift"]()
+    scene = replace(scene_of(known, known.joints[0].child), mechanism=1.0)
+    assert scene.railed == 1.0
+    turns, slides = rank_turns(scene, CONFIG.joints), rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
+    turns = replace(turns, free_parent=np.full_like(turns.free_parent, turn))
+    slides = replace(slides, cues={**slides.cues, "travel_parent": np.full(len(slides.axes), travel)})
+    assert scene.bearing is not None
+    across = replace(scene.bearing.lines[0], axis=np.array([1.0, 0.0, 0.0]))  # a pin along the rail is another matter
+    scene = replace(scene, bearing=replace(scene.bearing, lines=(across,)))
+    alone = Siblings(count=1, gripping=False, overlapping=False)
+    assert decide_kind(scene, alone, turns, slides, CONFIG.joints).cues["rail"] == float(guides)
+
+
 @pytest.mark.parametrize(("room", "pressed"), [(0.004, True), (0.0008, False)])
 def test_a_round_plug_with_room_behind_it_is_pressed_and_one_that_bottoms_out_turns(room: float, pressed: bool) -> None:
     body = box((-0.2, 0, 0), (0.2, 0.1, 0.1)) - cylinder(0.0103, (0, -1, 0.05), (0, 0.02, 0.05))

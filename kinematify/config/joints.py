@@ -335,6 +335,8 @@ class RailsConfig(StageConfig):
     """Full where the lead is at least this."""
     held_deg: float
     """Free turn about a line along the rail beyond which the rail is a pin [deg]."""
+    least_travel: float
+    """Free travel along the rail below which a part that turns freely is not on it, in useful lengths."""
     rounded_lead: float
     """Below this lead a pair of end parts is hinged, not sliding."""
     rounded_least: float

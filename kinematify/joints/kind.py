@@ -67,7 +67,7 @@ def decide_kind(
         **_shape_cues(scene, turns),
         **_twin_cues(scene, siblings),
         **_play_cues(scene, turns, slides, config),
-        "rail": scene.mechanism * _held_rail(scene, turns, config),
+        "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
     cues["panel"] *= 1.0 - max(
         cues["blocked_turn"],
@@ -103,13 +103,22 @@ def decide_kind(
     return KindDecision(kind=kind, odds=odds, cues=cues)
 
 
-def _held_rail(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> float:
-    """The rail, unless it runs along a line about which the part can turn: a pin is extruded along its axis too."""
+def _held_rail(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> float:
+    """The rail, unless it runs along a line about which the part can turn: a pin is extruded along its axis too.
+
+    Nor is it one where the part turns freely about any line and is soon stopped along the rail: boxy knuckles that
+    stand in each other are extruded as well.
+    """
     if scene.bearing is None or scene.bearing.rail is None:
         return 0.0
-    along = bool(scene.bearing.lines) and abs(float(scene.bearing.lines[0].axis @ scene.bearing.rail.axis)) > 0.95
+    rail = scene.bearing.rail.axis
+    along = bool(scene.bearing.lines) and abs(float(scene.bearing.lines[0].axis @ rail)) > 0.95
     turn = float(np.degrees(turns.free_parent[0].max()))
-    return 0.0 if along and turn > config.rails.held_deg else scene.railed
+    if along and turn > config.rails.held_deg:
+        return 0.0
+    travel = float(slides.cues["travel_parent"][np.abs(slides.axes @ rail) > 0.99].max(initial=0.0))
+    loose = turn > config.panels.full_turn_deg and travel < config.rails.least_travel
+    return 0.0 if loose else scene.railed
 
 
 def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
