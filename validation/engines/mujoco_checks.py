@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +32,7 @@ from kinematify.validation.engines.outcome import (
 )
 from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.finding import Blame
+from kinematify.validation.read import model_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -81,7 +83,12 @@ class MujocoWork:
     def case(self, sweep: Touching) -> Case:
         """Return what findings name."""
         return Case(
-            mechanism=self.mechanism, prepared=self.prepared, sweep=sweep, settings=self.request.settings.engines
+            mechanism=self.mechanism,
+            prepared=self.prepared,
+            read=partial(model_of, self.request),
+            sweep=sweep,
+            settings=self.request.settings.engines,
+            geometry=self.request.settings.geometry,
         )
 
 

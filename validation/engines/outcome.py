@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.validation.engines.mechanism import sweep_rows
+from kinematify.validation.engines.surfaces import surfaces_meet
 from kinematify.validation.engines.touching import stand_in_error, stand_in_reason
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kinematify.assembly.part import FloatArray
+    from kinematify.validation.declared import DeclaredModel
     from kinematify.validation.engines.drive import Drive
     from kinematify.validation.engines.mechanism import Mechanism, Travel
     from kinematify.validation.engines.touching import Touching
     from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import EngineSettings
+    from kinematify.validation.settings import EngineSettings, GeometrySettings
     from kinematify.validation.stage import OpenCheck, Recorder
 
 
@@ -52,9 +54,13 @@ class Case:
 
     mechanism: Mechanism
     prepared: Prepared
+    read: Callable[[], DeclaredModel]
+    """Reads the model with its surfaces, which the engines themselves do without."""
     sweep: Touching
     """Along `Mechanism.sweep`, from the kinematics alone."""
     settings: EngineSettings
+    geometry: GeometrySettings
+    """How declared surfaces are asked."""
 
     def travel(self, driven: Driven) -> Travel:
         """Return the way of the joint that is driven."""
@@ -175,7 +181,8 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     first, second = pair = case.sweep.pair(index, case.mechanism.links)
     excess, values = case.excess_towards(driven)
     deepest = int(np.argmax(excess[index]))
-    real = excess[index, deepest] > stand_in_error(case.prepared, pair)
+    beyond = excess[index, deepest] > stand_in_error(case.prepared, pair)
+    real = bool(beyond) and _stopped_by_surfaces(case, driven, pair)
     why = (
         f"there {first} and {second} collide; moved on without physics, they get {excess[index, deepest] * 1e3:.3g} mm "
         f"deeper into each other than at rest (at {values[deepest]:.4g} {travel.unit})"
@@ -183,7 +190,8 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     if real:
         remedy = f"Correct axis, pivot or limit of {travel.joint} so that {first} and {second} stay clear."
     else:
-        why += f", {stand_in_reason(case.prepared, pair)}"
+        reason = stand_in_reason(case.prepared, pair) if not beyond else "while their declared surfaces stay clear"
+        why += f", {reason}"
         remedy = f"Write convex pieces as collision geometry of {first} and {second}."
     check.find(
         f"{stops}: {why}.",
@@ -193,6 +201,15 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
         pair=pair,
         **facts,  # type: ignore[arg-type]
     )
+
+
+def _stopped_by_surfaces(case: Case, driven: Driven, pair: tuple[str, str]) -> bool:
+    """Whether the declared surfaces of two links meet on the way as well."""
+    leader, (_, values) = driven.drive.leader, case.excess_towards(driven)
+    rest = case.travel(driven).rest
+    rows = np.tile(case.mechanism.rest, (1 + len(values), 1))
+    rows[1:, leader] = values[np.argsort(np.abs(values - rest))]
+    return surfaces_meet(case.read(), pair, rows, tolerance=case.sweep.tolerance, settings=case.geometry)
 
 
 def _severity(case: Case, index: int, *, real: bool, limited: bool) -> Severity:
