@@ -1,6 +1,6 @@
 """What the declared surfaces say of a way on which convex pieces collide.
 
-Pieces close what is narrower than their tolerance: a lever that runs in a slit of a millimetre is stopped by pieces that
+Pieces close what is narrower than their tolerance: a lever in a slit of a millimetre of play is stopped by pieces that
 stand for no surface at all, and as deep as the wall is thick.
 """
 
