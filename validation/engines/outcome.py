@@ -182,7 +182,7 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     excess, values = case.excess_towards(driven)
     deepest = int(np.argmax(excess[index]))
     beyond = excess[index, deepest] > stand_in_error(case.prepared, pair)
-    real = bool(beyond) and _stopped_by_surfaces(case, driven, pair)
+    real = bool(beyond) and _stopped_by_surfaces(case, driven, pair, until=float(values[deepest]))
     why = (
         f"there {first} and {second} collide; moved on without physics, they get {excess[index, deepest] * 1e3:.3g} mm "
         f"deeper into each other than at rest (at {values[deepest]:.4g} {travel.unit})"
@@ -203,12 +203,13 @@ def _find_blocked(check: OpenCheck, case: Case, driven: Driven) -> None:
     )
 
 
-def _stopped_by_surfaces(case: Case, driven: Driven, pair: tuple[str, str]) -> bool:
-    """Whether the declared surfaces of two links meet on the way as well."""
+def _stopped_by_surfaces(case: Case, driven: Driven, pair: tuple[str, str], *, until: float) -> bool:
+    """Whether the declared surfaces of two links meet as well, on the way from rest to where the pieces are deepest."""
     leader, (_, values) = driven.drive.leader, case.excess_towards(driven)
-    rest = case.travel(driven).rest
-    rows = np.tile(case.mechanism.rest, (1 + len(values), 1))
-    rows[1:, leader] = values[np.argsort(np.abs(values - rest))]
+    away = np.abs(values - case.travel(driven).rest)
+    way = np.argsort(away)[: 1 + int(np.count_nonzero(away < abs(until - case.travel(driven).rest)))]
+    rows = np.tile(case.mechanism.rest, (1 + len(way), 1))
+    rows[1:, leader] = values[way]
     return surfaces_meet(case.read(), pair, rows, tolerance=case.sweep.tolerance, settings=case.geometry)
 
 
