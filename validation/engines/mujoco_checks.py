@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,7 +31,6 @@ from kinematify.validation.engines.outcome import (
 )
 from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.finding import Blame
-from kinematify.validation.read import model_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -82,14 +80,7 @@ class MujocoWork:
 
     def case(self, sweep: Touching) -> Case:
         """Return what findings name."""
-        return Case(
-            mechanism=self.mechanism,
-            prepared=self.prepared,
-            read=partial(model_of, self.request),
-            sweep=sweep,
-            settings=self.request.settings.engines,
-            geometry=self.request.settings.geometry,
-        )
+        return Case(mechanism=self.mechanism, prepared=self.prepared, sweep=sweep, request=self.request)
 
 
 def simulate_all(recorder: Recorder, work: MujocoWork, seen: Measured, sweep: Touching) -> None:

@@ -11,19 +11,19 @@ from kinematify.validation.engines.mechanism import sweep_rows
 from kinematify.validation.engines.surfaces import surfaces_meet
 from kinematify.validation.engines.touching import stand_in_error, stand_in_reason
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.read import model_of
 from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
     from kinematify.validation.engines.drive import Drive
     from kinematify.validation.engines.mechanism import Mechanism, Travel
     from kinematify.validation.engines.touching import Touching
     from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import EngineSettings, GeometrySettings
-    from kinematify.validation.stage import OpenCheck, Recorder
+    from kinematify.validation.settings import EngineSettings
+    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,13 +54,14 @@ class Case:
 
     mechanism: Mechanism
     prepared: Prepared
-    read: Callable[[], DeclaredModel]
-    """Reads the model with its surfaces, which the engines themselves do without."""
     sweep: Touching
     """Along `Mechanism.sweep`, from the kinematics alone."""
-    settings: EngineSettings
-    geometry: GeometrySettings
-    """How declared surfaces are asked."""
+    request: StageRequest
+
+    @property
+    def settings(self) -> EngineSettings:
+        """Thresholds of the engine stages."""
+        return self.request.settings.engines
 
     def travel(self, driven: Driven) -> Travel:
         """Return the way of the joint that is driven."""
@@ -210,7 +211,9 @@ def _stopped_by_surfaces(case: Case, driven: Driven, pair: tuple[str, str], *, u
     way = np.argsort(away)[: 1 + int(np.count_nonzero(away < abs(until - case.travel(driven).rest)))]
     rows = np.tile(case.mechanism.rest, (1 + len(way), 1))
     rows[1:, leader] = values[way]
-    return surfaces_meet(case.read(), pair, rows, tolerance=case.sweep.tolerance, settings=case.geometry)
+    declared = model_of(case.request)  # the engines themselves do without surfaces
+    geometry = case.request.settings.geometry
+    return surfaces_meet(declared, pair, rows, tolerance=case.sweep.tolerance, settings=geometry)
 
 
 def _severity(case: Case, index: int, *, real: bool, limited: bool) -> Severity:

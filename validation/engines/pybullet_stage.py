@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,7 +41,7 @@ from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.engines.touching import touching
 from kinematify.validation.finding import Severity
 from kinematify.validation.prepare.prepared import load_prepared
-from kinematify.validation.read import model_of, read_without_geometry
+from kinematify.validation.read import read_without_geometry
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -117,14 +116,7 @@ class _Work:
 
     def case(self, sweep: Touching) -> Case:
         """Return what findings name."""
-        return Case(
-            mechanism=self.mechanism,
-            prepared=self.prepared,
-            read=partial(model_of, self.request),
-            sweep=sweep,
-            settings=self.request.settings.engines,
-            geometry=self.request.settings.geometry,
-        )
+        return Case(mechanism=self.mechanism, prepared=self.prepared, sweep=sweep, request=self.request)
 
 
 def _load(recorder: Recorder, work: _Work) -> None:
