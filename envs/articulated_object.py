@@ -13,24 +13,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics, rigid_groups
+from kinematify.config.validation import load_settings
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
 from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
+from kinematify.geometry.scene import read_scene, transformed
+from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.model.output import MODEL_FILE
-from kinematify.validation.geometry.scene import read_scene, transformed
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
-from kinematify.validation.task.grasp import moved_bodies, search_grasps
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.simulation.prepare import prepare
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.envs.settings import HandSettings
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.engines.mechanism import Travel
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.prepare.prepared import Prepared
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.mechanism import Travel
+    from kinematify.simulation.prepared import Prepared
 
 AUTO = "auto"
 _PLINTH = 0.4  # objects whose parts swing below them stand so much higher [m]

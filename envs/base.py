@@ -9,16 +9,16 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import EzPickle
 
-from kinematify.assembly.robot import forward_kinematics
+from kinematify.envs.articulated_object import AUTO, held_links, open_end
 from kinematify.envs.dynamics import draw, drawing, no_draw
 from kinematify.envs.goal import Goal
 from kinematify.envs.picture import Painter, Piece, View, Window, has_screen, require_screen
 from kinematify.envs.settings import load_settings
-from kinematify.envs.thing import AUTO, held_links, open_end
 from kinematify.envs.verdict import require_valid
 from kinematify.envs.worlds import ENGINES, shared_target, shared_thing
 from kinematify.errors import InputError
-from kinematify.validation.geometry.scene import transformed
+from kinematify.geometry.scene import transformed
+from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.goal import Progress
     from kinematify.envs.reading import Reading
-    from kinematify.envs.thing import Target, Thing
     from kinematify.envs.worlds import World
+    from kinematify.robot.arrays import FloatArray
 
 _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
 _OPTIONS = ("joint", "qpos", "open_fraction")

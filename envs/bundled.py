@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.errors import InputError
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.request import from_category
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.request import from_category
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,12 +9,12 @@ import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
+from kinematify.envs.articulated_object import AUTO
 from kinematify.envs.base import OpeningEnv, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.mujoco_arm import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
 from kinematify.envs.robot_plan import env_robot, robot_plan
-from kinematify.envs.thing import AUTO
 from kinematify.envs.worlds import shared_target
 from kinematify.geometry.hull import convex_hull
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from gymnasium import spaces
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target
     from kinematify.envs.reading import Reading
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
-    from kinematify.envs.thing import Target
     from kinematify.envs.worlds import ArmWorld
+    from kinematify.robot.arrays import FloatArray
 
     Space = spaces.Space[NDArray[np.float32]]
 

@@ -12,9 +12,9 @@ from kinematify.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.settings import HandSettings, ObjectSettings, RandomizeSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 RANDOMIZED = ("damping", "friction", "mass", "pose", "color")
 """What `randomize` may name."""

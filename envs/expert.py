@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics
 from kinematify.envs.drawer_pull import JOINT, damped_step
 from kinematify.envs.mujoco_hand import POSITION
+from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.envs.drawer_pull import DrawerPullEnv
     from kinematify.envs.open_part import OpenPartEnv
+    from kinematify.robot.arrays import FloatArray
 
 _SPEED = 0.5  # of opening [ways/s]
 _REACH_SPEED = 0.6  # share of the fastest that actions allow

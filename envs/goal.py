@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 OPEN_BOUND, SPEED_BOUND, PLACE_BOUND = 2.0, 20.0, 10.0
 """Ends of observed shares [1], speeds [1/s] and places [m]; what goes beyond is clipped."""

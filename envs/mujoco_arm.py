@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from kinematify.config.validation import load_settings as load_limits
+from kinematify.envs.articulated_object import held_links
 from kinematify.envs.mujoco_hand import link_poses
 from kinematify.envs.mujoco_object import (
     PREFIX,
@@ -24,18 +26,16 @@ from kinematify.envs.mujoco_object import (
     world_spec,
 )
 from kinematify.envs.settings import load_settings
-from kinematify.envs.thing import held_links
-from kinematify.validation.settings import load_settings as load_limits
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.reading import Reading
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 ROBOT = "robot "
 """Before the names of the robot's links and joints."""

@@ -27,11 +27,11 @@ from kinematify.envs.settings import load_settings
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 FORCE, POSITION = "force", "position"
 _DAMPING_RATIO = 2.0  # of the hand's spring, times mass and frequency: neither swings nor creeps

@@ -8,23 +8,23 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from kinematify.config.validation import load_settings
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
 from kinematify.envs.reading import Reading
 from kinematify.validation.engines.configurations import GRAVITY
 from kinematify.validation.engines.mujoco_measure import measure
 from kinematify.validation.engines.mujoco_model import compiled, parse, with_allowances
 from kinematify.validation.engines.touching import touching
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
-    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.mujoco_model import Source
     from kinematify.validation.engines.touching import Touching
-    from kinematify.validation.prepare.prepared import Prepared
 
 PREFIX = "object "
 """Before the names of the object's links, joints and shapes."""

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from gymnasium import spaces
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.envs.goal import Goal
     from kinematify.envs.mujoco_hand import HandFacts
     from kinematify.envs.reading import Reading
     from kinematify.envs.worlds import HandWorld
+    from kinematify.robot.arrays import FloatArray
 
     Space = spaces.Space[NDArray[np.float32]]
 

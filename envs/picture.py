@@ -19,16 +19,16 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault
-from kinematify.geometry.camera import Camera
-from kinematify.geometry.picture import PictureScene, PosedMesh, render_scene
+from kinematify.render.camera import Camera
+from kinematify.render.picture import PictureScene, PosedMesh, render_scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.envs.settings import PictureSettings
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     Pixels = NDArray[np.uint8]
 

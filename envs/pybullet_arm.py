@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
-from kinematify.assembly.robot import rest_configuration
+from kinematify.envs.articulated_object import held_links
 from kinematify.envs.mujoco_arm import ROBOT, arm_facts
 from kinematify.envs.pybullet_object import PybulletObject, disconnected, pose_of, quaternion
-from kinematify.envs.thing import held_links
+from kinematify.robot.robot import rest_configuration
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw
     from kinematify.envs.reading import Reading
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 _BASE = -1
 _MARGIN = 1e-3  # Bullet inflates convex hulls by it [m]

@@ -15,11 +15,11 @@ from kinematify.envs.pybullet_object import PybulletObject, disconnected
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw
     from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 
 class PybulletHand:

@@ -13,19 +13,19 @@ import numpy as np
 import pybullet as bullet
 from scipy.spatial.transform import Rotation
 
-from kinematify.assembly.robot import forward_kinematics
+from kinematify.config.validation import load_settings
 from kinematify.envs.reading import Reading
+from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.engines.pybullet_model import load
 from kinematify.validation.engines.touching import deepest, touching
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 _BASE = -1
 _FOLLOWER_FORCE = 1e3  # holds a joint that follows another one [N m or N]

@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kinematify.config.validation import load_settings
 from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.envs.verdict import content_digest, keep, kept
 from kinematify.errors import InputError
-from kinematify.validation.engines.mechanism import Mechanism
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.settings import load_settings
-from kinematify.validation.task.kinematics import Arm
-from kinematify.validation.task.planning import plan_pull
-from kinematify.validation.task.robot import builtin_robot, user_robot
+from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.planning import plan_pull
+from kinematify.manipulation.robot import builtin_robot, user_robot
+from kinematify.robot.mechanism import Mechanism
+from kinematify.simulation.prepare import prepare
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.envs.thing import Thing
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.task.robot import TaskRobot
+    from kinematify.envs.articulated_object import Thing
+    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.prepared import Prepared
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -18,10 +18,10 @@ from kinematify.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.envs.goal import Progress
     from kinematify.envs.mujoco_hand import MujocoHand
     from kinematify.envs.reading import Reading
+    from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
 

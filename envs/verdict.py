@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from kinematify import __version__
 from kinematify.envs.bundled import FAMILY_PREFIX, PREFIX
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.validation.prepare.cache import cache_folder
+from kinematify.geometry.cut_cache import cache_folder
 
 if TYPE_CHECKING:
-    from kinematify.envs.thing import Thing
+    from kinematify.envs.articulated_object import Thing
 
 _CHECKS = "KV1*,KV2*,KV30*,KV31*,KV40*,KV50*"
 """File, declared physics, overlap at rest and along the motion, loading and moving in an engine."""

@@ -6,17 +6,17 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from kinematify.envs.articulated_object import find_target, load_thing
 from kinematify.envs.settings import load_settings
-from kinematify.envs.thing import find_target, load_thing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.envs.articulated_object import Target, Thing
     from kinematify.envs.dynamics import Draw
     from kinematify.envs.mujoco_hand import HandFacts
     from kinematify.envs.reading import Reading
-    from kinematify.envs.thing import Target, Thing
+    from kinematify.robot.arrays import FloatArray
 
 ENGINES = ("mujoco", "pybullet")
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import ALONG_X, at, barrel, fork, room
-from kinematify.sources.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
+from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel, fork, room
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
 from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, rotation, sliding, turning, varied
 
 if TYPE_CHECKING:

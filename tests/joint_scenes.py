@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearing import fit_bearings
-from kinematify.joints.decide import estimate_joints
-from kinematify.joints.scene import joint_scene, part_frames
-from kinematify.joints.workspace import PartCache
+from kinematify.joints.choice.decide import estimate_joints
+from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.measure.scene import joint_scene, part_frames
+from kinematify.joints.measure.workspace import PartCache
 from kinematify.topology.tree import KinematicTree
 from tests.objects import BUILDERS
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing_line import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.measure.scene import JointScene
     from tests.known import KnownObject
 
 CONFIG = load_config()

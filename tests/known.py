@@ -1,7 +1,7 @@
 """Objects whose joints are known.
 
 Lengths are metres, angles radians, coordinates the world frame with z up; every joint stands at zero in the
-configuration that the parts are given in. The solids are those of `kinematify.sources.procedural`.
+configuration that the parts are given in. The solids are those of `kinematify.generate.procedural`.
 """
 
 from __future__ import annotations
@@ -11,16 +11,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import Assembly, Part, read_only
+from kinematify.assembly.part import Assembly, Part
 from kinematify.joints.candidate import JointType
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.solids import Point
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import at, fork, room, stub
-from kinematify.sources.procedural.pieces.limbs import leg_solids
-from kinematify.sources.procedural.solids import bore, box, cylinder, off, rod, union
+from kinematify.generate.procedural.pieces.bearings import at, fork, room, stub
+from kinematify.generate.procedural.pieces.limbs import leg_solids
+from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
 from tests.known import KnownJoint, KnownObject, known_object, moved, rotation, sliding, turning, varied
 
 if TYPE_CHECKING:

@@ -74,7 +74,7 @@ def test_modules_behind_symlinks_are_seen() -> None:
     [
         ("kinematify.assembly.load", "from kinematify.contact.graph import ContactGraph"),
         ("kinematify.config", "import kinematify.assembly.part"),
-        ("kinematify.joints.cavl", "def f():\n    from kinematify.cli import main"),
+        ("kinematify.paper.cavl", "def f():\n    from kinematify.cli import main"),
         ("kinematify.contact.build", "if TYPE_CHECKING:\n    from kinematify.topology.tree import KinematicTree"),
         ("kinematify.validation.run", "from kinematify.topology.mcts import search"),
         ("kinematify.model.urdf", "from kinematify import infer"),

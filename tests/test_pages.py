@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kinematify.assembly.description import read_description
-from kinematify.nightly.compare import compare
-from kinematify.nightly.pages.night import night_page, problem_anchor
-from kinematify.nightly.pages.trends import trend_page
-from kinematify.nightly.record import Problem, Run
-from kinematify.nightly.settings import load_nightly
-from kinematify.nightly.store import Night, earlier_runs
+from kinematify.evaluation.nightly.compare import compare
+from kinematify.evaluation.nightly.pages.night import night_page, problem_anchor
+from kinematify.evaluation.nightly.pages.trends import trend_page
+from kinematify.evaluation.nightly.record import Problem, Run
+from kinematify.evaluation.nightly.settings import load_nightly
+from kinematify.evaluation.nightly.store import Night, earlier_runs
+from kinematify.robot.description import read_description
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.report import JointCurve, PairSummary, PairTable

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.contact_agreement import compare_contacts
 from kinematify.validation.engine_results import EngineResults
 from kinematify.validation.engines.configurations import GRAVITY
 from kinematify.validation.engines.loading import ENGINE_TITLES
-from kinematify.validation.prepare.prepared import load_prepared
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import DescribedJoint
     from kinematify.validation.engines.configurations import EnginePoses
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.engines.loading import ENGINE_TITLES
-from kinematify.validation.prepare.prepared import load_prepared
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.engine_results import EngineResults
     from kinematify.validation.engines.configurations import EnginePoses
     from kinematify.validation.stage import OpenCheck

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics, rigid_groups
+from kinematify.robot.read import read_without_geometry
+from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.validation.engines.configurations import agreement_configurations, read_poses
 from kinematify.validation.engines.loading import ENGINE_TITLES
-from kinematify.validation.read import read_without_geometry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.declared import DeclaredModel
+    from kinematify.config.validation import AgreementSettings
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredModel
     from kinematify.validation.engines.configurations import Configurations, EnginePoses
-    from kinematify.validation.settings import AgreementSettings
     from kinematify.validation.stage import OpenCheck, StageRequest
 
 EXACT = "geometry"

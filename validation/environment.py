@@ -9,7 +9,7 @@ from kinematify import __version__
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
 
 _PACKAGES = (
     "numpy", "scipy", "trimesh", "libigl", "python-fcl", "mujoco", "pybullet", "pin",

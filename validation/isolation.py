@@ -40,10 +40,10 @@ _VARIABLES = {
 _PRELOADED = (
     "kinematify.validation.isolation",
     "kinematify.validation.stage",
-    "kinematify.validation.settings",
-    "kinematify.validation.task.request",
+    "kinematify.config.validation",
+    "kinematify.manipulation.request",
     "kinematify.validation.asset.stage",
-    "kinematify.validation.prepare.stage",
+    "kinematify.simulation.prepare",
     "kinematify.validation.geometry.stage",
     "kinematify.validation.evidence.stage",
     "kinematify.validation.agreement",

@@ -29,7 +29,7 @@ def asset_stage() -> Stage:
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
     """Everything that moves the model, the longest first; engines that were not chosen are left out."""
     stages = [
-        Stage(name="prepare", function="kinematify.validation.prepare.stage:run", checks=()),
+        Stage(name="prepare", function="kinematify.simulation.prepare:run", checks=()),
         Stage(name="geometry", function="kinematify.validation.geometry.stage:run", checks=keys(geometry.CHECKS)),
         Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(evidence.CHECKS)),
     ]

@@ -12,6 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kinematify.config.validation import load_settings
+from kinematify.manipulation.request import Suspicion
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
@@ -28,21 +30,19 @@ from kinematify.validation.plan import (
 )
 from kinematify.validation.precheck.document import precheck
 from kinematify.validation.report import JointCurve, JointSummary, PairTable, ValidationReport
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.suppression import suppress
-from kinematify.validation.task.request import Suspicion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Sequence
 
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.manipulation.request import TaskRequest
     from kinematify.validation.catalogue import Check
     from kinematify.validation.isolation import StageEnd
     from kinematify.validation.plan import CheckKey
     from kinematify.validation.report import Summary
-    from kinematify.validation.settings import ValidationSettings
     from kinematify.validation.suppression import Suppression
-    from kinematify.validation.task.request import TaskRequest
 
     Progress = Callable[[str, float], None]
 

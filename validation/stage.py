@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.manipulation.request import Suspicion, TaskRequest
     from kinematify.validation.finding import Blame
     from kinematify.validation.report import Summary
-    from kinematify.validation.settings import ValidationSettings
-    from kinematify.validation.task.request import Suspicion, TaskRequest
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,8 @@ import zipfile
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from kinematify.assembly.mesh_paths import MESH_SUFFIXES
 from kinematify.errors import AssemblyError
+from kinematify.robot.mesh_paths import MESH_SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,16 +11,17 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from kinematify.assembly.names import part_names
-from kinematify.assembly.part import Assembly, Part, SetAside, used_vertices
-from kinematify.assembly.weld import welded
+from kinematify.assembly.part import Assembly, Part, SetAside
 from kinematify.errors import AssemblyError
+from kinematify.robot.arrays import used_vertices
+from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.mesh_file import RawMesh
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import AssemblyConfig
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mesh_file import RawMesh
 
 _PROBES = 200
 """Vertices of a set-aside mesh that are looked at to find the part nearest to it."""

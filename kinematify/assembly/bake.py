@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.mesh_file import RawMesh
-from kinematify.assembly.weld import welded
+from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import RigidGroup, RobotDescription
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import RigidGroup, RobotDescription
 
 _WELD = 1e-9
 """Vertices closer than this fraction of their mesh's diagonal are one: equal but for rounding."""

@@ -15,9 +15,11 @@ import numpy as np
 
 from kinematify.assembly.bake import baked
 from kinematify.assembly.erased_files import truth_path, write_parts
-from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Assembly, Part
-from kinematify.assembly.robot import (
+from kinematify.assembly.truth import GroundTruth, TrueJoint
+from kinematify.errors import DescriptionError
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import (
     RobotDescription,
     forward_kinematics,
     joint_values,
@@ -25,8 +27,6 @@ from kinematify.assembly.robot import (
     rigid_groups,
     rotation_about,
 )
-from kinematify.assembly.truth import GroundTruth, TrueJoint
-from kinematify.errors import DescriptionError
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
     from numpy.random import Generator
 
-    from kinematify.assembly.mesh_file import RawMesh
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint, RigidGroup
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.robot import DescribedJoint, RigidGroup
 
 __all__ = ["ErasedModel", "GroundTruth", "TrueJoint", "erase", "truth_path", "write_erased"]
 

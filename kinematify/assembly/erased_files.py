@@ -7,8 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.assembly.obj_file import write_obj
 from kinematify.errors import OutputError
+from kinematify.robot.obj_file import write_obj
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,13 +13,13 @@ import numpy as np
 from kinematify.assembly.archive import check_packed_mesh, unpack
 from kinematify.assembly.assemble import assemble, check_finite
 from kinematify.assembly.bake import baked
-from kinematify.assembly.description import forward_kinematics, read_description, rest_configuration, rigid_groups
-from kinematify.assembly.mesh_file import RawMesh, merged, read_meshes
-from kinematify.assembly.mesh_paths import GLTF_SUFFIXES
 from kinematify.assembly.names import natural_key
 from kinematify.assembly.pieces import connected_pieces, labelled_parts
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
+from kinematify.robot.description import forward_kinematics, read_description, rest_configuration, rigid_groups
+from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
+from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly

@@ -7,34 +7,18 @@ import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from kinematify.assembly.vectors import crossed, highest, lengths_of, lowest
+from kinematify.robot.arrays import read_only, used_vertices
+from kinematify.robot.vectors import crossed, highest, lengths_of, lowest
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    FloatArray = NDArray[np.float64]
-    IntArray = NDArray[np.int64]
-
-
-def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
-    """Return a C-contiguous copy of `array` that refuses to be written."""
-    copy: NDArray[Any] = np.array(array, dtype=dtype, order="C", copy=True)
-    copy.setflags(write=False)
-    return copy
-
-
-def used_vertices(faces: IntArray, n_vertices: int) -> NDArray[np.bool_]:
-    """Return which vertices a face uses, shape (V,); far quicker on millions of faces than sorting them."""
-    used = np.zeros(n_vertices, dtype=np.bool_)
-    used[faces.reshape(-1)] = True
-    return used
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.mesh_file import RawMesh, compacted
-from kinematify.assembly.weld import welded
 from kinematify.errors import AssemblyError
+from kinematify.robot.mesh_file import RawMesh, compacted
+from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import IntArray
+    from kinematify.robot.arrays import IntArray
 
 
 def labelled_parts(mesh: RawMesh, labels: Path) -> tuple[RawMesh, ...]:

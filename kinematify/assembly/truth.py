@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.part import read_only
-from kinematify.assembly.robot import Mimic
 from kinematify.errors import InputError
+from kinematify.robot.arrays import read_only
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Mimic
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 SCHEMA = 1
 """Number of the JSON layout; raised whenever a reader of the old one would go wrong."""

@@ -17,9 +17,9 @@ from kinematify.cli.table import format_table
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.regression import Regression
-    from kinematify.benchmark.run import BenchmarkReport, Variant
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.regression import Regression
+    from kinematify.evaluation.run import BenchmarkReport, Variant
 
 _FOUND_FAILURES = 1
 
@@ -143,9 +143,9 @@ def command(
     With --refine each object is inferred once and refined by every tier; the table says what that mends, what it costs
     and where it does harm. --perturb adds input with wrong tolerances, noise, faulty contacts, cut parts or gaps.
     """
-    from kinematify.benchmark.regression import find_regressions
-    from kinematify.benchmark.report import as_json, load_report, write_report
-    from kinematify.benchmark.run import BenchmarkRequest, run_benchmark
+    from kinematify.evaluation.regression import find_regressions
+    from kinematify.evaluation.report import as_json, load_report, write_report
+    from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
@@ -171,7 +171,7 @@ def command(
         report = run_benchmark(request, progress)
         written: tuple[Path, ...] = write_report(report, out, name=name, baseline=earlier)
         if shown is not None:
-            from kinematify.benchmark.errors import write_error_gallery
+            from kinematify.evaluation.errors import write_error_gallery
 
             page = write_error_gallery(report, request, out, name=f"{name}_errors", count=shown, progress=progress)
             written = (*written, page)
@@ -187,7 +187,7 @@ def command(
 
 def _inputs(given: str) -> tuple[str, ...]:
     """Clean meshes, and what is asked for of `--degrade`."""
-    from kinematify.benchmark.perturb import CLEAN, DEGRADED
+    from kinematify.evaluation.perturb import CLEAN, DEGRADED
 
     return (CLEAN,) if given == "none" else (CLEAN, *words_of(given, DEGRADED, "--degrade"))
 
@@ -208,8 +208,8 @@ def words_of(given: str, known: Sequence[str], option: str) -> tuple[str, ...]:
 
 
 def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple[str, ...]:
-    from kinematify.benchmark.datasets import find_objects
     from kinematify.errors import InputError
+    from kinematify.evaluation.datasets import find_objects
 
     if not patterns:
         return ()
@@ -225,7 +225,7 @@ def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple
 
 def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
     """Return one variant per configuration; `paper` stands for its ablations too, `default` if they are asked for."""
-    from kinematify.benchmark.run import DEFAULT_ABLATION, PAPER_VARIANTS, Variant
+    from kinematify.evaluation.run import DEFAULT_ABLATION, PAPER_VARIANTS, Variant
 
     several = {"paper": PAPER_VARIANTS, **({"default": DEFAULT_ABLATION} if ablation else {})}
     own = [Variant(label=Path(config).stem, config=config) for config in configs]
@@ -234,7 +234,7 @@ def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
 
 def _describe(report: BenchmarkReport) -> str:
     """Return the means per configuration and kind of object, the paper's below them."""
-    from kinematify.benchmark.paper import TABLE_I, mean_over_robots
+    from kinematify.evaluation.paper import TABLE_I, mean_over_robots
 
     rows = [
         _summary_row(key, [run for run in report.results if (run.variant, run.kind, run.input) == key])
@@ -258,8 +258,8 @@ def _describe(report: BenchmarkReport) -> str:
 
 
 def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
-    from kinematify.benchmark.perturb import CLEAN
-    from kinematify.benchmark.summary import summarise
+    from kinematify.evaluation.perturb import CLEAN
+    from kinematify.evaluation.summary import summarise
 
     summary = summarise(runs)
     columns = (("angle_deg", 1.0, 2), ("line_m", 1e3, 2), ("ted", 1.0, 2), ("root", 1.0, 2), ("types", 100.0, 1))

@@ -15,7 +15,7 @@ from kinematify.cli.table import format_table
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.benchmark.run import BenchmarkRequest
+    from kinematify.evaluation.run import BenchmarkRequest
 
 
 def measure_refinement(
@@ -27,10 +27,10 @@ def measure_refinement(
         InputError: There is no such data, object or condition.
         OutputError: The work folder or the report cannot be written.
     """
-    from kinematify.benchmark.perturb import CLEAN, PERTURBATIONS
-    from kinematify.benchmark.refining import run_refining_benchmark
-    from kinematify.benchmark.refining_report import TIER_HEADINGS, harmed, tier_rows, write_refining_report
-    from kinematify.benchmark.run import header_of
+    from kinematify.evaluation.perturb import CLEAN, PERTURBATIONS
+    from kinematify.evaluation.refining import run_refining_benchmark
+    from kinematify.evaluation.refining_report import TIER_HEADINGS, harmed, tier_rows, write_refining_report
+    from kinematify.evaluation.run import header_of
 
     wanted = words_of(tiers, TIERS, "--tiers")
     inputs = (CLEAN,) if perturb == "none" else (CLEAN, *words_of(perturb, PERTURBATIONS, "--perturb"))

@@ -43,8 +43,8 @@ def command(*, model: Path, out: Path, pose: str, seed: int, yaw: float, package
     Links joined by fixed joints become one part. Order and names of the parts are shuffled. OUT is an input of
     `kinematify infer`; the truth is written beside it as OUT.truth.json and is never read by `infer`.
     """
-    from kinematify.assembly.description import read_description
     from kinematify.assembly.erase import erase, write_erased
+    from kinematify.robot.description import read_description
 
     description = read_description(model, package_dirs=package_dirs)
     erased = erase(description, pose=pose, seed=seed, yaw_deg=yaw)

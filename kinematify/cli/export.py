@@ -69,8 +69,8 @@ def command(
     srdf: planning groups, end effector and named poses for MoveIt, and the pairs of links that it need not check, each
     with its reason: neighbours, in contact at rest, always or never in contact in sampled configurations.
     """
+    from kinematify.config.validation import load_settings
     from kinematify.formats.export import export
-    from kinematify.validation.settings import load_settings
 
     if form != "srdf" and (tool or gripper):
         raise click.UsageError("--tool and --gripper belong to --to srdf. Leave them out.")

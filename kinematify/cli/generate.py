@@ -119,7 +119,7 @@ def command(
     """
     from kinematify.cli.generation import Generation
     from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
-    from kinematify.sources.procedural.request import from_category, from_text
+    from kinematify.generate.procedural.request import from_category, from_text
 
     if listing:
         click.echo(_parameters(category) if category else _categories())
@@ -187,7 +187,7 @@ def _pairs(settings: Sequence[str]) -> dict[str, str]:
 
 
 def _categories() -> str:
-    from kinematify.sources.procedural.families import FAMILIES
+    from kinematify.generate.procedural.families import FAMILIES
 
     rows = [(family.name, family.title, ", ".join(p.name for p in family.parameters)) for family in FAMILIES.values()]
     table = format_table(("category", "what it is", "parameters"), rows)
@@ -198,8 +198,8 @@ def _categories() -> str:
 
 
 def _parameters(category: str) -> str:
-    from kinematify.sources.procedural.listing import PARAMETER_HEADINGS, parameter_rows
-    from kinematify.sources.procedural.request import find_family
+    from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
+    from kinematify.generate.procedural.request import find_family
 
     family = find_family(category)
     table = format_table(PARAMETER_HEADINGS, parameter_rows(family.all_parameters))
@@ -218,8 +218,8 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None) -> None:
 
 
 def _write_gallery(folder: Path) -> None:
+    from kinematify.generate.procedural.families import FAMILIES
     from kinematify.pipeline.gallery import write_gallery
-    from kinematify.sources.procedural.families import FAMILIES
 
     with progress_reporter() as progress:
         page = write_gallery(

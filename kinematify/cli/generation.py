@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.benchmark.metrics import score_object
-from kinematify.benchmark.prediction import prediction_of
 from kinematify.cli.infer import describe
 from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
 from kinematify.config import load_config
+from kinematify.evaluation.metrics import score_object
+from kinematify.evaluation.prediction import prediction_of
+from kinematify.generate.procedural.truth import ground_truth
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import PARTS_FOLDER, TRUTH_FOLDER, write_parts, write_truth
 from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
-from kinematify.sources.procedural.truth import ground_truth
 from kinematify.validation.finding import Severity
 from kinematify.validation.formats.picture import scene_of
 from kinematify.validation.isolation import start_server
@@ -28,11 +28,11 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.benchmark.metrics import ObjectScore
     from kinematify.cli.progress import Reporter
+    from kinematify.evaluation.metrics import ObjectScore
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.request import Request
     from kinematify.pipeline import Inference
-    from kinematify.sources.procedural.blueprint import Blueprint
-    from kinematify.sources.procedural.request import Request
     from kinematify.validation.report import ValidationReport
 
 _INTERRUPTED = 130

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 from kinematify.cli.table import format_table
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -16,9 +16,9 @@ from kinematify.cli.progress import progress_reporter
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.nightly.compare import Change
-    from kinematify.nightly.run import NightResult
-    from kinematify.nightly.settings import NightlySettings
+    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.run import NightResult
+    from kinematify.evaluation.nightly.settings import NightlySettings
 
 _FOUND_REGRESSIONS = 1
 _SHOWN = 20
@@ -80,7 +80,7 @@ def command(
     nights. A run that was killed at any point goes on where it stopped. Ends with 1 if quality became worse than in
     the night before or than in the accepted baseline; times are only reported.
     """
-    from kinematify.nightly.run import NightRequest, run_night
+    from kinematify.evaluation.nightly.run import NightRequest, run_night
 
     folder = out or Path("out/nightly-smoke" if smoke else "results/nightly")
     if accept is not None:
@@ -107,7 +107,7 @@ def command(
 
 
 def _accept(folder: Path, name: str) -> int:
-    from kinematify.nightly.store import accept, chosen, load_nights, locked
+    from kinematify.evaluation.nightly.store import accept, chosen, load_nights, locked
 
     with locked(folder):
         nights, _ = load_nights(folder)
@@ -117,7 +117,7 @@ def _accept(folder: Path, name: str) -> int:
 
 
 def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
-    from kinematify.nightly.settings import load_nightly
+    from kinematify.evaluation.nightly.settings import load_nightly
 
     settings = load_nightly(config)
     changes: dict[str, object] = {} if data is None else {"data": data}
@@ -127,8 +127,8 @@ def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
 
 
 def _matching(settings: NightlySettings, patterns: Sequence[str]) -> tuple[str, ...]:
-    from kinematify.benchmark.datasets import find_objects
     from kinematify.errors import InputError
+    from kinematify.evaluation.datasets import find_objects
 
     if not patterns:
         return ()
@@ -142,7 +142,7 @@ def _matching(settings: NightlySettings, patterns: Sequence[str]) -> tuple[str, 
 
 
 def _answer(result: NightResult) -> dict[str, object]:
-    from kinematify.nightly.compare import CHANGES
+    from kinematify.evaluation.nightly.compare import CHANGES
 
     night = result.night
     return {
@@ -169,7 +169,7 @@ def _described(result: NightResult) -> str:
 
 
 def _told(changes: Sequence[Change]) -> list[str]:
-    from kinematify.nightly.compare import Class
+    from kinematify.evaluation.nightly.compare import Class
 
     lines = []
     for kind in Class:

@@ -12,21 +12,21 @@ from kinematify.cli.generation import status_of, summary_of, validated, verdict_
 from kinematify.cli.infer import describe
 from kinematify.cli.verdict import say
 from kinematify.config import load_config
+from kinematify.generate.providers.command import CommandSource
+from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.prompt import check_prompt
+from kinematify.generate.providers.recorded import RecordingSource, ReplayedSource
+from kinematify.generate.providers.rodin.source import RodinSource
 from kinematify.model.output import check_output, write_model_folder
 from kinematify.pipeline import infer
 from kinematify.pipeline.record import write_inference_files
-from kinematify.sources.provided.command import CommandSource
-from kinematify.sources.provided.job import open_job
-from kinematify.sources.provided.prompt import check_prompt
-from kinematify.sources.provided.recorded import RecordingSource, ReplayedSource
-from kinematify.sources.provided.rodin.source import RodinSource
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.cli.progress import Reporter
+    from kinematify.generate.providers.source import Generated, PartSource
     from kinematify.pipeline import Inference
-    from kinematify.sources.provided.source import Generated, PartSource
     from kinematify.validation.report import ValidationReport
 
 _MADE, _INFERRED, _WRITTEN = 0.6, 0.8, 0.85  # shares of the time at which these are done

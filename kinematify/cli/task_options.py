@@ -13,7 +13,7 @@ from kinematify.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from kinematify.cli.report_files import ReportFiles
-    from kinematify.validation.task.request import TaskRequest
+    from kinematify.manipulation.request import TaskRequest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,8 +42,8 @@ class TaskOptions:
             return None
         if self.task == "pour" and (self.grasp or self.base):
             raise click.UsageError("--grasp and --base belong to --task pull. Leave them out.")
-        from kinematify.validation.task.request import TaskRequest
-        from kinematify.validation.task.robot import robot_of
+        from kinematify.manipulation.request import TaskRequest
+        from kinematify.manipulation.robot import robot_of
 
         request = TaskRequest(
             kind=self.task,

@@ -15,7 +15,7 @@ from kinematify.cli.report_files import ReportFiles
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
 
 
 @click.command(
@@ -206,8 +206,8 @@ def _engines(words: str) -> tuple[str, ...]:
 
 
 def _settings(config: str, *, budget: float | None, seed: int | None) -> ValidationSettings:
+    from kinematify.config.validation import load_settings
     from kinematify.errors import ConfigError
-    from kinematify.validation.settings import load_settings
 
     settings = load_settings(config)
     changes: dict[str, object] = {} if seed is None else {"seed": seed}

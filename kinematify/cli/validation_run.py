@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.cli.progress import Reporter
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.manipulation.request import TaskRequest
     from kinematify.validation.formats.picture import Drawing
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
-    from kinematify.validation.settings import ValidationSettings
     from kinematify.validation.suppression import Suppression
-    from kinematify.validation.task.request import TaskRequest
 
 PICTURES_AT_MOST = 12
 """With more models an HTML report shows none: it would take long to make and to load."""

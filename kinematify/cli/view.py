@@ -89,9 +89,9 @@ def command(
 
 
 def _scene(urdf: Path, package_dirs: Sequence[Path]) -> ViewScene:
+    from kinematify.config.validation import load_settings
     from kinematify.errors import InputError
-    from kinematify.validation.read import read_model
-    from kinematify.validation.settings import load_settings
+    from kinematify.robot.read import read_model
     from kinematify.view.scene import ViewScene
 
     if not urdf.is_file():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kinematify.config import StageConfig
-from kinematify.validation.task.plan_settings import PlanSettings
+from kinematify.config.planning import PlanSettings
 
 
 class GraspSettings(StageConfig):

@@ -13,18 +13,19 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.part import read_only
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples
 from kinematify.contact.symmetry import find_clusters
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import Assembly, FloatArray, IntArray
+    from kinematify.assembly.part import Assembly
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface, Samples
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 Pair = tuple[int, int]
 

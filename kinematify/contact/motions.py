@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 _START = 3.0  # times the distance that is asked for: principal axes of rough twins are some degrees off
 _ROUNDS = 10  # of matching nearest points; converged to a tenth of the spacing of the points

@@ -21,17 +21,17 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.assembly.vectors import lengths_of
 from kinematify.contact.build import near_pairs
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import SeamConfig
     from kinematify.geometry.surface import PartSurface
+    from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
 

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.assembly.part import Assembly
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface
+    from kinematify.robot.arrays import FloatArray
 
 _PROFILE_QUANTILES = np.linspace(0.02, 0.98, 9)
 _ROUGH = 1.5

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.benchmark.summary import CLOSE_ANGLE
+from kinematify.evaluation.summary import CLOSE_ANGLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.metrics import JointScore
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.metrics import JointScore
 
 CLOSE_LINE = 0.05
 """An axis line counts as found within this share of the object's diagonal."""

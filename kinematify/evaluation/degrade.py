@@ -14,9 +14,9 @@ import igl
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.assembly.weld import welded
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.geometry.surface import PartSurface
+from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -45,7 +45,7 @@ def voxels(resolution: int) -> Degrade:
 
     def remeshed(assembly: Assembly, rng: Generator) -> Assembly:
         # Exact signed distances come with torch, which takes seconds to import.
-        from kinematify.benchmark.voxels import voxel_remeshed  # noqa: PLC0415
+        from kinematify.evaluation.voxels import voxel_remeshed  # noqa: PLC0415
 
         seed = int(rng.integers(2**31))
         return with_parts(

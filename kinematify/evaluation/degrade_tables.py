@@ -6,14 +6,14 @@ from collections import defaultdict
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.perturb import CLEAN
-from kinematify.benchmark.summary import CLOSE_ANGLE, summarise
+from kinematify.evaluation.perturb import CLEAN
+from kinematify.evaluation.summary import CLOSE_ANGLE, summarise
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.metrics import JointScore
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.metrics import JointScore
 
 KINDS = {
     CLEAN: "meshes as they are",

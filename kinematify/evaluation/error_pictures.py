@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import rotation_about
-from kinematify.geometry.glyphs import sliding_arrow, turning_arrow
-from kinematify.geometry.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.model.scene import GLYPH_COLORS, camera_for
+from kinematify.render.glyphs import sliding_arrow, turning_arrow
+from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.config import PreviewConfig
+    from kinematify.robot.arrays import FloatArray
 
 _CHILD, _PARENT, _REST = np.array([0.95, 0.62, 0.16]), np.array([0.56, 0.68, 0.88]), np.array([0.84, 0.84, 0.85])
 _SIZE = (300, 260)  # [pixels] of a panel

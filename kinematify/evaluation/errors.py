@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.benchmark.axis_metrics import axis_angle
-from kinematify.benchmark.calibration import CLOSE_LINE, is_right
-from kinematify.benchmark.error_pictures import ShownJoint, draw_error
-from kinematify.benchmark.job import erased_model, shown_parts
-from kinematify.benchmark.perturb import CLEAN, perturbed
-from kinematify.benchmark.run import jobs_of
-from kinematify.benchmark.summary import CLOSE_ANGLE
 from kinematify.errors import OutputError
+from kinematify.evaluation.axis_metrics import axis_angle
+from kinematify.evaluation.calibration import CLOSE_LINE, is_right
+from kinematify.evaluation.error_pictures import ShownJoint, draw_error
+from kinematify.evaluation.job import erased_model, shown_parts
+from kinematify.evaluation.perturb import CLEAN, perturbed
+from kinematify.evaluation.run import jobs_of
+from kinematify.evaluation.summary import CLOSE_ANGLE
 from kinematify.pipeline import infer
 
 if TYPE_CHECKING:
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import TrueJoint
-    from kinematify.benchmark.job import Job, JobResult
-    from kinematify.benchmark.metrics import JointScore
-    from kinematify.benchmark.run import BenchmarkReport, BenchmarkRequest
+    from kinematify.evaluation.job import Job, JobResult
+    from kinematify.evaluation.metrics import JointScore
+    from kinematify.evaluation.run import BenchmarkReport, BenchmarkRequest
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
 

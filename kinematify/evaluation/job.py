@@ -13,21 +13,21 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Literal
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.benchmark.datasets import BenchObject, Condition
-from kinematify.benchmark.metrics import ObjectScore, score_object
-from kinematify.benchmark.perturb import CLEAN, perturbed, without_pieces
-from kinematify.benchmark.prediction import NOTHING_PREDICTED, prediction_of
 from kinematify.config import Config
+from kinematify.evaluation.datasets import BenchObject, Condition
+from kinematify.evaluation.metrics import ObjectScore, score_object
+from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
+from kinematify.evaluation.prediction import NOTHING_PREDICTED, prediction_of
+from kinematify.robot.description import read_description
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.assembly.erase import ErasedModel
-    from kinematify.benchmark.perturb import Perturbed
-    from kinematify.benchmark.prediction import Prediction
+    from kinematify.evaluation.perturb import Perturbed
+    from kinematify.evaluation.prediction import Prediction
     from kinematify.pipeline import Inference
 
 INFER = "kinematify.pipeline:infer"
@@ -47,7 +47,7 @@ class Job:
     config: Config
     infer: str = INFER
     input: str = CLEAN
-    """`CLEAN`, or one of `kinematify.benchmark.perturb.DEGRADED`."""
+    """`CLEAN`, or one of `kinematify.evaluation.perturb.DEGRADED`."""
 
     def key(self, code_version: str) -> str:
         """Name of the job's result: equal only where nothing that the result depends on has changed."""

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from kinematify.benchmark.job import JobResult
 from kinematify.errors import OutputError
+from kinematify.evaluation.job import JobResult
 
 if TYPE_CHECKING:
     from types import TracebackType

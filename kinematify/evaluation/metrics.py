@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.benchmark.axis_metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
-from kinematify.benchmark.tree_metrics import TreeDistance, parent_errors, root_of, tree_edit_distance, without_nodes
+from kinematify.evaluation.axis_metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
+from kinematify.evaluation.tree_metrics import TreeDistance, parent_errors, root_of, tree_edit_distance, without_nodes
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.assembly.truth import GroundTruth, TrueJoint
-    from kinematify.benchmark.prediction import PredictedJoint, Prediction
+    from kinematify.evaluation.prediction import PredictedJoint, Prediction
+    from kinematify.robot.arrays import FloatArray
 
 MISSING_ANGLE = 90.0
 """What a joint without a predicted axis counts [deg]."""

@@ -13,9 +13,9 @@ import numpy as np
 from trimesh.intersections import slice_faces_plane
 
 from kinematify.assembly.assemble import simplified
-from kinematify.benchmark.degrade import DEGRADATIONS, with_parts
-from kinematify.benchmark.prediction import Prediction
 from kinematify.contact.build import build_contact_graph
+from kinematify.evaluation.degrade import DEGRADATIONS, with_parts
+from kinematify.evaluation.prediction import Prediction
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 
     from numpy.random import Generator
 
-    from kinematify.assembly.part import Assembly, FloatArray, Part
-    from kinematify.benchmark.degrade import Degrade
+    from kinematify.assembly.part import Assembly, Part
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
+    from kinematify.evaluation.degrade import Degrade
+    from kinematify.robot.arrays import FloatArray
 
 CLEAN = "clean"
 NOISE = 0.02

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.joint_type import JointType
-    from kinematify.assembly.part import FloatArray
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.joint_type import JointType
     from kinematify.topology.tree import KinematicTree
 
 

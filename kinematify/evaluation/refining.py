@@ -14,25 +14,25 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.benchmark.datasets import BenchObject, Condition
-from kinematify.benchmark.ledger import Ledger, code_version
-from kinematify.benchmark.metrics import ObjectScore, score_object
-from kinematify.benchmark.perturb import CLEAN, perturbed, without_pieces
-from kinematify.benchmark.prediction import prediction_of
-from kinematify.benchmark.run import selected_conditions, selected_objects
 from kinematify.config import Config
+from kinematify.evaluation.datasets import BenchObject, Condition
+from kinematify.evaluation.ledger import Ledger, code_version
+from kinematify.evaluation.metrics import ObjectScore, score_object
+from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
+from kinematify.evaluation.prediction import prediction_of
+from kinematify.evaluation.run import selected_conditions, selected_objects
 from kinematify.pipeline import infer
 from kinematify.refinement import refine
+from kinematify.robot.description import read_description
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from kinematify.assembly.erase import ErasedModel
-    from kinematify.benchmark.perturb import Perturbed
-    from kinematify.benchmark.run import BenchmarkRequest
+    from kinematify.evaluation.perturb import Perturbed
+    from kinematify.evaluation.run import BenchmarkRequest
     from kinematify.pipeline import Inference
 
 OFF = "no feedback"

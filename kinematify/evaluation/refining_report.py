@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
-from kinematify.benchmark.degrade import GAP
-from kinematify.benchmark.perturb import CLEAN, MISSING, NOISE, SPURIOUS
-from kinematify.benchmark.refining import RefiningResult
 from kinematify.errors import InputError, OutputError
+from kinematify.evaluation.degrade import GAP
+from kinematify.evaluation.perturb import CLEAN, MISSING, NOISE, SPURIOUS
+from kinematify.evaluation.refining import RefiningResult
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from kinematify.benchmark.metrics import JointScore
-    from kinematify.benchmark.refining import TierResult
+    from kinematify.evaluation.metrics import JointScore
+    from kinematify.evaluation.refining import TierResult
 
 SCHEMA = 1
 WRONG_DEG = 10.0

@@ -6,11 +6,11 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.summary import Summary, summarise
+from kinematify.evaluation.summary import Summary, summarise
 
 if TYPE_CHECKING:
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.run import BenchmarkReport
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.run import BenchmarkReport
 
     Group = tuple[list[JobResult], list[JobResult]]
 

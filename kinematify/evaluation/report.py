@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from kinematify.benchmark.job import JobResult
-from kinematify.benchmark.run import BenchmarkReport
-from kinematify.benchmark.summary import summarise, summarise_types
-from kinematify.benchmark.tables import markdown
 from kinematify.errors import InputError, OutputError
+from kinematify.evaluation.job import JobResult
+from kinematify.evaluation.run import BenchmarkReport
+from kinematify.evaluation.summary import summarise, summarise_types
+from kinematify.evaluation.tables import markdown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

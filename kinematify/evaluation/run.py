@@ -11,13 +11,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from kinematify.benchmark.datasets import CONDITIONS, BenchObject, Condition, find_objects
-from kinematify.benchmark.job import INFER, Job, JobResult
-from kinematify.benchmark.ledger import RESULT, Ledger, code_version
-from kinematify.benchmark.perturb import CLEAN
-from kinematify.benchmark.workers import run_jobs
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects
+from kinematify.evaluation.job import INFER, Job, JobResult
+from kinematify.evaluation.ledger import RESULT, Ledger, code_version
+from kinematify.evaluation.perturb import CLEAN
+from kinematify.evaluation.workers import run_jobs
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class BenchmarkRequest:
     conditions: tuple[str, ...] = tuple(condition.name for condition in CONDITIONS)
     """Names of conditions."""
     inputs: tuple[str, ...] = (CLEAN,)
-    """What is done to the meshes: `CLEAN` and some of `kinematify.benchmark.perturb.DEGRADED`."""
+    """What is done to the meshes: `CLEAN` and some of `kinematify.evaluation.perturb.DEGRADED`."""
     only: tuple[str, ...] = ()
     """Names of objects or categories or kinds; empty for all."""
     work_folder: Path = Path(".kinematify-bench")

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import Config
     from kinematify.pipeline import Inference
+    from kinematify.robot.arrays import FloatArray
 
     Infer = Callable[..., Inference]
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from statistics import fmean, median
 from typing import TYPE_CHECKING
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.metrics import JointScore, ObjectScore
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.metrics import JointScore, ObjectScore
 
     Numbers = Mapping[str, float | None]
 

@@ -8,9 +8,9 @@ from itertools import chain
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.degrade_tables import degradation_sections, degraded
-from kinematify.benchmark.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
-from kinematify.benchmark.summary import (
+from kinematify.evaluation.degrade_tables import degradation_sections, degraded
+from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.summary import (
     CLOSE_ANGLE,
     Summary,
     condition_group,
@@ -22,9 +22,9 @@ from kinematify.benchmark.summary import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.metrics import JointScore
-    from kinematify.benchmark.run import BenchmarkReport
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.metrics import JointScore
+    from kinematify.evaluation.run import BenchmarkReport
 
 READING = """\
 Every number is the mean over an object's joints, then over its conditions, then over objects. A joint whose

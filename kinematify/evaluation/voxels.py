@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 import igl
 import numpy as np
 
-from kinematify.geometry.sdf_grid import exact_distance, exact_signed_distance
+from kinematify.paper.sdf_grid import exact_distance, exact_signed_distance
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray, Part
+    from kinematify.assembly.part import Part
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _DENSITY = 12  # samples per square of a cell's side: next to no cell that the surface crosses is missed
 _MOST_SAMPLES = 4_000_000

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from multiprocessing import connection, forkserver
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.job import Failure, run_job, unscored
+from kinematify.evaluation.job import Failure, run_job, unscored
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
-    from kinematify.benchmark.job import Job, JobResult
+    from kinematify.evaluation.job import Job, JobResult
 
 _THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -67,8 +67,8 @@ def run_jobs(jobs: Sequence[tuple[str, Job]], *, workers: int, timeout: float) -
 def _context(*, cavl: bool) -> multiprocessing.context.ForkServerContext:
     """Start the server that workers are forked from: the heavy imports are paid once, one thread per library."""
     context = multiprocessing.get_context("forkserver")
-    torch_too = ["kinematify.joints.paper"] if cavl else []
-    context.set_forkserver_preload(["kinematify.pipeline", "kinematify.benchmark.job", *torch_too])
+    torch_too = ["kinematify.paper.joints"] if cavl else []
+    context.set_forkserver_preload(["kinematify.pipeline", "kinematify.evaluation.job", *torch_too])
     before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
     os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
     try:

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.description import parse_description
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import read_scene
-from kinematify.validation.prepare.decompose import decomposed
-from kinematify.validation.prepare.masses import prepared_inertials
-from kinematify.validation.read import read_model
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.scene import read_scene
+from kinematify.model.collision_pieces import decomposed
+from kinematify.model.masses import prepared_inertials
+from kinematify.robot.description import parse_description
+from kinematify.robot.read import read_model
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.declared import DeclaredJoint, DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.validation.prepare.decompose import Pieces
-    from kinematify.validation.prepare.masses import PreparedInertial
-    from kinematify.validation.settings import PrepareSettings, ValidationSettings
+    from kinematify.config.validation import PrepareSettings, ValidationSettings
+    from kinematify.model.collision_pieces import Pieces
+    from kinematify.model.masses import PreparedInertial
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredJoint, DeclaredLink, DeclaredModel, DeclaredShape
 
 GREY = (0.7, 0.7, 0.7, 1.0)
 MESH = "mesh"

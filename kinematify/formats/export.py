@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError, OutputError
 from kinematify.formats.content import read_content
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
 
 _WRITERS = {
     "mjcf": ("kinematify.formats.mjcf", "write_mjcf"),
@@ -22,7 +22,7 @@ _WRITERS = {
     "sdf": ("kinematify.formats.sdf_format", "write_sdf"),
     "urdf": ("kinematify.formats.urdf_format", "write_urdf"),
     "glb": ("kinematify.formats.glb", "write_glb"),
-    "srdf": ("kinematify.validation.task.srdf", "write_srdf"),
+    "srdf": ("kinematify.manipulation.srdf", "write_srdf"),
 }
 FORMATS = tuple(_WRITERS)
 

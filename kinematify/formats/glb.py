@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import trimesh
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.robot import DescribedJoint
     from kinematify.formats.content import Content, Shape
+    from kinematify.robot.robot import DescribedJoint
 
 _OUTSIDE = "y up"  # node above the root link, which may well be named "world"
 _UP = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])

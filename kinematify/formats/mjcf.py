@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.formats.content import body_name, told_renaming
 from kinematify.formats.mesh_files import MeshFiles
-from kinematify.formats.rotation import quaternion
-from kinematify.validation.prepare.document import numbers
+from kinematify.model.urdf_elements import numbers
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.rotation import quaternion
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.formats.content import Body, Content, Shape
-    from kinematify.validation.declared import DeclaredJoint
+    from kinematify.robot.declared import DeclaredJoint
 
 _SEEN, _COLLIDES = "2", "3"  # MuJoCo's viewer shows groups 0 to 2
 

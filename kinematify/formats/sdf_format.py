@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.formats.content import WORLD, body_name, told_renaming
 from kinematify.formats.mesh_files import MeshFiles
-from kinematify.validation.prepare.document import numbers, roll_pitch_yaw
+from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.formats.content import Body, Content, Shape
-    from kinematify.validation.declared import DeclaredJoint
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredJoint
 
 _VERSION = "1.11"  # the first that knows followers
 _ENDLESS = 1e16  # the value that SDFormat takes for no limit

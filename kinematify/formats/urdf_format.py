@@ -8,7 +8,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.formats.mesh_files import MeshFiles
-from kinematify.validation.prepare.document import add_joint, add_link, numbers, roll_pitch_yaw
+from kinematify.model.urdf_elements import add_joint, add_link, numbers, roll_pitch_yaw
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics
 from kinematify.errors import OutputError
-from kinematify.formats.rotation import from_x, quaternion
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.rotation import from_x, quaternion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.formats.content import Body, Content, Shape
-    from kinematify.validation.declared import DeclaredJoint
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredJoint
 
 SUFFIXES = (".usd", ".usda", ".usdc")
 

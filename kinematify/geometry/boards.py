@@ -13,14 +13,14 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.vectors import crossed, lengths_of
-from kinematify.validation.prepare.cut import Chunk, cut_worst_first, split
+from kinematify.geometry.cut import Chunk, cut_worst_first, split
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.prepare.cut import Concave
+    from kinematify.geometry.cut import Concave
+    from kinematify.robot.arrays import FloatArray
 
 _ALONG = 0.99
 """Cosine from which a face counts as lying across an axis."""

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 _KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])

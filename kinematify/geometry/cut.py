@@ -17,13 +17,13 @@ import fast_simplification
 import igl
 import numpy as np
 
-from kinematify.assembly.vectors import crossed, lengths_of
-from kinematify.validation.convex import ConvexPiece, convex_piece, outermost, surface_points
+from kinematify.geometry.convex import ConvexPiece, convex_piece, outermost, surface_points
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _CORNERS = 48
 """Vertices of a hull while cuts are compared, at most."""

@@ -12,14 +12,14 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from kinematify.validation.convex import ConvexPiece
-from kinematify.validation.prepare.boards import convex_chunks
+from kinematify.geometry.boards import convex_chunks
+from kinematify.geometry.convex import ConvexPiece
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.prepare.cut import Concave
-    from kinematify.validation.settings import PrepareSettings
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.geometry.cut import Concave
 
 _VERSION = b"3"
 """Changes whenever the same input would be cut differently."""

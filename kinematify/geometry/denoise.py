@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import dots, lengths_of
+from kinematify.robot.vectors import dots, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 ROUGH = 0.6
 """A surface is noisy where so much of its area belongs to faces that bend both ways; random bends give 3/4."""

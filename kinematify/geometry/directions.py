@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 _MOST = 4  # flat directions of a part; a box has three
 _LEAST_SHARE = 0.04  # of the area; the end of a motor housing has about a tenth

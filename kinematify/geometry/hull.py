@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from kinematify.assembly.vectors import crossed
+from kinematify.robot.vectors import crossed
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _PRECISION = 1e-6  # axes between which extents differ by less than this fraction are not told apart
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
-from kinematify.assembly.vectors import lengths_of
-from kinematify.validation.geometry.scene import inverse, transformed
-from kinematify.validation.geometry.solid import all_three
+from kinematify.geometry.scene import inverse, transformed
+from kinematify.geometry.solid import all_three
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.geometry.scene import Pair, Scene
-    from kinematify.validation.geometry.solid import Solid
+    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.geometry.solid import Solid
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
 

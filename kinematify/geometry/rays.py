@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _OFFSET = 2e-5  # of the scene's size: rays that start on a surface must not meet it again in float32
 _WELD = 1e-6  # of the scene's size: corners closer than this are one vertex for smooth shading

@@ -7,13 +7,13 @@ from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kinematify.validation.geometry.scene import relative
+from kinematify.geometry.scene import relative
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.validation.geometry.overlap import Overlap
-    from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.scene import Pair, Scene
 
 
 class Reason(StrEnum):

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
 from kinematify.errors import AssemblyError
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray, Part
+    from kinematify.assembly.part import Part
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 # Generator of the two-dimensional Kronecker sequence of lowest discrepancy (powers of the plastic number's inverse).
 _KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])

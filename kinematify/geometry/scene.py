@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import rigid_groups
-from kinematify.validation.engines.mechanism import Mechanism
-from kinematify.validation.geometry.solid import Solid
+from kinematify.geometry.solid import Solid
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.robot import rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import DescribedJoint, RigidGroup
-    from kinematify.validation.declared import DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.validation.engines.mechanism import Travel
-    from kinematify.validation.settings import GeometrySettings
+    from kinematify.config.validation import GeometrySettings
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.robot.mechanism import Travel
+    from kinematify.robot.robot import DescribedJoint, RigidGroup
 
 Pair = tuple[int, int]
 """Two bodies, the smaller index first."""

@@ -15,12 +15,12 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
 

@@ -14,16 +14,16 @@ import fcl
 import igl
 import numpy as np
 
-from kinematify.assembly.vectors import crossed, highest, lengths_of, lowest
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
-from kinematify.validation.geometry.shells import shells_of
+from kinematify.geometry.shells import shells_of
+from kinematify.robot.vectors import crossed, highest, lengths_of, lowest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.geometry.shells import Shells
+    from kinematify.geometry.shells import Shells
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
 

@@ -18,7 +18,6 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.vectors import crossed, lengths_of
 from kinematify.geometry.denoise import (
     FACET_ROUNDS,
     NOISE_ROUNDS,
@@ -30,14 +29,16 @@ from kinematify.geometry.denoise import (
 from kinematify.geometry.directions import main_directions
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.geometry.sampling import curve_order, place_samples
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from typing import Any
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import Assembly, FloatArray, IntArray, Part
+    from kinematify.assembly.part import Assembly, Part
     from kinematify.config import SurfaceConfig
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 FACETED = 3.4
 """Roughness [deg] from which normals are averaged over the faces around."""

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import lengths_of
-from kinematify.validation.geometry.scene import box_corners, relative
+from kinematify.geometry.scene import box_corners, relative
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.engines.mechanism import Travel
-    from kinematify.validation.geometry.overlap import Overlap
-    from kinematify.validation.geometry.rest import Allowance
-    from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.mechanism import Travel
 
     BoolArray = NDArray[np.bool_]
 

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.geometry.scene import relative
-from kinematify.validation.geometry.sobol import sobol
+from kinematify.geometry.scene import relative
+from kinematify.geometry.sobol import sobol
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.geometry.overlap import Overlap
-    from kinematify.validation.geometry.rest import Allowance
-    from kinematify.validation.geometry.scene import Pair, Scene
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
 

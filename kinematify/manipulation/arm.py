@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.robot import rotation_about
-from kinematify.validation.prepare.document import numbers
+from kinematify.model.urdf_elements import numbers
+from kinematify.robot.robot import rotation_about
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 Triple = tuple[float, float, float]
 

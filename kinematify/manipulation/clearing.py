@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.sweep import Sweeper
-from kinematify.validation.task.grasp import opening_sign
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.sweep import Sweeper
+from kinematify.manipulation.grasp import opening_sign
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.validation.engines.mechanism import Travel
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.task.plan_settings import PlanSettings
+    from kinematify.config.planning import PlanSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.mechanism import Travel
 
 
 @dataclass(frozen=True, kw_only=True)

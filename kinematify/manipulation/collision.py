@@ -14,20 +14,20 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import rigid_groups
-from kinematify.validation.convex import convex_piece
-from kinematify.validation.geometry.scene import judged_shapes
-from kinematify.validation.task.grasp import moved_bodies
+from kinematify.geometry.convex import convex_piece
+from kinematify.geometry.scene import judged_shapes
+from kinematify.manipulation.grasp import moved_bodies
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.declared import DeclaredModel, DeclaredShape
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.task.kinematics import Arm
-    from kinematify.validation.task.plan_settings import PlanSettings
+    from kinematify.config.planning import PlanSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.manipulation.kinematics import Arm
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredModel, DeclaredShape
 
 FLOOR, COLUMN = "the floor", "the column"
 _FAR = 50.0  # half of the floor's extent [m]

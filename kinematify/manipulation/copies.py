@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.description import parse_description
-from kinematify.assembly.urdf_geometry import geometry_source
-from kinematify.validation.prepare.document import numbers
-from kinematify.validation.read import read_parsed
+from kinematify.model.urdf_elements import numbers
+from kinematify.robot.description import parse_description
+from kinematify.robot.read import read_parsed
+from kinematify.robot.urdf_geometry import geometry_source
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.validation.declared import DeclaredModel
+    from kinematify.robot.declared import DeclaredModel
 
 _LENGTHS = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
 

@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import rigid_groups
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import rigid_groups
+from kinematify.simulation.prepare import prepare
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import RobotDescription
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import PrepareSettings
-    from kinematify.validation.task.motion import Motion, Reference
-    from kinematify.validation.task.settings import ExecutionSettings
+    from kinematify.config.task import ExecutionSettings
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.manipulation.motion import Motion, Reference
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import RobotDescription
+    from kinematify.simulation.prepared import Prepared
 
 
 class Hold(StrEnum):

@@ -9,26 +9,26 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import joint_values, rest_configuration
+from kinematify.manipulation.execute import Execution, Frame, Hold, Log, judged
+from kinematify.manipulation.grip import grip_piece
+from kinematify.manipulation.motion import timed
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.validation.engines.configurations import GRAVITY
-from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.engines.mujoco_model import parse
-from kinematify.validation.task.execute import Execution, Frame, Hold, Log, judged
-from kinematify.validation.task.grip import grip_piece
-from kinematify.validation.task.motion import timed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.task.execute import Loaded
-    from kinematify.validation.task.motion import Reference
-    from kinematify.validation.task.settings import ExecutionSettings
+    from kinematify.config.task import ExecutionSettings
+    from kinematify.manipulation.execute import Loaded
+    from kinematify.manipulation.motion import Reference
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.simulation.prepared import Prepared
 
     BoolArray = NDArray[np.bool_]
 

@@ -11,19 +11,19 @@ import numpy as np
 import pybullet as bullet
 from scipy.spatial.transform import Rotation
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import joint_values, rest_configuration
+from kinematify.manipulation.execute import Execution, Hold, Log, judged
+from kinematify.manipulation.motion import timed
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.validation.engines.configurations import GRAVITY
-from kinematify.validation.task.execute import Execution, Hold, Log, judged
-from kinematify.validation.task.motion import timed
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.task.execute import Loaded
-    from kinematify.validation.task.motion import Reference
-    from kinematify.validation.task.settings import ExecutionSettings
+    from kinematify.config.task import ExecutionSettings
+    from kinematify.manipulation.execute import Loaded
+    from kinematify.manipulation.motion import Reference
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.simulation.prepared import Prepared
 
 _MARGIN = 1e-3  # Bullet inflates convex hulls by it [m]
 _STRONG = 1e5  # holds a joint where it is [N m or N]

@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from kinematify.assembly.robot import forward_kinematics, rigid_groups
 from kinematify.config import load_config
-from kinematify.geometry.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.geometry.scene import transformed
 from kinematify.model.scene import camera_for
-from kinematify.validation.geometry.scene import transformed
+from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.robot.robot import forward_kinematics, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import RobotDescription
     from kinematify.config import PreviewConfig
-    from kinematify.geometry.camera import Camera
-    from kinematify.validation.task.execute import Execution, Frame, Loaded
-    from kinematify.validation.task.settings import FilmSettings
+    from kinematify.config.task import FilmSettings
+    from kinematify.manipulation.execute import Execution, Frame, Loaded
+    from kinematify.render.camera import Camera
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import RobotDescription
 
 _ARM, _HAND = np.array([0.80, 0.83, 0.88]), np.array([0.96, 0.58, 0.20])
 _HELD, _OTHERS, _CARCASS = np.array([0.16, 0.62, 0.56]), np.array([0.62, 0.72, 0.80]), np.array([0.86, 0.80, 0.71])

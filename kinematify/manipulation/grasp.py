@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 import fcl
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics
 from kinematify.errors import InputError
-from kinematify.validation.task.grasp_search import GraspSearch, Tally
+from kinematify.manipulation.grasp_search import GraspSearch, Tally
+from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.engines.mechanism import Travel
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.task.grasp_search import Candidates
-    from kinematify.validation.task.settings import GraspSettings
+    from kinematify.config.task import GraspSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.manipulation.grasp_search import Candidates
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Travel
 
     BoolArray = NDArray[np.bool_]
 

@@ -14,19 +14,19 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.assembly.robot import rotation_about
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
-from kinematify.validation.geometry.scene import transformed
+from kinematify.geometry.scene import transformed
+from kinematify.robot.robot import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.task.settings import GraspSettings
+    from kinematify.config.task import GraspSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
 

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics, rigid_groups
 from kinematify.geometry.hull import convex_hull, thickened
-from kinematify.validation.geometry.scene import transformed
+from kinematify.geometry.scene import transformed
+from kinematify.robot.robot import forward_kinematics, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.task.grasp import Grasp
-    from kinematify.validation.task.settings import ExecutionSettings
+    from kinematify.config.task import ExecutionSettings
+    from kinematify.manipulation.grasp import Grasp
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredModel
 
 _THIN = 1e-3  # sheets are made so thick [m]
 

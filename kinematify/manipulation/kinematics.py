@@ -11,13 +11,13 @@ from lxml import etree
 from scipy.spatial import KDTree
 from scipy.stats import qmc
 
-from kinematify.assembly.description import parse_description
-from kinematify.validation.read import read_model
+from kinematify.robot.description import parse_description
+from kinematify.robot.read import read_model
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.task.plan_settings import PlanSettings
-    from kinematify.validation.task.robot import TaskRobot
+    from kinematify.config.planning import PlanSettings
+    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.robot.arrays import FloatArray
 
 _BATCH = 14  # two to this power configurations stand for what the arm can reach
 

@@ -18,9 +18,9 @@ from ompl import util as ou
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.task.place import Place
-    from kinematify.validation.task.pull import Puller
+    from kinematify.manipulation.place import Place
+    from kinematify.manipulation.pull import Puller
+    from kinematify.robot.arrays import FloatArray
 
 _HALF_METRES = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
 _DELTA = 1e-4  # of the share, for its derivative

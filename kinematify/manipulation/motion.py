@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.task.grasp import Grasp
-    from kinematify.validation.task.robot import TaskRobot
-    from kinematify.validation.task.settings import ExecutionSettings
+    from kinematify.config.task import ExecutionSettings
+    from kinematify.manipulation.grasp import Grasp
+    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

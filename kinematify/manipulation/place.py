@@ -12,19 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, rest_configuration
-from kinematify.validation.geometry.scene import transformed
-from kinematify.validation.task.grasp import moved_bodies
+from kinematify.geometry.scene import transformed
+from kinematify.manipulation.grasp import moved_bodies
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics, rest_configuration
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.task.grasp import Grasp
-    from kinematify.validation.task.kinematics import Arm
-    from kinematify.validation.task.plan_settings import PlanSettings
+    from kinematify.config.planning import PlanSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.manipulation.grasp import Grasp
+    from kinematify.manipulation.kinematics import Arm
+    from kinematify.robot.arrays import FloatArray
 
 _FLIP = np.diag([-1.0, -1.0, 1.0, 1.0])  # half a turn about the approach direction holds as well
 _GRASP_RANK, _PLACE_RANK = 0.01, 0.02  # dearness of one more try with the same grasp, or the same place [m]

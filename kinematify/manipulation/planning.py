@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.task.clearing import Clearing, Freedom, clear_way, pull_end
-from kinematify.validation.task.collision import CollisionWorld
-from kinematify.validation.task.grasp import moved_bodies, search_grasps
-from kinematify.validation.task.place import Places, object_box, object_motion
-from kinematify.validation.task.pull import ITSELF, Pull, Puller, Stop
-from kinematify.validation.task.reach import plan_reach
+from kinematify.manipulation.clearing import Clearing, Freedom, clear_way, pull_end
+from kinematify.manipulation.collision import CollisionWorld
+from kinematify.manipulation.grasp import moved_bodies, search_grasps
+from kinematify.manipulation.place import Places, object_box, object_motion
+from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
+from kinematify.manipulation.reach import plan_reach
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.task.grasp import GraspReport
-    from kinematify.validation.task.kinematics import Arm
-    from kinematify.validation.task.place import Place
-    from kinematify.validation.task.plan_settings import PlanSettings
-    from kinematify.validation.task.settings import TaskSettings
+    from kinematify.config.planning import PlanSettings
+    from kinematify.config.task import TaskSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.manipulation.grasp import GraspReport
+    from kinematify.manipulation.kinematics import Arm
+    from kinematify.manipulation.place import Place
+    from kinematify.robot.arrays import FloatArray
 
 
 class Failure(StrEnum):

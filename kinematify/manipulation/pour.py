@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.scene import read_scene, relative
-from kinematify.validation.read import read_model
-from kinematify.validation.task.collision import CollisionWorld
-from kinematify.validation.task.grasp import moved_bodies, search_grasps
-from kinematify.validation.task.motion import Motion
-from kinematify.validation.task.place import Places, object_box
-from kinematify.validation.task.pour_scene import CARRY, LIFT, TILT, pour_motion, write_pour
-from kinematify.validation.task.pull import Pull, Puller
-from kinematify.validation.task.reach import plan_reach
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.scene import read_scene, relative
+from kinematify.manipulation.collision import CollisionWorld
+from kinematify.manipulation.grasp import moved_bodies, search_grasps
+from kinematify.manipulation.motion import Motion
+from kinematify.manipulation.place import Places, object_box
+from kinematify.manipulation.pour_scene import CARRY, LIFT, TILT, pour_motion, write_pour
+from kinematify.manipulation.pull import Pull, Puller
+from kinematify.manipulation.reach import plan_reach
+from kinematify.robot.read import read_model
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.settings import ValidationSettings
-    from kinematify.validation.task.kinematics import Arm
-    from kinematify.validation.task.place import Place
-    from kinematify.validation.task.pour_scene import Pour, Vessel
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.manipulation.kinematics import Arm
+    from kinematify.manipulation.place import Place
+    from kinematify.manipulation.pour_scene import Pour, Vessel
+    from kinematify.robot.arrays import FloatArray
 
 GRASP, REACH, PATH, CARRIED = "grasp", "reach", "path", "carried"
 """How far a plan got that fails: no hold, no place, no way, or not all the way."""

@@ -12,27 +12,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.description import parse_description
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, joint_values, rest_configuration, rotation_about
 from kinematify.errors import InputError
-from kinematify.validation.geometry.scene import read_scene, visible_shapes
-from kinematify.validation.prepare.document import numbers, roll_pitch_yaw
-from kinematify.validation.read import read_model
-from kinematify.validation.task.copies import write_scaled
-from kinematify.validation.task.place import ObjectMotion, object_box
-from kinematify.validation.task.sizes import sizing
+from kinematify.geometry.scene import read_scene, visible_shapes
+from kinematify.manipulation.copies import write_scaled
+from kinematify.manipulation.place import ObjectMotion, object_box
+from kinematify.manipulation.sizes import sizing
+from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
+from kinematify.robot.description import parse_description
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rotation_about
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.settings import ValidationSettings
-    from kinematify.validation.task.settings import PourSettings
+    from kinematify.config.task import PourSettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
 
 LIFT, CARRY, TILT = "pour_lift", "pour_carry", "pour_tilt"
 _ROOT, _PIVOT, _CUP, _INTO = "pour_table", "pour_pivot", "cup_", "into_"

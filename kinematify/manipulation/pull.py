@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from kinematify.validation.task.manifold import search_manifold
+from kinematify.manipulation.manifold import search_manifold
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.task.collision import CollisionWorld, Hit
-    from kinematify.validation.task.kinematics import Arm
-    from kinematify.validation.task.place import ObjectMotion, Place
-    from kinematify.validation.task.plan_settings import PlanSettings
+    from kinematify.config.planning import PlanSettings
+    from kinematify.manipulation.collision import CollisionWorld, Hit
+    from kinematify.manipulation.kinematics import Arm
+    from kinematify.manipulation.place import ObjectMotion, Place
+    from kinematify.robot.arrays import FloatArray
 
 LIMIT, SINGULAR, JUMP, SELF, OBJECT, FLOOR, UNREACHED, ITSELF = (
     "arm limit", "singularity", "jump", "self-collision", "arm against object", "arm against floor", "out of reach",

@@ -9,13 +9,13 @@ import numpy as np
 from ompl import base as ob
 from ompl import geometric as og
 
-from kinematify.validation.task.manifold import Counter, quiet_and_seeded
+from kinematify.manipulation.manifold import Counter, quiet_and_seeded
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.task.collision import CollisionWorld
-    from kinematify.validation.task.kinematics import Arm
-    from kinematify.validation.task.plan_settings import PlanSettings
+    from kinematify.config.planning import PlanSettings
+    from kinematify.manipulation.collision import CollisionWorld
+    from kinematify.manipulation.kinematics import Arm
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

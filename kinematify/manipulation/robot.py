@@ -12,24 +12,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.description import parse_description
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, joint_values, rest_configuration
-from kinematify.assembly.urdf_geometry import geometry_source
 from kinematify.errors import InputError
-from kinematify.validation.prepare.document import numbers, roll_pitch_yaw
-from kinematify.validation.read import read_parsed
-from kinematify.validation.task import arm
-from kinematify.validation.task.copies import with_absolute_meshes
+from kinematify.manipulation import arm
+from kinematify.manipulation.copies import with_absolute_meshes
+from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
+from kinematify.robot.description import parse_description
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_parsed
+from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.urdf_geometry import geometry_source
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint, RobotDescription
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.task.request import TaskRequest
+    from kinematify.manipulation.request import TaskRequest
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import DescribedJoint, RobotDescription
 
 ROBOT_FILE = "robot.urdf"
 GRASP_LINK = "kinematify_grasp_frame"

@@ -16,16 +16,16 @@ import fcl
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import rest_configuration, rigid_groups
 from kinematify.errors import InputError
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import judged_shapes, placed_links, read_scene, relative, transformed
-from kinematify.validation.geometry.solid import Solid
-from kinematify.validation.geometry.together import random_rows
-from kinematify.validation.read import read_model
-from kinematify.validation.task.robot import arm_chain, found_fingers, named_fingers
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.scene import judged_shapes, placed_links, read_scene, relative, transformed
+from kinematify.geometry.solid import Solid
+from kinematify.geometry.together import random_rows
+from kinematify.manipulation.robot import arm_chain, found_fingers, named_fingers
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint, RobotDescription
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.geometry.scene import Pair, Scene
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import DescribedJoint, RobotDescription
 
     BoolArray = NDArray[np.bool_]
 

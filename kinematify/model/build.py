@@ -16,9 +16,10 @@ from kinematify.model.kinematic_model import Joint, KinematicModel, Link
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.assembly.part import Assembly
     from kinematify.config import ModelConfig
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.robot.arrays import FloatArray
     from kinematify.topology.tree import KinematicTree
 
 

@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.mesh_file import RawMesh
 from kinematify.assembly.pieces import connected_pieces
-from kinematify.assembly.robot import forward_kinematics
+from kinematify.geometry.convex import ConvexPiece, convex_piece
+from kinematify.geometry.cut import Concave, Surface
+from kinematify.geometry.cut_cache import cached_cuts
+from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.robot import forward_kinematics
+from kinematify.simulation.prepared import Method
 from kinematify.validation.asset.bodies import closed_volume
-from kinematify.validation.convex import ConvexPiece, convex_piece
-from kinematify.validation.prepare.cache import cached_cuts
-from kinematify.validation.prepare.cut import Concave, Surface
-from kinematify.validation.prepare.prepared import Method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import LinkMesh
-    from kinematify.validation.declared import DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.validation.settings import PrepareSettings
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.robot.robot import LinkMesh
 
 _KEPT = ("box", "cylinder", "sphere")
 """Primitives that all engines have; capsules become meshes."""

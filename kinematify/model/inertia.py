@@ -16,8 +16,9 @@ from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.model.kinematic_model import Inertial
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.config import ModelConfig
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 _WELD = 1e-7  # vertices closer than this fraction of the part's diagonal are one: above the rounding of float32 files
 _SLACK = 1e-6  # relative rounding of a volume compared with that of the hull

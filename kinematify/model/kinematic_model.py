@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
 from kinematify.joints.candidate import JointType
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,8 +11,8 @@ from kinematify.joints.candidate import JointType
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.model.kinematic_model import Joint, KinematicModel
+    from kinematify.robot.arrays import FloatArray
 
 
 def forward_kinematics(model: KinematicModel, q: Mapping[str, float]) -> dict[str, FloatArray]:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import Part
-from kinematify.assembly.robot import rigid_groups
 from kinematify.config import load_config
 from kinematify.model.inertia import inertial_of
+from kinematify.robot.robot import rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredInertial, DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.validation.settings import PrepareSettings
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredInertial, DeclaredLink, DeclaredModel, DeclaredShape
 
 
 _ROUNDING = 1e-9

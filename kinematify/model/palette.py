@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.robot.arrays import FloatArray
 
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))  # never repeats, and neighbours in order lie far apart
 _FIRST_HUE = 0.75  # [rad] a warm orange

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from kinematify.geometry.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.model.palette import link_colors
 from kinematify.model.scene import (
     GLYPH_COLORS,
@@ -19,14 +18,15 @@ from kinematify.model.scene import (
     opened_configuration,
     posed_meshes,
 )
+from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import PreviewConfig
     from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.robot.arrays import FloatArray
 
 _INK = (45, 50, 60)
 _FAINT = (120, 126, 138)

@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.camera import fit_camera
-from kinematify.geometry.glyphs import sliding_arrow, turning_arrow
-from kinematify.geometry.picture import PosedMesh
 from kinematify.joints.candidate import JointType
 from kinematify.model.kinematics import forward_kinematics
+from kinematify.render.camera import fit_camera
+from kinematify.render.glyphs import sliding_arrow, turning_arrow
+from kinematify.render.picture import PosedMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import PreviewConfig
-    from kinematify.geometry.camera import Camera
-    from kinematify.geometry.picture import PictureScene
     from kinematify.model.kinematic_model import Joint, KinematicModel
+    from kinematify.render.camera import Camera
+    from kinematify.render.picture import PictureScene
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 GLYPH_COLORS = {
     JointType.REVOLUTE: np.array([0.84, 0.10, 0.16]),

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.model.kinematic_model import Inertial, Joint, KinematicModel, Link
+    from kinematify.robot.arrays import FloatArray
 
 MESH_FOLDER = "meshes"
 _MAX_STEM = 100  # file systems end at 255 bytes for a name

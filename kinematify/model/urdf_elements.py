@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint
-    from kinematify.validation.convex import ConvexPiece
-    from kinematify.validation.declared import DeclaredJoint, DeclaredShape
-    from kinematify.validation.prepare.masses import PreparedInertial
-    from kinematify.validation.settings import PrepareSettings
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.geometry.convex import ConvexPiece
+    from kinematify.model.masses import PreparedInertial
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredJoint, DeclaredShape
+    from kinematify.robot.robot import DescribedJoint
 
 _DIGITS = 10  # a relative error of 1e-10: far below the tolerance of any engine
 _LEVEL = 1e-9

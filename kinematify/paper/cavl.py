@@ -14,19 +14,19 @@ import torch
 
 from kinematify.contact.graph import ContactSamples
 from kinematify.joints.candidate import JointCandidate, JointType
-from kinematify.joints.contact_region import ContactRegion
-from kinematify.joints.motion import revolve, slide, unit_axis
+from kinematify.paper.contact_region import ContactRegion
+from kinematify.paper.motion import revolve, slide, unit_axis
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from torch import Tensor
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import CavlConfig
     from kinematify.contact.graph import ContactEdge
     from kinematify.geometry.sampling import SurfaceSamples
-    from kinematify.geometry.sdf import SignedDistanceField
+    from kinematify.paper.sdf import SignedDistanceField
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.assembly.vectors import crossed, lengths_of
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.contact.graph import ContactSamples
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.geometry.sdf_grid import SignedDistanceCache
-from kinematify.geometry.sdf_neural import train_fields
+from kinematify.paper.sdf_grid import SignedDistanceCache
+from kinematify.paper.sdf_neural import train_fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.assembly.part import Part
     from kinematify.config import SdfConfig
-    from kinematify.geometry.sdf import SignedDistanceField
+    from kinematify.paper.sdf import SignedDistanceField
 
 
 def field_source(parts: Sequence[Part], config: SdfConfig, *, seed: int) -> Callable[[Part], SignedDistanceField]:

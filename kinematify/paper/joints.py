@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.graph import ContactEdge, ContactSamples
-from kinematify.geometry.field_source import field_source
 from kinematify.geometry.sampling import sample_surface
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
-from kinematify.joints.cavl import cavl_scene, rank_candidates, refine, virtual_motions
+from kinematify.paper.cavl import cavl_scene, rank_candidates, refine, virtual_motions
+from kinematify.paper.field_source import field_source
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import Assembly, FloatArray, Part
+    from kinematify.assembly.part import Assembly, Part
     from kinematify.config import CavlConfig, Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.cavl import CavlScene, VirtualMotions
-    from kinematify.joints.contact_region import ContactRegion
+    from kinematify.paper.cavl import CavlScene, VirtualMotions
+    from kinematify.paper.contact_region import ContactRegion
+    from kinematify.robot.arrays import FloatArray
 
 
 def estimate_paper_joints(

@@ -16,8 +16,9 @@ from scipy import ndimage
 if TYPE_CHECKING:
     from torch import Tensor
 
-    from kinematify.assembly.part import FloatArray, IntArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.config import SdfConfig
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 # Queries are cut into pieces of this many points: 10 MB of results at a time, and no loss of speed.
 _CHUNK_POINTS = 200_000

@@ -17,15 +17,16 @@ import numpy as np
 import torch
 
 from kinematify.geometry.sampling import sample_surface
-from kinematify.geometry.sdf_grid import exact_signed_distance
+from kinematify.paper.sdf_grid import exact_signed_distance
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from torch import Tensor
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.config import NeuralSdfConfig
+    from kinematify.robot.arrays import FloatArray
 
 _STREAM = 41  # of the random numbers that only this module draws
 

@@ -17,9 +17,9 @@ import numpy as np
 from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import OutputError
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
 from kinematify.pipeline.generate import write_truth
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.errors import OutputError
+from kinematify.generate.procedural.family import COMMON, build
+from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
 from kinematify.model.preview import draw_pair
 from kinematify.pipeline.generate import true_model
-from kinematify.sources.procedural.family import COMMON, build
-from kinematify.sources.procedural.listing import PARAMETER_HEADINGS, parameter_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.sources.procedural.blueprint import Blueprint
-    from kinematify.sources.procedural.family import Family, Parameter
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.family import Family, Parameter
 
 PAGE = "gallery.md"
 PICTURES = "gallery"

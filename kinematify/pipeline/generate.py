@@ -5,19 +5,19 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from kinematify.assembly.obj_file import write_obj
+from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
-from kinematify.sources.procedural.truth import ground_truth
+from kinematify.robot.obj_file import write_obj
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import Config
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.sources.procedural.blueprint import Blueprint
 
 PARTS_FOLDER = "parts"
 TRUTH_FOLDER = "truth"

@@ -17,12 +17,12 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, largest_piece, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearing import fit_bearings
-from kinematify.joints.compound import compounds, described
-from kinematify.joints.decide import estimate_joints
-from kinematify.joints.held import held_pairs, leaf_pairs, passing_pairs
-from kinematify.joints.quality import edge_quality
-from kinematify.joints.workspace import PartCache
+from kinematify.joints.choice.compound import compounds, described
+from kinematify.joints.choice.decide import estimate_joints
+from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.measure.edge_tests import held_pairs, leaf_pairs, passing_pairs
+from kinematify.joints.measure.quality import edge_quality
+from kinematify.joints.measure.workspace import PartCache
 from kinematify.model.build import build_model
 from kinematify.pipeline.pieces import joints_of_pieces, pair_of_pieces, tree_of_pieces
 from kinematify.topology.evidence import EdgeEvidence, coaxial_carriers
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing_line import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.pieces import Groups
     from kinematify.topology.evidence import Pair
@@ -68,7 +68,7 @@ class Inference:
     refinement: Mapping[str, Any] | None = None
     """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
     provenance: Mapping[str, Any] | None = None
-    """Who made the parts, from what (`kinematify.sources.provided`), as JSON values; None where that is not known."""
+    """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
 
     @cached_property
     def model(self) -> KinematicModel:
@@ -229,7 +229,7 @@ def choose_joints(
     if config.joints.method == "geometry":
         return estimate_joints(assembly, graph, tree, bearings, config=config.joints, seed=config.seed)
     # torch takes seconds to import, and only this branch needs it.
-    from kinematify.joints.paper import estimate_paper_joints  # noqa: PLC0415
+    from kinematify.paper.joints import estimate_paper_joints  # noqa: PLC0415
 
     return estimate_paper_joints(assembly, graph, tuple(tree.edges()), config=config)
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactEdge
-    from kinematify.joints.bearing_line import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
+    from kinematify.joints.hypotheses.bearing_line import BearingLine
     from kinematify.pipeline.infer import Inference
     from kinematify.topology.tree import KinematicTree
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointEstimate, JointType
-from kinematify.joints.limits import find_range
-from kinematify.joints.scene import joint_scene, part_frames
-from kinematify.joints.workspace import PartCache
+from kinematify.joints.choice.limits import find_range
+from kinematify.joints.measure.scene import joint_scene, part_frames
+from kinematify.joints.measure.workspace import PartCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing_line import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.joints.frames import BoxFrame
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.joints.measure.scene import JointScene
     from kinematify.topology.evidence import Pair
     from kinematify.topology.tree import KinematicTree
 

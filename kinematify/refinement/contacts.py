@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.build import build_contact_graph, exact_gap, near_pairs
-from kinematify.joints.bearing import fit_edge
+from kinematify.joints.hypotheses.bearing import fit_edge
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearing_line import EdgeBearing
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
 
 Pair = tuple[int, int]
 

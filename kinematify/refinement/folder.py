@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.assembly.assemble import assemble
-from kinematify.assembly.description import read_description
-from kinematify.assembly.mesh_file import RawMesh
-from kinematify.assembly.robot import forward_kinematics
 from kinematify.config import Config
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.pipeline.record import PREVIEW_FILE, SCHEMA, file_hashes, write_inference_files
+from kinematify.robot.description import read_description
+from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.robot import forward_kinematics
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:

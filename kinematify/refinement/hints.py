@@ -20,9 +20,9 @@ from kinematify.refinement.words import described
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
+    from kinematify.robot.arrays import FloatArray
 
 TYPES = {str(kind): kind for kind in JointType}
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}

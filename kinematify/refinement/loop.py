@@ -12,6 +12,7 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from kinematify.config.validation import load_settings
 from kinematify.contact.seams import find_seams
 from kinematify.geometry.surface import part_surfaces
 from kinematify.refinement.candidates import CandidateJoints, score_of
@@ -26,13 +27,12 @@ from kinematify.refinement.topology import Contacts, EdgeMemory, replanned, sear
 from kinematify.refinement.twins import TWINS, vote
 from kinematify.validation.feedback import feedback_from
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
+    from kinematify.config.validation import ValidationSettings
     from kinematify.pipeline.infer import Inference, Progress
     from kinematify.refinement.simulate import Verdict
     from kinematify.validation.feedback import Feedback
-    from kinematify.validation.settings import ValidationSettings
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

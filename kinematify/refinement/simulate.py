@@ -9,25 +9,25 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.sweep import Sweeper
 from kinematify.refinement.world import World
 from kinematify.validation.geometry import judge_motion
 from kinematify.validation.geometry.judge_motion import MotionCase
 from kinematify.validation.geometry.judge_rest import hovering, neighbours, strangers
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.sweep import Sweeper
 from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import OpenCheck
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from kinematify.config.validation import GeometrySettings
+    from kinematify.geometry.sweep import JointSweep
     from kinematify.model.kinematic_model import Joint, KinematicModel
     from kinematify.refinement.world import WorldScene
     from kinematify.validation.finding import Finding
     from kinematify.validation.geometry.remark import Remark
-    from kinematify.validation.geometry.sweep import JointSweep
-    from kinematify.validation.settings import GeometrySettings
 
 _MOTION: dict[str, Callable[[MotionCase], Iterator[Remark]]] = {
     "KV310": judge_motion.through_parent,

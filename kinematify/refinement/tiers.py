@@ -6,15 +6,15 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.model.urdf import write_urdf
 from kinematify.refinement.simulate import Verdict
 from kinematify.validation.run import validate
-from kinematify.validation.task.request import PULL, TaskRequest
 
 if TYPE_CHECKING:
+    from kinematify.config.validation import ValidationSettings
     from kinematify.refinement.plan import Plan
     from kinematify.validation.report import ValidationReport
-    from kinematify.validation.settings import ValidationSettings
 
 GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"
 TIERS = (GEOMETRY, ENGINES, TASK)

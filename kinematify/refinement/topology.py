@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing_line import EdgeBearing
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.topology.tree import KinematicTree
     from kinematify.validation.feedback import EdgeSignal
 

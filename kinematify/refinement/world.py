@@ -12,19 +12,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import DescribedJoint, DescribedLink, LinkMesh, RobotDescription, rigid_groups
+from kinematify.geometry.scene import Body, Scene
+from kinematify.geometry.solid import Solid
 from kinematify.joints.candidate import JointType
-from kinematify.validation.declared import DeclaredLink, DeclaredModel
-from kinematify.validation.engines.mechanism import Mechanism
-from kinematify.validation.geometry.scene import Body, Scene
-from kinematify.validation.geometry.solid import Solid
+from kinematify.robot.declared import DeclaredLink, DeclaredModel
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.robot import DescribedJoint, DescribedLink, LinkMesh, RobotDescription, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
+    from kinematify.config.validation import GeometrySettings
     from kinematify.model.kinematic_model import Joint, KinematicModel
-    from kinematify.validation.settings import GeometrySettings
+    from kinematify.robot.arrays import FloatArray
 
 _UNIT_SHARE = 1e-3  # of the largest part: a good unit for FCL, which takes short lengths for none
 

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, map_coordinates
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import PreviewConfig
-    from kinematify.geometry.camera import Camera
     from kinematify.geometry.rays import RayHits, RayScene
+    from kinematify.render.camera import Camera
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 SAME_SURFACE_COSINE = 0.94
 """Places of one mesh whose normals differ less (20 deg) share light."""

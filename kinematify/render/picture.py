@@ -14,16 +14,16 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import binary_dilation
 
-from kinematify.geometry.daylight import SAME_SURFACE_COSINE, FloorShadow, SkyLight
 from kinematify.geometry.rays import RayScene
+from kinematify.render.daylight import SAME_SURFACE_COSINE, FloorShadow, SkyLight
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import PreviewConfig
-    from kinematify.geometry.camera import Camera
     from kinematify.geometry.rays import RayHits
+    from kinematify.render.camera import Camera
+    from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint, LinkMesh, RobotDescription
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import DescribedJoint, LinkMesh, RobotDescription
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import (
+from kinematify.errors import DescriptionError
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import (
     DescribedJoint,
     DescribedLink,
     LinkMesh,
@@ -21,10 +22,9 @@ from kinematify.assembly.robot import (
     rest_configuration,
     rigid_groups,
 )
-from kinematify.assembly.urdf_document import parse_description
-from kinematify.assembly.urdf_geometry import geometry_source
-from kinematify.assembly.urdf_numbers import number, origin_transform, vector
-from kinematify.errors import DescriptionError
+from kinematify.robot.urdf_document import parse_description
+from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.urdf_numbers import number, origin_transform, vector
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.urdf_geometry import GeometrySource
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.urdf_geometry import GeometrySource
 
 __all__ = [
     "DescribedJoint",

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import joint_values, rest_configuration, rigid_groups
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import joint_values, rest_configuration, rigid_groups
 from kinematify.validation.engines.configurations import joint_ends
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import RobotDescription
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import RobotDescription
 
     BoolArray = NDArray[np.bool_]
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.gltf_file import read_gltf
-from kinematify.assembly.mesh_paths import MESH_SUFFIXES
-from kinematify.assembly.obj_file import read_obj
-from kinematify.assembly.weld import without_unused
 from kinematify.errors import AssemblyError
+from kinematify.robot.gltf_file import read_gltf
+from kinematify.robot.mesh_paths import MESH_SUFFIXES
+from kinematify.robot.obj_file import read_obj
+from kinematify.robot.weld import without_unused
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
     from trimesh.scene import Scene
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 # Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
 # logging still hears it.

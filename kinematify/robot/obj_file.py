@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 _RUN = re.compile(r"(?:v[ \t].*\n?)++|(?:f[ \t].*\n?)++")

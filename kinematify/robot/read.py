@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.description import describe, parse_description
-from kinematify.assembly.robot import LinkMesh
-from kinematify.assembly.urdf_geometry import geometry_source
-from kinematify.assembly.urdf_numbers import number, origin_transform, vector
-from kinematify.validation.declared import (
+from kinematify.robot.declared import (
     DeclaredInertial,
     DeclaredJoint,
     DeclaredLink,
     DeclaredModel,
     DeclaredShape,
 )
+from kinematify.robot.description import describe, parse_description
+from kinematify.robot.robot import LinkMesh
+from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.urdf_numbers import number, origin_transform, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.robot import DescribedJoint
-    from kinematify.assembly.urdf_geometry import GeometrySource
+    from kinematify.robot.robot import DescribedJoint
+    from kinematify.robot.urdf_geometry import GeometrySource
     from kinematify.validation.stage import StageRequest
 
 _LEFT = "model.pickle"

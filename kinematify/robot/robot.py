@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.part import read_only
 from kinematify.errors import DescriptionError
+from kinematify.robot.arrays import read_only
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

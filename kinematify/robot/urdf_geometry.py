@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.mesh_file import RawMesh, merged, read_meshes
-from kinematify.assembly.mesh_paths import find_mesh
-from kinematify.assembly.robot import LinkMesh
-from kinematify.assembly.urdf_numbers import number, origin_transform, vector
 from kinematify.errors import AssemblyError, DescriptionError
+from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
+from kinematify.robot.mesh_paths import find_mesh
+from kinematify.robot.robot import LinkMesh
+from kinematify.robot.urdf_numbers import number, origin_transform, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -70,7 +70,7 @@ class GeometrySource:
         return self.cache[path]
 
     def resolved(self, filename: str, where: str) -> Path:
-        """Return the mesh file that a document names; see `kinematify.assembly.mesh_paths.find_mesh`.
+        """Return the mesh file that a document names; see `kinematify.robot.mesh_paths.find_mesh`.
 
         Raises:
             DescriptionError: It is nowhere; the message lists the places.

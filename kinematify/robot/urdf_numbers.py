@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 
 def vector(element: _Element, attribute: str, default: Sequence[float] | None, where: str) -> FloatArray:

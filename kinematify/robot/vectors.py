@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 
 def crossed(first: FloatArray, second: FloatArray) -> FloatArray:

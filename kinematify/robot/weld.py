@@ -9,11 +9,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from kinematify.assembly.part import used_vertices
-from kinematify.assembly.vectors import crossed, lengths_of
+from kinematify.robot.arrays import used_vertices
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 def welded(vertices: FloatArray, faces: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:

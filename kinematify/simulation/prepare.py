@@ -7,25 +7,25 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.validation.prepare import document
-from kinematify.validation.prepare.decompose import Pieces, decomposed
-from kinematify.validation.prepare.masses import prepared_inertials
-from kinematify.validation.prepare.prepared import URDF_FILE, Prepared, PreparedLink, write_record
-from kinematify.validation.read import model_of
+from kinematify.model import urdf_elements as document
+from kinematify.model.collision_pieces import Pieces, decomposed
+from kinematify.model.masses import prepared_inertials
+from kinematify.robot.read import model_of
+from kinematify.simulation.prepared import URDF_FILE, Prepared, PreparedLink, write_record
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.validation.declared import DeclaredLink, DeclaredModel
-    from kinematify.validation.prepare.masses import PreparedInertial
-    from kinematify.validation.settings import PrepareSettings
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.model.masses import PreparedInertial
+    from kinematify.robot.declared import DeclaredLink, DeclaredModel
     from kinematify.validation.stage import Recorder, StageRequest
 
 _MESH_FOLDER = "prepared_meshes"
 
 
 def run(request: StageRequest, recorder: Recorder) -> None:
-    """Write `prepared.urdf` and `prepared.json` (`kinematify.validation.prepare.prepared`)."""
+    """Write `prepared.urdf` and `prepared.json` (`kinematify.simulation.prepared`)."""
     del recorder  # what was changed is told by the checks that look at it
     model = model_of(request)
     prepare(model, request.work, request.settings.prepare)

@@ -19,9 +19,9 @@ from kinematify.topology.evidence import pair
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import BaseConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.topology.evidence import EdgeEvidence, Pair
     from kinematify.topology.stats import PartStats
 

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from collections.abc import Set as AbstractSet
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.contact.graph import ContactGraph
+    from kinematify.robot.arrays import FloatArray
     from kinematify.topology.evidence import Pair
 
 

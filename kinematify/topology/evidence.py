@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 Pair = tuple[int, int]
 """An undirected edge (a, b) with a < b."""

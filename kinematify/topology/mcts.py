@@ -19,7 +19,7 @@ from kinematify.topology.virtual import nearest_pair
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.topology.evidence import Pair
 
 Action = tuple[int, int]

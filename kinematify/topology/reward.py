@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     BoolArray = NDArray[np.bool_]
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.topology.evidence import EdgeEvidence, Pair
     from kinematify.topology.stats import PartStats
 

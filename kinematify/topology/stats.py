@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from kinematify.assembly.part import read_only
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import Assembly, FloatArray, Part
+    from kinematify.assembly.part import Assembly, Part
+    from kinematify.robot.arrays import FloatArray
 
 _VOLUME_FLOOR = 1e-12
 """Smallest volume of a part in units of its cubed diagonal; keeps ratios of flat parts finite."""

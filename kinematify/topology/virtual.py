@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.topology.evidence import Pair
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.errors import InputError
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

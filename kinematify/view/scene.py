@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import (
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.scene import read_scene, relative
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import (
     forward_kinematics,
     joint_values,
     rest_configuration,
@@ -18,18 +21,15 @@ from kinematify.assembly.robot import (
     rotation_about,
 )
 from kinematify.validation.formats.view_data import camera_turn
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import read_scene, relative
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import DescribedJoint, RigidGroup
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import DescribedJoint, RigidGroup
     from kinematify.view.alternatives import Alternative
 
 _ARC_STEPS = 24

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.formats.rotation import quaternion
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.rotation import quaternion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import viser
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import DescribedJoint
     from kinematify.view.alternatives import Alternative
     from kinematify.view.scene import Touch, ViewScene
 

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.sources.provided.service import Service
-from kinematify.validation.prepare.cache import cache_folder
+from kinematify.generate.providers.service import Service
+from kinematify.geometry.cut_cache import cache_folder
 from kinematify.vision.answer import JointVotes, read_answer, schema
 from kinematify.vision.question import PROMPT
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from kinematify.geometry.camera import fit_camera
-from kinematify.geometry.picture import PictureScene, PosedMesh, render_scene
+from kinematify.render.camera import fit_camera
+from kinematify.render.picture import PictureScene, PosedMesh, render_scene
 from kinematify.vision.answer import JointQuestion
 
 if TYPE_CHECKING:

@@ -22,10 +22,11 @@ from kinematify.vision.question import joint_question
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.config import VisionConfig
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.pipeline import Inference
+    from kinematify.robot.arrays import FloatArray
     from kinematify.vision.answer import JointOracle, JointVotes, Vote
 
 _DIRECTIONS = (Direction.SIDEWAYS, Direction.DEPTH, Direction.VERTICAL)

@@ -14,11 +14,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import GroundTruth, erase, truth_path, write_erased
-from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.load import load_assembly
-from kinematify.assembly.robot import (
+from kinematify.config import load_config
+from kinematify.errors import DescriptionError, InputError, OutputError
+from kinematify.robot.description import read_description
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import (
     DescribedJoint,
     DescribedLink,
     LinkMesh,
@@ -26,12 +28,10 @@ from kinematify.assembly.robot import (
     RobotDescription,
     rotation_about,
 )
-from kinematify.config import load_config
-from kinematify.errors import DescriptionError, InputError, OutputError
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.assembly.truth import TrueJoint
+    from kinematify.robot.arrays import FloatArray
 
 BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 MODELS = sorted(BENCH.glob("*/*/model.urdf"))

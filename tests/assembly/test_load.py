@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.names import natural_key, part_names
-from kinematify.assembly.weld import welded
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
+from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from kinematify.benchmark.job import JobResult
-from kinematify.benchmark.metrics import JointScore, ObjectScore
-from kinematify.benchmark.regression import find_regressions
-from kinematify.benchmark.run import BenchmarkReport, BenchmarkRequest
-from kinematify.benchmark.tables import markdown
-from kinematify.benchmark.tree_metrics import TreeDistance
 from kinematify.cli.app import run
+from kinematify.evaluation.job import JobResult
+from kinematify.evaluation.metrics import JointScore, ObjectScore
+from kinematify.evaluation.regression import find_regressions
+from kinematify.evaluation.run import BenchmarkReport, BenchmarkRequest
+from kinematify.evaluation.tables import markdown
+from kinematify.evaluation.tree_metrics import TreeDistance
 
 NO_DISTANCE = TreeDistance(value=0, exact=True)
 JOINT = JointScore(
@@ -79,7 +79,7 @@ def results(monkeypatch: pytest.MonkeyPatch) -> list[BenchmarkRequest]:
         asked.append(request)
         return report(RESULT)
 
-    monkeypatch.setattr("kinematify.benchmark.run.run_benchmark", answer)
+    monkeypatch.setattr("kinematify.evaluation.run.run_benchmark", answer)
     return asked
 
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.truth import GroundTruth
-from kinematify.benchmark.datasets import find_objects
 from kinematify.cli.app import run
 from kinematify.cli.generation import Generation
 from kinematify.cli.verdict import describe_briefly
+from kinematify.evaluation.datasets import find_objects
+from kinematify.generate.procedural.request import from_text
 from kinematify.pipeline.corpus import _entry, write_corpus
-from kinematify.sources.procedural.request import from_text
+from kinematify.robot.description import read_description
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result
 

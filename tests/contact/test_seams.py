@@ -8,9 +8,9 @@ import trimesh
 from objects import BUILDERS
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.benchmark.perturb import cut_in_bands, perturbed
 from kinematify.config import load_config
 from kinematify.contact.seams import find_cuts, find_seams, rigid_pieces
+from kinematify.evaluation.perturb import cut_in_bands, perturbed
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 from kinematify.pipeline import infer

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.benchmark.voxels import voxel_remeshed
 from kinematify.config import load_config
 from kinematify.contact.symmetry import aligned_chamfer, find_clusters
+from kinematify.evaluation.voxels import voxel_remeshed
+from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
-from kinematify.sources.procedural.solids import box, cylinder, union
 from tests.known import rotation
 
 CONFIG = load_config()

@@ -17,7 +17,7 @@ from kinematify.envs.expert import ArmExpert
 from kinematify.envs.mujoco_arm import ROBOT
 from kinematify.envs.settings import load_settings
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.validation.task.arm import write_arm
+from kinematify.manipulation.arm import write_arm
 from tests.envs.hands import documented_rows, write_slider
 
 DRAWER_PULL = "kinematify.envs:kinematify/DrawerPull-v0"

@@ -14,10 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from kinematify.benchmark.datasets import bench_folder, find_objects
-from kinematify.benchmark.paper import ABLATION
-from kinematify.benchmark.report import load_report, write_report
-from kinematify.benchmark.run import (
+from kinematify.config import load_config
+from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
+from kinematify.evaluation.datasets import bench_folder, find_objects
+from kinematify.evaluation.paper import ABLATION
+from kinematify.evaluation.report import load_report, write_report
+from kinematify.evaluation.run import (
     DEFAULT_ABLATION,
     PAPER_VARIANTS,
     BenchmarkReport,
@@ -26,9 +28,7 @@ from kinematify.benchmark.run import (
     changed,
     run_benchmark,
 )
-from kinematify.benchmark.summary import summarise
-from kinematify.config import load_config
-from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
+from kinematify.evaluation.summary import summarise
 
 TESTS = Path(__file__).resolve().parent
 
@@ -163,7 +163,7 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     ledger = work / "jobs.jsonl"
     program = (
         "from pathlib import Path\n"
-        "from kinematify.benchmark.run import BenchmarkRequest, run_benchmark\n"
+        "from kinematify.evaluation.run import BenchmarkRequest, run_benchmark\n"
         "if __name__ == '__main__':\n"
         f"    run_benchmark(BenchmarkRequest(data={str(data)!r}, work_folder=Path({str(work)!r}), workers=2,\n"
         "        infer='quick_inference:slow_star'))\n"

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from objects import BUILDERS
 
-from kinematify.benchmark.calibration import Judged, is_right, reliability, write_calibration
-from kinematify.benchmark.metrics import JointScore
 from kinematify.config import Config, load_config
+from kinematify.evaluation.calibration import Judged, is_right, reliability, write_calibration
+from kinematify.evaluation.metrics import JointScore
 from kinematify.pipeline import infer
 
 HEADER = {"command": "c", "date": "d", "code": "x", "objects": 1, "corpus_seed": 2, "conditions": ["rest"]}

@@ -12,13 +12,13 @@ from objects import BUILDERS
 from test_benchmark_run import request, write_object
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.benchmark.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
-from kinematify.benchmark.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
-from kinematify.benchmark.run import run_benchmark
-from kinematify.benchmark.tables import markdown
-from kinematify.benchmark.voxels import voxel_remeshed
 from kinematify.cli.bench import words_of
 from kinematify.config import load_config
+from kinematify.evaluation.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
+from kinematify.evaluation.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
+from kinematify.evaluation.run import run_benchmark
+from kinematify.evaluation.tables import markdown
+from kinematify.evaluation.voxels import voxel_remeshed
 
 CONFIG = load_config()
 

@@ -8,12 +8,12 @@ import numpy as np
 from PIL import Image
 from test_benchmark_run import request, write_object
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Part
-from kinematify.benchmark.error_pictures import ShownJoint, draw_error
-from kinematify.benchmark.errors import write_error_gallery, wrong_joints
-from kinematify.benchmark.run import run_benchmark
 from kinematify.config import load_config
+from kinematify.evaluation.error_pictures import ShownJoint, draw_error
+from kinematify.evaluation.errors import write_error_gallery, wrong_joints
+from kinematify.evaluation.run import run_benchmark
+from kinematify.robot.joint_type import JointType
 
 Z = np.array([0.0, 0.0, 1.0])
 

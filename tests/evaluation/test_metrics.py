@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.assembly.erase import GroundTruth, TrueJoint
-from kinematify.assembly.joint_type import JointType
-from kinematify.benchmark.metrics import JointScore, ObjectScore, score_object
-from kinematify.benchmark.prediction import NOTHING_PREDICTED, PredictedJoint, Prediction, prediction_of
+from kinematify.evaluation.metrics import JointScore, ObjectScore, score_object
+from kinematify.evaluation.prediction import NOTHING_PREDICTED, PredictedJoint, Prediction, prediction_of
 from kinematify.joints.candidate import JointCandidate, JointEstimate
+from kinematify.robot.joint_type import JointType
 from kinematify.topology.tree import KinematicTree
 
 X, Y, Z = np.eye(3)

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import ErasedModel, erase
-from kinematify.benchmark.datasets import BenchObject
+from kinematify.evaluation.datasets import BenchObject
+from kinematify.robot.description import read_description
 from tests.household import barrel_hinge_door, nested_drawer
 from tests.known import KnownObject
 from tests.validation.planted import write
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
-from mutants.base import BaseModel, write_base
-from mutants.fault import Planted
-from mutants.outcome import Verdict, judge
-from mutants.plan import FAULTS, Mutant, write_mutants
+from kinematify.evaluation.studies.mutants.base import BaseModel, write_base
+from kinematify.evaluation.studies.mutants.fault import Planted
+from kinematify.evaluation.studies.mutants.outcome import Verdict, judge
+from kinematify.evaluation.studies.mutants.plan import FAULTS, Mutant, write_mutants
 
 
 def base_of(known: KnownObject, folder: Path) -> BaseModel:

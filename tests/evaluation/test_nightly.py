@@ -20,15 +20,15 @@ from test_benchmark_run import write_object
 
 from kinematify.cli.app import run as run_command
 from kinematify.errors import InputError, OutputError
-from kinematify.nightly.compare import Class, compare
-from kinematify.nightly.record import Problem, Run
-from kinematify.nightly.run import NightRequest, run_night
-from kinematify.nightly.settings import NightlySettings, load_nightly
-from kinematify.nightly.smoke import write_smoke_objects
-from kinematify.nightly.store import accept, load_nights, locked
+from kinematify.evaluation.nightly.compare import Class, compare
+from kinematify.evaluation.nightly.record import Problem, Run
+from kinematify.evaluation.nightly.run import NightRequest, run_night
+from kinematify.evaluation.nightly.settings import NightlySettings, load_nightly
+from kinematify.evaluation.nightly.smoke import write_smoke_objects
+from kinematify.evaluation.nightly.store import accept, load_nights, locked
 
 if TYPE_CHECKING:
-    from kinematify.nightly.run import NightResult
+    from kinematify.evaluation.nightly.run import NightResult
 
 TESTS = Path(__file__).resolve().parent
 SETTINGS = load_nightly()
@@ -206,8 +206,8 @@ def test_planted_axis_and_limit_faults_are_new_problems(tmp_path: Path) -> None:
 
 _NIGHT = """
 from pathlib import Path
-from kinematify.nightly.run import NightRequest, run_night
-from kinematify.nightly.settings import NightlySettings
+from kinematify.evaluation.nightly.run import NightRequest, run_night
+from kinematify.evaluation.nightly.settings import NightlySettings
 settings = NightlySettings.model_validate_json({settings!r})
 request = NightRequest(settings=settings, out=Path({out!r}), workers=2, infer="quick_inference:slow_star")
 run_night(request, lambda what, share: None)
@@ -252,7 +252,7 @@ def test_killed_at_five_points_it_resumes_to_the_same_report(boxes: Path, tmp_pa
 
 _LOCKING = """
 from pathlib import Path
-from kinematify.nightly.store import locked
+from kinematify.evaluation.nightly.store import locked
 with locked(Path({!r})):
     pass
 """

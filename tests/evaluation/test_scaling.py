@@ -11,9 +11,9 @@ import quick_inference
 import trimesh
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.benchmark import scaling
-from kinematify.benchmark.scaling import chain_and_branch, measure_scaling, write_scaling
 from kinematify.config import Config, load_config
+from kinematify.evaluation import scaling
+from kinematify.evaluation.scaling import chain_and_branch, measure_scaling, write_scaling
 
 
 def distance(a: Part, b: Part) -> float:

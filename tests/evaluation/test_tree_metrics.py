@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kinematify.benchmark.tree_metrics import (
+from kinematify.evaluation.tree_metrics import (
     constrained_edit_distance,
     parent_errors,
     root_of,

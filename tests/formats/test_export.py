@@ -13,17 +13,17 @@ from lxml import etree
 from pxr import Usd, UsdGeom, UsdPhysics
 
 from kinematify import export
-from kinematify.assembly.description import read_description
-from kinematify.assembly.robot import forward_kinematics, rotation_about
 from kinematify.cli.app import run
 from kinematify.errors import InputError, OutputError
-from kinematify.validation.read import read_model
+from kinematify.robot.description import read_description
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics, rotation_about
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import RobotDescription
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import RobotDescription
 
 BOX = '<geometry><box size="{} {} {}"/></geometry>'
 RED = '<material name="red"><color rgba="1 0 0 0.5"/></material>'

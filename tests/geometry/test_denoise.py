@@ -7,11 +7,11 @@ import pytest
 import trimesh
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.benchmark.degrade import voxels as voxels_of
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
+from kinematify.evaluation.degrade import voxels as voxels_of
 from kinematify.geometry.surface import FACETED, PartSurface, part_surfaces
-from kinematify.joints.bearing import fit_bearings
+from kinematify.joints.hypotheses.bearing import fit_bearings
 
 CONFIG = load_config()
 

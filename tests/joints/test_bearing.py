@@ -14,20 +14,20 @@ from hypothesis import strategies as st
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
+from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearing import fit_bearings
-from kinematify.joints.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.bearing_fit import across_axis, circle_rows, moved_line, refine_line, surface_rows
-from kinematify.joints.bearing_proposals import normal_pair_lines
-from kinematify.joints.bearing_scores import circle_support, line_support, surface_support
-from kinematify.joints.line import Line, Lines, join
-from kinematify.sources.procedural.solids import bore, box, cylinder
+from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
+from kinematify.joints.hypotheses.bearing_fit import across_axis, circle_rows, moved_line, refine_line, surface_rows
+from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines
+from kinematify.joints.hypotheses.bearing_scores import circle_support, line_support, surface_support
+from kinematify.joints.hypotheses.line import Line, Lines, join
 from tests.known import known_object, posed, rotation, shuffled, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
-    from kinematify.joints.bearing_evidence import Sides
-    from kinematify.joints.bearing_line import BearingLine, EdgeBearing
+    from kinematify.joints.hypotheses.bearing_evidence import Sides
+    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
     from tests.known import KnownJoint, KnownObject
 
 CONFIG = load_config()

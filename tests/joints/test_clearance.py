@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from kinematify.assembly.part import Part
+from kinematify.generate.procedural.blueprint import Blueprint
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.solids import box, tray
 from kinematify.joints.candidate import JointEstimate, JointType
-from kinematify.sources.procedural.blueprint import Blueprint
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.solids import box, tray
 from tests.joint_scenes import infer_joints
 from tests.known import KnownJoint, KnownObject
 

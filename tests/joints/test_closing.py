@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.candidate import JointType
-from kinematify.joints.limits import find_range
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.joints.choice.limits import find_range
 from tests.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, moved, turning
 

@@ -11,10 +11,10 @@ import trimesh
 from kinematify import infer
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
 from kinematify.joints.candidate import JointEstimate, JointType
-from kinematify.joints.compound import Compound, CompoundKind, compounds, described
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
+from kinematify.joints.choice.compound import Compound, CompoundKind, compounds, described
 
 CONFIG = load_config().joints.compound
 X, Y, Z = np.eye(3)

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.joints.decide import estimate_joints
+from kinematify.joints.choice.decide import estimate_joints
 from tests.joint_scenes import CONFIG, estimates_of, evidence, infer_joints
 from tests.known import transformed
 from tests.objects import BUILDERS, shuffled, with_yaw
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.robot.arrays import FloatArray
 
 SOME = ("edge_door", "drawer", "knob", "parallel_gripper", "universal_joint")
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.joints.bearing_line import BearingLine
-from kinematify.joints.held import held_pairs, leaf_pairs, middle_leaf, passing_pairs
-from kinematify.joints.workspace import PartCache
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.truth import ground_truth
+from kinematify.joints.hypotheses.bearing_line import BearingLine
+from kinematify.joints.measure.edge_tests import held_pairs, leaf_pairs, middle_leaf, passing_pairs
+from kinematify.joints.measure.workspace import PartCache
 from kinematify.pipeline.infer import infer
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.solids import bore, box, cylinder
-from kinematify.sources.procedural.truth import ground_truth
 from tests.joint_scenes import evidence
 from tests.known import known_object, turning
 

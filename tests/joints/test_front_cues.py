@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from kinematify.generate.procedural.solids import box, cylinder, tray
 from kinematify.joints.candidate import JointType
-from kinematify.sources.procedural.solids import box, cylinder, tray
 from tests.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning, with_yaw
 

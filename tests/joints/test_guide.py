@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.joints.candidate import JointType
-from kinematify.joints.guide import guided_share, guided_travel
-from kinematify.joints.limits import find_range
-from kinematify.sources.procedural.solids import bore, box, cylinder
+from kinematify.joints.choice.limits import find_range
+from kinematify.joints.measure.guide import guided_share, guided_travel
 from tests.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 
 if TYPE_CHECKING:
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.measure.scene import JointScene
 
 GAP = 3e-4
 X = np.array([1.0, 0.0, 0.0])

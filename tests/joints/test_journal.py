@@ -9,11 +9,11 @@ from manifold3d import Manifold
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
+from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.journal import Journal, facing_faces, find_journal
-from kinematify.joints.workspace import PartCache
-from kinematify.sources.procedural.pieces.bearings import barrel
-from kinematify.sources.procedural.solids import ball, bore, box, cylinder
+from kinematify.joints.measure.journal import Journal, facing_faces, find_journal
+from kinematify.joints.measure.workspace import PartCache
 
 CONFIG = load_config()
 

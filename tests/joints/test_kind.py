@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from kinematify import infer
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.request import from_text
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.candidate import JointType
-from kinematify.joints.kind import Siblings, decide_kind
-from kinematify.joints.panels import rank_turns
-from kinematify.joints.scene import joint_scene, part_frames
-from kinematify.joints.slides import rank_slides
-from kinematify.joints.workspace import PartCache
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.request import from_text
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.joints.choice.kind import Siblings, decide_kind
+from kinematify.joints.hypotheses.panels import rank_turns
+from kinematify.joints.hypotheses.slides import rank_slides
+from kinematify.joints.measure.scene import joint_scene, part_frames
+from kinematify.joints.measure.workspace import PartCache
 from tests.joint_scenes import CONFIG, estimates_of, evidence, infer_joints, scene_of
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS

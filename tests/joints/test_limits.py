@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from kinematify import infer
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.candidate import JointType
-from kinematify.joints.limits import find_range
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.pieces.bearings import barrel
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.joints.choice.limits import find_range
 from tests.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
 from tests.known import KnownObject, known_object, sliding, turning
 from tests.objects import BUILDERS

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.senses import clockwise_sense, swing_sense
-from kinematify.sources.procedural.pieces.bearings import fork
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.generate.procedural.pieces.bearings import fork
+from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.joints.measure.opening_direction import clockwise_sense, swing_sense
 from tests.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinematify.joints.panels import RankedTurns, propose_lines, rank_turns
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.joints.hypotheses.panels import RankedTurns, propose_lines, rank_turns
 from tests.joint_scenes import CONFIG, infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 from tests.objects import BUILDERS

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from kinematify.config import load_config
 from kinematify.contact.graph import ContactEdge, ContactSamples
-from kinematify.joints.bearing_line import BearingLine, EdgeBearing
-from kinematify.joints.quality import edge_quality
+from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
+from kinematify.joints.measure.quality import edge_quality
 
 CONFIG = load_config().quality
 UNIT = st.floats(0.0, 1.0)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from kinematify.generate.procedural.solids import box, cylinder, hull
 from kinematify.joints.candidate import JointType
-from kinematify.joints.rockers import find_fold
-from kinematify.sources.procedural.solids import box, cylinder, hull
+from kinematify.joints.measure.rockers import find_fold
 from tests.joint_scenes import CONFIG, infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning, with_yaw
 

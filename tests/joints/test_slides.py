@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.slides import rank_slides
+from kinematify.joints.hypotheses.slides import rank_slides
 from tests.joint_scenes import CONFIG, scene_of
 from tests.objects import BUILDERS, with_yaw
 

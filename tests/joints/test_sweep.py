@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.sweep import Sweep, moving_points, sweep_slides, sweep_turns
-from kinematify.sources.procedural.solids import box
+from kinematify.generate.procedural.solids import box
+from kinematify.joints.measure.sweep import Sweep, moving_points, sweep_slides, sweep_turns
 from tests.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 from tests.objects import BUILDERS

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from kinematify.validation.geometry.scene import read_scene
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
-from kinematify.validation.task.grasp import Grasp, find_grasps
-from kinematify.validation.task.motion import Motion
-from kinematify.validation.task.robot import TaskRobot, builtin_robot
+from kinematify.config.validation import load_settings
+from kinematify.geometry.scene import read_scene
+from kinematify.manipulation.grasp import Grasp, find_grasps
+from kinematify.manipulation.motion import Motion
+from kinematify.manipulation.robot import TaskRobot, builtin_robot
+from kinematify.robot.read import read_model
 
 SETTINGS = load_settings()
 
@@ -132,7 +132,7 @@ def planned(
 
 def link_pose(scene, joint: str, value: float) -> np.ndarray:
     """Pose of the child link of a joint at a value, frame of the root."""
-    from kinematify.assembly.robot import forward_kinematics
+    from kinematify.robot.robot import forward_kinematics
 
     described = scene.model.kinematics.joint_by_name[joint]
     return forward_kinematics(scene.model.kinematics, {joint: value})[described.child]

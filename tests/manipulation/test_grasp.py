@@ -7,12 +7,12 @@ from pathlib import Path
 import fcl
 import numpy as np
 import pytest
+from tests.validation.task import furniture
 
 from kinematify.errors import InputError
-from kinematify.validation.geometry.scene import read_scene
-from kinematify.validation.read import read_model
-from kinematify.validation.task.grasp import search_grasps
-from tests.validation.task import furniture
+from kinematify.geometry.scene import read_scene
+from kinematify.manipulation.grasp import search_grasps
+from kinematify.robot.read import read_model
 
 PLAIN = """<robot name="thing">
 <link name="body">{body}</link>

@@ -11,21 +11,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kinematify.assembly.robot import forward_kinematics
 from kinematify.errors import InputError
+from kinematify.geometry.scene import Scene, read_scene
+from kinematify.manipulation.collision import CollisionWorld
+from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.manifold import search_manifold
+from kinematify.manipulation.place import object_motion
+from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pull
+from kinematify.manipulation.pull import Puller
+from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.manipulation.robot import builtin_robot
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.finding import Blame, Severity, Status
-from kinematify.validation.geometry.scene import Scene, read_scene
-from kinematify.validation.read import read_model
 from kinematify.validation.run import validate
-from kinematify.validation.task.collision import CollisionWorld
-from kinematify.validation.task.kinematics import Arm
-from kinematify.validation.task.manifold import search_manifold
-from kinematify.validation.task.place import object_motion
-from kinematify.validation.task.planning import Failure, PullPlan, depend, plan_pull
-from kinematify.validation.task.pull import Puller
-from kinematify.validation.task.request import PULL, TaskRequest
-from kinematify.validation.task.robot import builtin_robot
-from tests.validation.task.furniture import SETTINGS, write_covered_drawer, write_door_cabinet, write_drawer_cabinet
+from tests.manipulation.furniture import SETTINGS, write_covered_drawer, write_door_cabinet, write_drawer_cabinet
 
 PLAN = SETTINGS.task.plan
 
@@ -190,7 +190,7 @@ def test_fresh_process_makes_the_same_plan(tmp_path: Path) -> None:
     urdf = write_drawer_cabinet(tmp_path / "cabinet.urdf")
     program = (
         "import sys, hashlib; from pathlib import Path; import numpy as np\n"
-        "from tests.validation.task.test_planning import *\n"
+        "from tests.manipulation.test_planning import *\n"
         f"arm = Arm(builtin_robot(Path({str(tmp_path)!r})), PLAN)\n"
         f"plan = plan_pull(arm, scene_of(Path({str(urdf)!r})), 'slide', SETTINGS.task)\n"
         "print(hashlib.sha256(plan.reach.tobytes() + plan.pull.tobytes()).hexdigest())\n"

@@ -9,15 +9,15 @@ import pytest
 
 from kinematify.cli.app import run
 from kinematify.errors import InputError
-from kinematify.validation.geometry.scene import read_scene
-from kinematify.validation.read import read_model
-from kinematify.validation.task import execute_mujoco, execute_pybullet
-from kinematify.validation.task.execute import Hold, load
-from kinematify.validation.task.kinematics import Arm
-from kinematify.validation.task.pour import GRASP, PourPlan, plan_pour
-from kinematify.validation.task.pour_scene import Vessel, pour_motion, read_vessel, write_pour
-from kinematify.validation.task.robot import builtin_robot
-from tests.validation.task.furniture import SETTINGS, box
+from kinematify.geometry.scene import read_scene
+from kinematify.manipulation import execute_mujoco, execute_pybullet
+from kinematify.manipulation.execute import Hold, load
+from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.pour import GRASP, PourPlan, plan_pour
+from kinematify.manipulation.pour_scene import Vessel, pour_motion, read_vessel, write_pour
+from kinematify.manipulation.robot import builtin_robot
+from kinematify.robot.read import read_model
+from tests.manipulation.furniture import SETTINGS, box
 
 
 def ring(radius: float, height: float, sides: int) -> str:

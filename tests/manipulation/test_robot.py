@@ -9,12 +9,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.scene import read_scene, relative
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
-from kinematify.validation.task.robot import GRASP_LINK, TaskRobot, builtin_robot, user_robot
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.scene import read_scene, relative
+from kinematify.manipulation.robot import GRASP_LINK, TaskRobot, builtin_robot, user_robot
+from kinematify.robot.read import read_model
 
 BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[4] / "shared" / "bench"))
 needs_bench = pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from kinematify.assembly.robot import forward_kinematics
-from kinematify.errors import InputError
-from kinematify.validation.read import read_model
-from kinematify.validation.task.copies import write_scaled
-from kinematify.validation.task.sizes import SIZES, category_of, is_normalised, sizing
 from tests.validation.task import furniture
+
+from kinematify.errors import InputError
+from kinematify.manipulation.copies import write_scaled
+from kinematify.manipulation.sizes import SIZES, category_of, is_normalised, sizing
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics
 
 BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[4] / "shared" / "bench"))
 

@@ -10,16 +10,16 @@ import pytest
 from lxml import etree
 
 from kinematify.cli.app import run
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.scene import read_scene
+from kinematify.geometry.together import looked_at, random_rows
+from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.srdf import DisableReason, disabled_pairs, write_srdf
+from kinematify.robot.read import read_model
 from kinematify.validation.geometry.judge_rest import allowed_pairs
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import read_scene
-from kinematify.validation.geometry.together import looked_at, random_rows
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
-from kinematify.validation.task.robot import builtin_robot
-from kinematify.validation.task.srdf import DisableReason, disabled_pairs, write_srdf
 
 SETTINGS = load_settings()
 STUCK = """<robot name="stuck">

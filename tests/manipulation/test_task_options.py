@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.validation.task.arm import write_arm
-from tests.validation.task.furniture import write_drawer_cabinet
+from kinematify.manipulation.arm import write_arm
+from tests.manipulation.furniture import write_drawer_cabinet
 
 if TYPE_CHECKING:
     from pathlib import Path

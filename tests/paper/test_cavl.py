@@ -19,9 +19,8 @@ from kinematify.config import load_config
 from kinematify.contact.graph import ContactEdge, ContactSamples
 from kinematify.errors import ConfigError
 from kinematify.geometry.sampling import sample_surface
-from kinematify.geometry.sdf_grid import SignedDistanceCache, exact_distance
 from kinematify.joints.candidate import JointCandidate, JointType
-from kinematify.joints.cavl import (
+from kinematify.paper.cavl import (
     CavlScene,
     CavlSide,
     cavl_scene,
@@ -31,13 +30,14 @@ from kinematify.joints.cavl import (
     refine,
     virtual_motions,
 )
-from kinematify.joints.contact_region import ContactRegion
-from kinematify.joints.motion import revolve, slide, unit_axis
-from kinematify.joints.paper import estimate_paper_joint, paper_candidates
+from kinematify.paper.contact_region import ContactRegion
+from kinematify.paper.joints import estimate_paper_joint, paper_candidates
+from kinematify.paper.motion import revolve, slide, unit_axis
+from kinematify.paper.sdf_grid import SignedDistanceCache, exact_distance
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import CavlConfig
+    from kinematify.robot.arrays import FloatArray
 
 DEFAULT, PAPER = load_config().cavl, load_config("paper").cavl
 REVOLUTE, PRISMATIC = JointType.REVOLUTE, JointType.PRISMATIC

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from kinematify.joints.motion import (
+from kinematify.paper.motion import (
     cross_matrix,
     prismatic_transform,
     revolute_transform,

@@ -12,7 +12,7 @@ import trimesh
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.geometry.sdf_grid import (
+from kinematify.paper.sdf_grid import (
     SignedDistanceCache,
     SignedDistanceGrid,
     exact_distance,
@@ -22,8 +22,8 @@ from kinematify.geometry.sdf_grid import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.geometry.sdf import SignedDistanceField
+    from kinematify.paper.sdf import SignedDistanceField
+    from kinematify.robot.arrays import FloatArray
 
 CONFIG = load_config().sdf.model_copy(
     update={"resolution": 48, "margin": 0.1, "band_cells": 2.0, "cache_bytes": 10_000_000}

@@ -9,10 +9,10 @@ import trimesh
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.geometry.field_source import field_source
 from kinematify.geometry.sampling import sample_surface
-from kinematify.geometry.sdf_grid import exact_signed_distance
-from kinematify.geometry.sdf_neural import NeuralSignedDistanceField, train_fields
+from kinematify.paper.field_source import field_source
+from kinematify.paper.sdf_grid import exact_signed_distance
+from kinematify.paper.sdf_neural import NeuralSignedDistanceField, train_fields
 
 CONFIG = load_config().sdf.neural.model_copy(update={"device": "cpu"})
 

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from kinematify.errors import OutputError
+from kinematify.generate.procedural.families import FAMILIES
 from kinematify.pipeline.gallery import write_gallery
-from kinematify.sources.procedural.families import FAMILIES
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
 LARGEST, LARGEST_IN_ALL = 60_000, 2_500_000  # bytes

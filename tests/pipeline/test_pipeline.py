@@ -23,7 +23,7 @@ from tests.objects import BUILDERS, KnownObject, posed, rotation, shuffled, with
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 DEFAULT, PAPER = load_config(), load_config("paper")
 

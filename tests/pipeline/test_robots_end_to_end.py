@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.benchmark.datasets import CONDITIONS, find_objects
-from kinematify.benchmark.job import Job, run_job
 from kinematify.config import load_config
+from kinematify.evaluation.datasets import CONDITIONS, find_objects
+from kinematify.evaluation.job import Job, run_job
 
 if TYPE_CHECKING:
-    from kinematify.benchmark.job import JobResult
+    from kinematify.evaluation.job import JobResult
 
 BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 REST = next(condition for condition in CONDITIONS if condition.name == "rest")

@@ -14,15 +14,16 @@ import trimesh
 import kinematify
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
-from kinematify.benchmark.metrics import JointScore, ObjectScore
-from kinematify.benchmark.perturb import PERTURBATIONS, perturbed, without_pieces
-from kinematify.benchmark.prediction import PredictedJoint, Prediction
-from kinematify.benchmark.refining import OFF, RefiningResult, TierResult
-from kinematify.benchmark.refining_report import harmed, load_refining_report, markdown
-from kinematify.benchmark.tree_metrics import TreeDistance
 from kinematify.cli.app import run
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
+from kinematify.evaluation.metrics import JointScore, ObjectScore
+from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
+from kinematify.evaluation.prediction import PredictedJoint, Prediction
+from kinematify.evaluation.refining import OFF, RefiningResult, TierResult
+from kinematify.evaluation.refining_report import harmed, load_refining_report, markdown
+from kinematify.evaluation.tree_metrics import TreeDistance
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.refinement import loop, refine
@@ -31,7 +32,6 @@ from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.validation.finding import Severity
 from kinematify.validation.inferred import round_rows
-from kinematify.validation.settings import load_settings
 from tests.objects import BUILDERS
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -8,9 +8,6 @@ import trimesh
 from PIL import Image
 
 from kinematify.config import load_config
-from kinematify.geometry.camera import fit_camera
-from kinematify.geometry.glyphs import sliding_arrow, turning_arrow
-from kinematify.geometry.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.geometry.rays import RayScene
 from kinematify.joints.candidate import JointType
 from kinematify.model.palette import link_colors
@@ -23,6 +20,9 @@ from kinematify.model.scene import (
     opened_configuration,
     posed_meshes,
 )
+from kinematify.render.camera import fit_camera
+from kinematify.render.glyphs import sliding_arrow, turning_arrow
+from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from tests.mechanisms import box, chain, door, drawer, flat_and_fixed, knob
 
 CONFIG = load_config().preview.model_copy(update={"panel_width": 240, "panel_height": 220})

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 import trimesh
 
-from kinematify.assembly.description import (
+from kinematify.errors import DescriptionError
+from kinematify.robot.description import (
     forward_kinematics,
     joint_values,
     read_description,
     rest_configuration,
     rigid_groups,
 )
-from kinematify.assembly.joint_type import JointType
-from kinematify.errors import DescriptionError
+from kinematify.robot.joint_type import JointType
 
 BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")

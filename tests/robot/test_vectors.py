@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.assembly.vectors import crossed, dots, highest, lengths_of, lowest
+from kinematify.robot.vectors import crossed, dots, highest, lengths_of, lowest
 
 
 @pytest.mark.parametrize("shape", [(3,), (1, 3), (500, 3), (20, 7, 3)])

@@ -7,19 +7,19 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinematify.config.validation import load_settings
+from kinematify.robot.read import read_model
+from kinematify.simulation.prepare import prepare
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
 from kinematify.validation.report import JointCurve
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kinematify.config.validation import ValidationSettings
     from kinematify.validation.report import Summary
-    from kinematify.validation.settings import ValidationSettings
 
 Vector = tuple[float, float, float]
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
@@ -17,7 +18,6 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.evidence.stage import run
 from kinematify.validation.finding import CheckResult, Finding
 from kinematify.validation.report import JointSummary
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from tests.known import KnownJoint, KnownObject, rotation
 

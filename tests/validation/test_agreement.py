@@ -13,6 +13,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from kinematify.config.validation import load_settings
+from kinematify.robot.read import read_model
+from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.validation import agreement
 from kinematify.validation.engines import mujoco_stage, pinocchio_stage, pybullet_stage
 from kinematify.validation.engines.configurations import (
@@ -24,10 +28,6 @@ from kinematify.validation.engines.configurations import (
 )
 from kinematify.validation.engines.loading import LoadedJoint, LoadedModel, compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
-from kinematify.validation.prepare.prepared import URDF_FILE, load_prepared
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 from tests.validation.engine_models import Box, Model, Part, cabinet, prepared_request, tell
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.sources.procedural.solids import box, union
+from kinematify.generate.procedural.solids import box, union
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Severity, Status
 from kinematify.validation.report import JointSummary

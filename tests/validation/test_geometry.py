@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kinematify.config.validation import load_settings
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.catalogue.geometry import CHECKS
 from kinematify.validation.engine_results import EXACT
@@ -16,7 +17,6 @@ from kinematify.validation.engines.configurations import read_poses
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.geometry.stage import run
 from kinematify.validation.report import JointSummary, PairTable
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
 

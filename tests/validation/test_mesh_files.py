@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from kinematify.config.validation import load_settings
+from kinematify.robot.declared import DeclaredModel
 from kinematify.validation.asset.meshes import check_mesh_files
 from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.declared import DeclaredModel
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 
 SETTINGS = load_settings()

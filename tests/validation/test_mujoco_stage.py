@@ -10,18 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kinematify.config.validation import load_settings
+from kinematify.robot.mechanism import Mechanism, sweep_rows
+from kinematify.robot.read import read_model
+from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.validation.catalogue.engines import CHECKS
 from kinematify.validation.engines.configurations import agreement_configurations, read_poses
 from kinematify.validation.engines.freely import find_drop, find_growth
-from kinematify.validation.engines.mechanism import Mechanism, sweep_rows
 from kinematify.validation.engines.mujoco_stage import run
 from kinematify.validation.engines.placed import link_poses
 from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.finding import Blame, Finding, Severity, Status
-from kinematify.validation.prepare.prepared import URDF_FILE, load_prepared
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import OpenCheck, StageRequest
 from tests.validation.engine_models import (
     Box,

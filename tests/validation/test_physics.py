@@ -10,11 +10,11 @@ import pytest
 import trimesh
 from lxml import etree
 
+from kinematify.config.validation import load_settings
 from kinematify.validation.asset.stage import PROBES, run
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.catalogue.physics import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from tests.validation.engine_models import Box, Model, Part
 

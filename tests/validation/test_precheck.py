@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
+from kinematify.robot.read import read_model
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.precheck.document import precheck
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 
 CLEAN = """\

@@ -18,18 +18,18 @@ from hypothesis import strategies as st
 from manifold3d import Manifold
 from trimesh.transformations import euler_matrix
 
-from kinematify.assembly.robot import forward_kinematics
+from kinematify.config.validation import ValidationSettings, load_settings
+from kinematify.geometry.boards import convex_chunks, taken_apart
+from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
+from kinematify.geometry.cut import Concave, Surface, cut_worst_first, split
+from kinematify.geometry.cut_cache import cache_folder
+from kinematify.model.masses import lifted
+from kinematify.model.urdf_elements import roll_pitch_yaw
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics
+from kinematify.simulation.prepare import run
+from kinematify.simulation.prepared import Method, Prepared, load_prepared
 from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.convex import ConvexPiece, convex_piece, surface_points
-from kinematify.validation.prepare.boards import convex_chunks, taken_apart
-from kinematify.validation.prepare.cache import cache_folder
-from kinematify.validation.prepare.cut import Concave, Surface, cut_worst_first, split
-from kinematify.validation.prepare.document import roll_pitch_yaw
-from kinematify.validation.prepare.masses import lifted
-from kinematify.validation.prepare.prepared import Method, Prepared, load_prepared
-from kinematify.validation.prepare.stage import run
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import ValidationSettings, load_settings
 from kinematify.validation.stage import Recorder, StageRequest
 from tests.engines import quiet
 

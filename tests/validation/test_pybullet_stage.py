@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 import trimesh
 
+from kinematify.config.validation import load_settings
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.read import read_model
+from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.validation.catalogue.engines import CHECKS
 from kinematify.validation.engines.configurations import agreement_configurations, read_poses
-from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.engines.placed import link_poses
 from kinematify.validation.engines.pybullet_measure import measure
 from kinematify.validation.engines.pybullet_model import load
 from kinematify.validation.engines.pybullet_stage import run
 from kinematify.validation.finding import Blame, Finding, Severity, Status
-from kinematify.validation.prepare.prepared import URDF_FILE, load_prepared
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
 from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
 
 IDS = {check.id for check in CHECKS if "pybullet" in check.engines}

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from kinematify.config.validation import load_settings
 from kinematify.model.kinematics import forward_kinematics
+from kinematify.robot.read import read_model
 from kinematify.validation.formats.picture import Drawing, drawing_of, shown_model
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
 
 GRIPPER = """<robot name="gripper">
   <link name="world"/>

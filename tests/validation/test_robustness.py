@@ -9,10 +9,9 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
-from corruption.bases import Base, built_base
-from corruption.cases import KINDS, write_case
-from corruption.runner import READY, Plan, hurried, run_case
-
+from kinematify.evaluation.studies.corruption.bases import Base, built_base
+from kinematify.evaluation.studies.corruption.cases import KINDS, write_case
+from kinematify.evaluation.studies.corruption.runner import READY, Plan, hurried, run_case
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.plan import later_stages, needed
 from kinematify.validation.run import validate

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.solids import box
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.solids import box
-from kinematify.validation.engines.mechanism import Mechanism
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.read import read_model, read_without_geometry
 from kinematify.validation.engines.surfaces import surfaces_meet
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.read import read_model, read_without_geometry
 from kinematify.validation.run import validate
-from kinematify.validation.settings import load_settings
 from tests.known import known_object, sliding
 from tests.validation.planted import write
 

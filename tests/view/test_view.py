@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics
 from kinematify.cli.app import run
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
+from kinematify.config.validation import load_settings
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import Alternative, load_alternatives
 from kinematify.view.scene import ViewScene
 

@@ -17,12 +17,12 @@ import trimesh
 from PIL import Image
 
 from kinematify import infer, load_assembly
-from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate, JointEstimate
+from kinematify.robot.joint_type import JointType
 from kinematify.vision.answer import JointQuestion, JointVotes, Vote, read_answer
 from kinematify.vision.client import ADDRESS, KEY, ChatOracle, oracle_of
 from kinematify.vision.question import joint_question

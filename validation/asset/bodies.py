@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from kinematify.assembly.robot import forward_kinematics, rigid_groups
-from kinematify.assembly.vectors import crossed, lengths_of
+from kinematify.geometry.convex import outermost, signed_volume
 from kinematify.geometry.hull import thickened
-from kinematify.validation.convex import outermost, signed_volume
+from kinematify.robot.robot import forward_kinematics, rigid_groups
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import LinkMesh
-    from kinematify.validation.declared import DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.validation.settings import PhysicsSettings
+    from kinematify.config.validation import PhysicsSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.robot.robot import LinkMesh
 
 _DIRECTIONS = 200
 """The hull of the outermost points in so many directions leaves 1 % of a ball's volume out."""

@@ -13,9 +13,9 @@ from kinematify.validation.precheck.problem import Problem
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredLink
     from kinematify.validation.asset.bodies import Body, Physics, Room
-    from kinematify.validation.declared import DeclaredLink
 
 
 def missing_collisions(physics: Physics) -> Iterator[Problem]:

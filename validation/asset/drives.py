@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, rest_configuration
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.validation.engines.configurations import spread_rows
 from kinematify.validation.finding import Severity
 from kinematify.validation.precheck.problem import Problem
@@ -15,9 +15,9 @@ from kinematify.validation.precheck.problem import Problem
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredJoint
     from kinematify.validation.asset.bodies import Physics
-    from kinematify.validation.declared import DeclaredJoint
 
 _GRAVITY = 9.81
 _NO_LIMIT = np.pi

@@ -13,9 +13,9 @@ from kinematify.validation.precheck.problem import Problem
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredInertial, DeclaredLink
     from kinematify.validation.asset.bodies import Body, Physics, Room
-    from kinematify.validation.declared import DeclaredInertial, DeclaredLink
 
 _ROUNDING = 1e-9
 """Relative rounding of moments that were read from text."""

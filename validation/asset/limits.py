@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.precheck.problem import Problem
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.assembly.robot import DescribedJoint
+    from kinematify.robot.declared import DeclaredJoint
+    from kinematify.robot.robot import DescribedJoint
     from kinematify.validation.asset.bodies import Physics
-    from kinematify.validation.declared import DeclaredJoint
 
 _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""

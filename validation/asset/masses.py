@@ -10,8 +10,8 @@ from kinematify.validation.precheck.problem import Problem
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kinematify.robot.declared import DeclaredInertial, DeclaredLink
     from kinematify.validation.asset.bodies import Body, Physics, Room
-    from kinematify.validation.declared import DeclaredInertial, DeclaredLink
 
 
 def missing_masses(physics: Physics) -> Iterator[Problem]:

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.mesh_file import merged, read_meshes
 from kinematify.errors import AssemblyError
+from kinematify.robot.mesh_file import merged, read_meshes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.mesh_file import RawMesh
-    from kinematify.assembly.urdf_geometry import GeometrySource
-    from kinematify.validation.settings import FileSettings
+    from kinematify.config.validation import FileSettings
+    from kinematify.robot.mesh_file import RawMesh
+    from kinematify.robot.urdf_geometry import GeometrySource
 
 _MEGABYTE = 1_000_000
 

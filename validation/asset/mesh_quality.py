@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import crossed
-from kinematify.assembly.weld import welded
+from kinematify.robot.vectors import crossed
+from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
-    from kinematify.assembly.mesh_file import RawMesh
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.mesh_file import RawMesh
 
 
 @dataclass(frozen=True, kw_only=True)

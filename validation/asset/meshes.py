@@ -6,23 +6,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.urdf_document import parse_description
-from kinematify.assembly.urdf_geometry import geometry_source
 from kinematify.errors import DescriptionError
+from kinematify.robot.read import read_parsed
+from kinematify.robot.urdf_document import parse_description
+from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.validation.asset.mesh_files import open_mesh_files, worst_coordinate
 from kinematify.validation.asset.mesh_quality import surface_quality
 from kinematify.validation.asset.units import check_model_size, check_unit_slips
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.read import read_parsed
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-    from kinematify.assembly.urdf_geometry import GeometrySource
+    from kinematify.config.validation import FileSettings
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.urdf_geometry import GeometrySource
     from kinematify.validation.asset.mesh_files import MeshFile
     from kinematify.validation.asset.mesh_quality import SurfaceQuality
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.settings import FileSettings
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
     Measured = list[tuple[MeshFile, SurfaceQuality]]

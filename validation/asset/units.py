@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import forward_kinematics
+from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredLink, DeclaredModel
-    from kinematify.validation.settings import FileSettings
+    from kinematify.config.validation import FileSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredLink, DeclaredModel
     from kinematify.validation.stage import OpenCheck
 
 

@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
-from kinematify.assembly.robot import joint_values, rest_configuration
+from kinematify.robot.arrays import read_only
+from kinematify.robot.robot import joint_values, rest_configuration
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import DescribedJoint, RobotDescription
-    from kinematify.validation.settings import AgreementSettings
+    from kinematify.config.validation import AgreementSettings
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import DescribedJoint, RobotDescription
 
 GRAVITY = 9.81
 """Along -z of the root link's frame [m/s^2]; every engine is set to it."""

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.engines.mechanism import sweep_rows
+from kinematify.robot.mechanism import sweep_rows
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.engines.mechanism import Mechanism, Travel
-    from kinematify.validation.settings import EngineSettings
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Mechanism, Travel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.simulation.prepared import Method
 from kinematify.validation.finding import Severity
-from kinematify.validation.prepare.prepared import Method
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.outcome import Case
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import EngineSettings
     from kinematify.validation.stage import OpenCheck
 
 _HARDLY = 0.02

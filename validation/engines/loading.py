@@ -12,9 +12,9 @@ from kinematify.validation.finding import Severity
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kinematify.assembly.robot import DescribedJoint
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.prepare.prepared import Prepared
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import DescribedJoint
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.stage import OpenCheck
 
 ENGINE_TITLES = {"mujoco": "MuJoCo", "pybullet": "PyBullet", "pinocchio": "Pinocchio"}

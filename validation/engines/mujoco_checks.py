@@ -35,14 +35,14 @@ from kinematify.validation.finding import Blame
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.mujoco_drive import Bench, Session
     from kinematify.validation.engines.mujoco_measure import Measured
     from kinematify.validation.engines.mujoco_model import MujocoModel, Source
     from kinematify.validation.engines.mujoco_runs import Trajectories
     from kinematify.validation.engines.touching import Touching
-    from kinematify.validation.prepare.prepared import Prepared
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 ENGINE = "mujoco"

@@ -23,15 +23,15 @@ from kinematify.validation.engines.touching import Contacts, touching
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.drive import Drive, Servos
-    from kinematify.validation.engines.mechanism import Mechanism
     from kinematify.validation.engines.mujoco_measure import Measured
     from kinematify.validation.engines.mujoco_model import MujocoModel, Source
     from kinematify.validation.engines.mujoco_runs import Trajectories
     from kinematify.validation.engines.touching import Touching
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import EngineSettings
 
 _LOOKS = 16
 """Looks at the contacts on the way to an end."""

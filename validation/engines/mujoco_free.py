@@ -21,7 +21,7 @@ from kinematify.validation.engines.mujoco_model import (
 from kinematify.validation.engines.mujoco_runs import STATE, simulate, start_state
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.engines.mujoco_drive import Bench
     from kinematify.validation.engines.mujoco_model import MujocoModel, Source
     from kinematify.validation.engines.mujoco_runs import Trajectories

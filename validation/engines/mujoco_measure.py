@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.validation.engines.touching import Contacts, deepest
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.validation.engines.mujoco_model import MujocoModel
 
 

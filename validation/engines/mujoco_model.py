@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.engines.mechanism import Mechanism
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.mechanism import Mechanism
     from kinematify.validation.engines.touching import Touching
 
 _RESERVED = "world"

@@ -12,7 +12,7 @@ from mujoco import rollout
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.engines.mujoco_model import MujocoModel
 
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.read import read_without_geometry
+from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.catalogue.engines import CHECKS
 from kinematify.validation.engines.configurations import EnginePoses, agreement_configurations, write_poses
 from kinematify.validation.engines.loading import LoadedJoint, LoadedModel, compare_with_file
-from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.engines.mujoco_checks import ENGINE, MujocoWork, simulate_all
 from kinematify.validation.engines.mujoco_measure import measure
 from kinematify.validation.engines.mujoco_model import Refused, compiled, parse
@@ -19,16 +21,14 @@ from kinematify.validation.engines.outcome import find_overlaps
 from kinematify.validation.engines.placed import find_misplaced, link_poses
 from kinematify.validation.engines.touching import touching
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.prepare.prepared import load_prepared
-from kinematify.validation.read import read_without_geometry
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.mujoco_model import MujocoModel, Source
-    from kinematify.validation.prepare.prepared import Prepared
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 _IDS = tuple(check.id for check in CHECKS if ENGINE in check.engines)

@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.engines.mechanism import sweep_rows
+from kinematify.robot.mechanism import sweep_rows
+from kinematify.robot.read import model_of
 from kinematify.validation.engines.surfaces import surfaces_meet
 from kinematify.validation.engines.touching import stand_in_error, stand_in_reason
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.read import model_of
 from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Mechanism, Travel
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.drive import Drive
-    from kinematify.validation.engines.mechanism import Mechanism, Travel
     from kinematify.validation.engines.touching import Touching
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import EngineSettings
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 

@@ -8,6 +8,8 @@ import numpy as np
 import pinocchio as pin
 from lxml import etree
 
+from kinematify.robot.read import read_without_geometry
+from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.engines.configurations import (
     GRAVITY,
     EnginePoses,
@@ -15,13 +17,11 @@ from kinematify.validation.engines.configurations import (
     write_poses,
 )
 from kinematify.validation.engines.loading import LoadedJoint, LoadedModel, compare_with_file
-from kinematify.validation.prepare.prepared import load_prepared
-from kinematify.validation.read import read_without_geometry
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.validation.engines.configurations import Configurations
     from kinematify.validation.stage import Recorder, StageRequest
 

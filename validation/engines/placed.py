@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.engines.loading import ENGINE_TITLES
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint, RobotDescription
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import DescribedJoint, RobotDescription
     from kinematify.validation.engines.configurations import Configurations
-    from kinematify.validation.settings import EngineSettings
     from kinematify.validation.stage import OpenCheck
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
+from kinematify.robot.mechanism import sweep_rows
 from kinematify.validation.engines.drive import drives, servos
-from kinematify.validation.engines.mechanism import sweep_rows
 from kinematify.validation.engines.outcome import Driven
 from kinematify.validation.engines.pybullet_measure import measure
 from kinematify.validation.engines.touching import Contacts, touching
@@ -18,14 +18,14 @@ from kinematify.validation.engines.touching import Contacts, touching
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.drive import Drive, Servos
-    from kinematify.validation.engines.mechanism import Mechanism
     from kinematify.validation.engines.pybullet_measure import Measured
     from kinematify.validation.engines.pybullet_model import PybulletModel
     from kinematify.validation.engines.touching import Touching
-    from kinematify.validation.prepare.prepared import Prepared
-    from kinematify.validation.settings import EngineSettings
 
 _LOOKS = 16
 """Looks at the contacts on the way to an end."""

@@ -12,7 +12,7 @@ from kinematify.validation.engines.configurations import GRAVITY
 from kinematify.validation.engines.pybullet_drive import Motors, fastest_link
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.engines.pybullet_drive import Bench
     from kinematify.validation.engines.pybullet_model import PybulletModel
 

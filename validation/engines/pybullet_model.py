@@ -15,18 +15,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
+from kinematify.simulation.prepared import Method
 from kinematify.validation.engines.configurations import GRAVITY
 from kinematify.validation.engines.loading import LoadedJoint, LoadedModel
 from kinematify.validation.engines.touching import Contacts, deepest
-from kinematify.validation.prepare.prepared import Method
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.engines.mechanism import Mechanism
-    from kinematify.validation.prepare.prepared import Prepared
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
 
 _FLAGS = (
     bullet.URDF_USE_SELF_COLLISION

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.read import read_without_geometry
+from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.catalogue.engines import CHECKS
 from kinematify.validation.engines.configurations import (
     GRAVITY,
@@ -23,7 +26,6 @@ from kinematify.validation.engines.freely import (
     usable_efforts,
 )
 from kinematify.validation.engines.loading import compare_with_file
-from kinematify.validation.engines.mechanism import Mechanism
 from kinematify.validation.engines.outcome import (
     Case,
     find_escapes,
@@ -40,21 +42,19 @@ from kinematify.validation.engines.pybullet_model import Refused, link_masses, l
 from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.engines.touching import touching
 from kinematify.validation.finding import Severity
-from kinematify.validation.prepare.prepared import load_prepared
-from kinematify.validation.read import read_without_geometry
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.engines.outcome import Driven
     from kinematify.validation.engines.pybullet_drive import Bench, Session
     from kinematify.validation.engines.pybullet_free import Free
     from kinematify.validation.engines.pybullet_measure import Measured
     from kinematify.validation.engines.pybullet_model import PybulletModel
     from kinematify.validation.engines.touching import Touching
-    from kinematify.validation.prepare.prepared import Prepared
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 ENGINE = "pybullet"

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import rigid_groups
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.scene import read_scene, relative
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.scene import read_scene, relative
+from kinematify.robot.robot import rigid_groups
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.declared import DeclaredModel
-    from kinematify.validation.settings import GeometrySettings
+    from kinematify.config.validation import GeometrySettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
 
 
 def surfaces_meet(

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.prepare.prepared import Method
+from kinematify.simulation.prepared import Method
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.engines.mechanism import Mechanism
-    from kinematify.validation.prepare.prepared import Prepared
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,18 +11,18 @@ from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.contact.build import build_contact_graph, exact_gap
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.bearing import fit_edge, score_line
+from kinematify.joints.hypotheses.bearing import fit_edge, score_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.robot import RobotDescription
     from kinematify.assembly.truth import GroundTruth
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearing_line import BearingLine, EdgeBearing
-    from kinematify.joints.line import Line
+    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
+    from kinematify.joints.hypotheses.line import Line
+    from kinematify.robot.robot import RobotDescription
 
 Pair = tuple[int, int]
 """Two bodies, the lower index first."""

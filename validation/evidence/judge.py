@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.config.validation import EvidenceSettings
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies
     from kinematify.validation.evidence.measure import JointMeasures
-    from kinematify.validation.settings import EvidenceSettings
 
 PARENT, DIRECTION, PLACE, FIT = "KV341", "KV342", "KV343", "KV344"
 TYPE, OPENING, TRAVEL, RANGE = "KV345", "KV346", "KV347", "KV348"

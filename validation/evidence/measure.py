@@ -11,26 +11,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.vectors import crossed, lengths_of
-from kinematify.joints.decide import weigh_joints
-from kinematify.joints.line import Line
-from kinematify.joints.panels import GIVEN
-from kinematify.joints.quality import edge_quality
-from kinematify.joints.scene import part_frames
-from kinematify.joints.workspace import PartCache
+from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.hypotheses.line import Line
+from kinematify.joints.hypotheses.panels import GIVEN
+from kinematify.joints.measure.quality import edge_quality
+from kinematify.joints.measure.scene import part_frames
+from kinematify.joints.measure.workspace import PartCache
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import JointsConfig
-    from kinematify.joints.decide import WeighedJoints
+    from kinematify.config.validation import EvidenceSettings
+    from kinematify.joints.choice.decide import WeighedJoints
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies, Pair
-    from kinematify.validation.settings import EvidenceSettings
 
     BoolArray = NDArray[np.bool_]
 

@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, rest_configuration
 from kinematify.config import load_config
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import model_of
+from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.evidence.bodies import read_bodies
 from kinematify.validation.evidence.judge import better_joint, doubts_about
 from kinematify.validation.evidence.measure import measure_joints
-from kinematify.validation.read import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:
     from typing import Any
 
-    from kinematify.assembly.robot import RobotDescription
     from kinematify.assembly.truth import TrueJoint
+    from kinematify.robot.robot import RobotDescription
     from kinematify.validation.evidence.bodies import Bodies
     from kinematify.validation.evidence.judge import Alternative, Doubt
     from kinematify.validation.stage import Recorder, StageRequest

@@ -11,23 +11,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Part
-from kinematify.assembly.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.config import load_config
 from kinematify.model.kinematic_model import Inertial, Joint, KinematicModel, Link
 from kinematify.model.preview import render_preview
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.isolation import Stage, run_stages
-from kinematify.validation.read import read_model
 from kinematify.validation.stage import StageRequest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import DescribedJoint, RigidGroup, RobotDescription
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import DescribedJoint, RigidGroup, RobotDescription
     from kinematify.validation.stage import Recorder
 
 _FILE = "picture.png"

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 import fast_simplification
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, rest_configuration, rigid_groups
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.assembly.robot import DescribedJoint, RigidGroup, RobotDescription
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import DescribedJoint, RigidGroup, RobotDescription
 
     Poses = dict[str, FloatArray]
 

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.scene import relative
 from kinematify.validation.engines.configurations import EnginePoses, agreement_configurations
-from kinematify.validation.geometry.scene import relative
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray, IntArray
-    from kinematify.validation.geometry.overlap import Overlap
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 def exact_contacts(scene: Scene, overlap: Overlap, settings: ValidationSettings) -> EnginePoses:

@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from kinematify.geometry.convex import outermost
 from kinematify.geometry.hull import thickened
-from kinematify.validation.convex import outermost
+from kinematify.geometry.scene import inverse, relative
 from kinematify.validation.finding import Severity
 from kinematify.validation.geometry.remark import Remark, configuration, in_document_order, joint_value, length
-from kinematify.validation.geometry.scene import inverse, relative
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.geometry.rest import Allowance
-    from kinematify.validation.geometry.scene import Pair, Scene
-    from kinematify.validation.geometry.sweep import JointSweep, Sweeper
+    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.geometry.sweep import JointSweep, Sweeper
+    from kinematify.robot.arrays import FloatArray
 
 _THICKNESS = 1e-4  # of the model's size: no hull of a plane
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.scene import relative, transformed
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.remark import (
     SLIMMER,
@@ -22,15 +23,14 @@ from kinematify.validation.geometry.remark import (
     joint_value,
     length,
 )
-from kinematify.validation.geometry.scene import relative, transformed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from kinematify.validation.geometry.overlap import Overlap
-    from kinematify.validation.geometry.rest import Allowance
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.geometry.sweep import JointSweep, Meeting, Side
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.scene import Scene
+    from kinematify.geometry.sweep import JointSweep, Meeting, Side
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

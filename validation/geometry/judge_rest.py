@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.rest import Reason
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.remark import SLIMMER, UNSEEN, Remark, configuration, in_document_order, length
-from kinematify.validation.geometry.rest import Reason
 from kinematify.validation.report import PairSummary, PairTable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.validation.geometry.overlap import Overlap
-    from kinematify.validation.geometry.rest import Allowance, AtRest
-    from kinematify.validation.geometry.scene import Pair, Scene
-    from kinematify.validation.geometry.sweep import JointSweep
-    from kinematify.validation.geometry.together import Configurations
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.rest import Allowance, AtRest
+    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.geometry.sweep import JointSweep
+    from kinematify.geometry.together import Configurations
 
 
 def strangers(scene: Scene, allowance: Allowance, visible: Allowance | None) -> Iterator[Remark]:

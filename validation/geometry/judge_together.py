@@ -10,8 +10,8 @@ from kinematify.validation.geometry.remark import Remark, configuration, in_docu
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.geometry.together import Configurations, JointPair
+    from kinematify.geometry.scene import Scene
+    from kinematify.geometry.together import Configurations, JointPair
 
 
 def in_each_others_way(scene: Scene, found: Sequence[JointPair]) -> Iterator[Remark]:

@@ -10,8 +10,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.geometry.scene import Pair, Scene
     from kinematify.validation.finding import Blame, Severity
-    from kinematify.validation.geometry.scene import Pair, Scene
     from kinematify.validation.stage import OpenCheck
 
 

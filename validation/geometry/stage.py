@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.scene import read_scene, simplified, visible_shapes
+from kinematify.geometry.sweep import Sweeper
+from kinematify.geometry.together import joint_pairs, looked_at, random_rows
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import model_of
 from kinematify.validation.catalogue.geometry import CHECKS
 from kinematify.validation.engine_results import EXACT
 from kinematify.validation.engines.configurations import write_poses
@@ -28,21 +34,15 @@ from kinematify.validation.geometry.judge_rest import (
     strangers,
 )
 from kinematify.validation.geometry.judge_together import free_configurations, in_each_others_way
-from kinematify.validation.geometry.overlap import Overlap
-from kinematify.validation.geometry.rest import Allowance
-from kinematify.validation.geometry.scene import read_scene, simplified, visible_shapes
-from kinematify.validation.geometry.sweep import Sweeper
-from kinematify.validation.geometry.together import joint_pairs, looked_at, random_rows
-from kinematify.validation.read import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
+    from kinematify.geometry.scene import Scene
+    from kinematify.geometry.sweep import JointSweep
+    from kinematify.geometry.together import Configurations
     from kinematify.validation.geometry.remark import Remark
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.geometry.sweep import JointSweep
-    from kinematify.validation.geometry.together import Configurations
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 _HULL_SAMPLES = 24

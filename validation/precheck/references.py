@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from kinematify.assembly.mesh_paths import MESH_SUFFIXES, find_mesh
 from kinematify.errors import DescriptionError
+from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
 from kinematify.validation.finding import Severity
 from kinematify.validation.precheck.problem import Problem, line_of, shown
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.assembly.urdf_document import MAX_URDF_BYTES, parse_text, syntax_errors
 from kinematify.errors import DescriptionError
+from kinematify.robot.urdf_document import MAX_URDF_BYTES, parse_text, syntax_errors
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.assembly.urdf_document import has_doctype
+from kinematify.robot.urdf_document import has_doctype
 from kinematify.validation.finding import Severity
 from kinematify.validation.precheck.problem import Problem, line_of, shown
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.validation.settings import FileSettings
+    from kinematify.config.validation import FileSettings
     from kinematify.validation.stage import StageRequest
 
 

@@ -6,19 +6,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.manipulation import execute_mujoco, execute_pybullet
+from kinematify.manipulation.execute import Execution, Hold, Loaded, load
+from kinematify.manipulation.film import write_film
+from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.pour import CARRIED, GRASP, PATH, REACH, PourPlan, plan_pour
+from kinematify.manipulation.pour_scene import read_vessel
+from kinematify.manipulation.robot import robot_of
 from kinematify.validation.catalogue.task import CHECKS
 from kinematify.validation.finding import Severity
-from kinematify.validation.task import execute_mujoco, execute_pybullet
-from kinematify.validation.task.execute import Execution, Hold, Loaded, load
-from kinematify.validation.task.film import write_film
-from kinematify.validation.task.kinematics import Arm
-from kinematify.validation.task.pour import CARRIED, GRASP, PATH, REACH, PourPlan, plan_pour
-from kinematify.validation.task.pour_scene import read_vessel
-from kinematify.validation.task.robot import robot_of
 
 if TYPE_CHECKING:
+    from kinematify.manipulation.request import TaskRequest
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
-    from kinematify.validation.task.request import TaskRequest
 
 _CHECK_OF = {GRASP: "KV702", REACH: "KV703", PATH: "KV704", CARRIED: "KV705"}
 _RUNS = (

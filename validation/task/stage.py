@@ -13,33 +13,34 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.geometry.scene import read_scene, visible_shapes
+from kinematify.manipulation import execute_mujoco, execute_pybullet
+from kinematify.manipulation.copies import write_scaled
+from kinematify.manipulation.execute import Execution, Hold, Loaded, load
+from kinematify.manipulation.film import write_film
+from kinematify.manipulation.grasp import joint_at
+from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.motion import Motion
+from kinematify.manipulation.place import object_box, standing_at
+from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pull
+from kinematify.manipulation.request import POUR
+from kinematify.manipulation.robot import robot_of
+from kinematify.manipulation.sizes import sizing
+from kinematify.robot.read import read_model
 from kinematify.validation.catalogue.task import CHECKS
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.scene import read_scene, visible_shapes
-from kinematify.validation.read import read_model
-from kinematify.validation.task import execute_mujoco, execute_pybullet, pour_stage
-from kinematify.validation.task.copies import write_scaled
-from kinematify.validation.task.execute import Execution, Hold, Loaded, load
-from kinematify.validation.task.film import write_film
-from kinematify.validation.task.grasp import joint_at
-from kinematify.validation.task.kinematics import Arm
-from kinematify.validation.task.motion import Motion
-from kinematify.validation.task.place import object_box, standing_at
-from kinematify.validation.task.planning import Failure, PullPlan, depend, plan_pull
-from kinematify.validation.task.request import POUR
-from kinematify.validation.task.robot import robot_of
-from kinematify.validation.task.sizes import sizing
+from kinematify.validation.task import pour_stage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.validation.geometry.scene import Scene
+    from kinematify.geometry.scene import Scene
+    from kinematify.manipulation.request import Suspicion, TaskRequest
+    from kinematify.manipulation.robot import TaskRobot
+    from kinematify.manipulation.sizes import Sizing
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
-    from kinematify.validation.task.request import Suspicion, TaskRequest
-    from kinematify.validation.task.robot import TaskRobot
-    from kinematify.validation.task.sizes import Sizing
 
 OBJECT_FILE = "object.urdf"
 LEEWAY = 20.0

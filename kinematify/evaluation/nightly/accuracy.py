@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.summary import summarise
-from kinematify.nightly.record import Problem, Run
+from kinematify.evaluation.nightly.record import Problem, Run
+from kinematify.evaluation.summary import summarise
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.metrics import JointScore, ObjectScore
-    from kinematify.nightly.settings import NightlySettings
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.metrics import JointScore, ObjectScore
+    from kinematify.evaluation.nightly.settings import NightlySettings
 
 LESS_IS_BETTER = ("angle_deg", "line_m", "ted")
 MORE_IS_BETTER = ("types", "root", "limit_iou", "opens")

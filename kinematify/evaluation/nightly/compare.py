@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
-from kinematify.nightly.accuracy import MORE_IS_BETTER, UNITS
+from kinematify.evaluation.nightly.accuracy import MORE_IS_BETTER, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kinematify.nightly.record import Run, RunKey
-    from kinematify.nightly.settings import NightlySettings
+    from kinematify.evaluation.nightly.record import Run, RunKey
+    from kinematify.evaluation.nightly.settings import NightlySettings
 
 
 class Class(StrEnum):

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.nightly.compare import Class
+from kinematify.evaluation.nightly.compare import Class
 from kinematify.validation.formats.junit import count_cases
 from kinematify.validation.formats.text import printable
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-    from kinematify.nightly.compare import Change
-    from kinematify.nightly.record import Run
-    from kinematify.nightly.store import Night
+    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.store import Night
 
 
 def as_junit(night: Night) -> str:

@@ -9,22 +9,22 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.benchmark.datasets import CONDITIONS, find_objects
-from kinematify.benchmark.job import INFER
-from kinematify.benchmark.ledger import Ledger
-from kinematify.benchmark.run import BenchmarkRequest, Variant, run_benchmark
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.nightly.accuracy import accuracy_run
-from kinematify.nightly.compare import compare, counts
-from kinematify.nightly.junit import as_junit
-from kinematify.nightly.pages.night import night_page
-from kinematify.nightly.pages.trends import trend_page
-from kinematify.nightly.record import RUN, SCHEMA
-from kinematify.nightly.scenario import accuracy_scenario, digest, validation_scenario, whole_code_version
-from kinematify.nightly.smoke import write_smoke_objects
-from kinematify.nightly.state import open_state
-from kinematify.nightly.store import (
+from kinematify.evaluation.datasets import CONDITIONS, find_objects
+from kinematify.evaluation.job import INFER
+from kinematify.evaluation.ledger import Ledger
+from kinematify.evaluation.nightly.accuracy import accuracy_run
+from kinematify.evaluation.nightly.compare import compare, counts
+from kinematify.evaluation.nightly.junit import as_junit
+from kinematify.evaluation.nightly.pages.night import night_page
+from kinematify.evaluation.nightly.pages.trends import trend_page
+from kinematify.evaluation.nightly.record import RUN, SCHEMA
+from kinematify.evaluation.nightly.scenario import accuracy_scenario, digest, validation_scenario, whole_code_version
+from kinematify.evaluation.nightly.smoke import write_smoke_objects
+from kinematify.evaluation.nightly.state import open_state
+from kinematify.evaluation.nightly.store import (
     JUNIT_FILE,
     MODELS,
     PAGE_FILE,
@@ -38,20 +38,20 @@ from kinematify.nightly.store import (
     replace_text,
     write_night,
 )
-from kinematify.nightly.validity import Unit, run_units, unit_request
-from kinematify.validation.settings import load_settings
+from kinematify.evaluation.nightly.validity import Unit, run_units, unit_request
+from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.benchmark.datasets import BenchObject
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.run import BenchmarkReport
-    from kinematify.nightly.compare import Change
-    from kinematify.nightly.record import Run
-    from kinematify.nightly.settings import NightlySettings
-    from kinematify.nightly.state import State
+    from kinematify.evaluation.datasets import BenchObject
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.settings import NightlySettings
+    from kinematify.evaluation.nightly.state import State
+    from kinematify.evaluation.run import BenchmarkReport
 
     Progress = Callable[[str, float], None]
 

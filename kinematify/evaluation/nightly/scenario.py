@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from kinematify.benchmark.datasets import BenchObject, Condition
-    from kinematify.nightly.settings import NightlySettings
-    from kinematify.validation.settings import ValidationSettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.evaluation.datasets import BenchObject, Condition
+    from kinematify.evaluation.nightly.settings import NightlySettings
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 _NO_INFLUENCE = ("cli", "nightly")

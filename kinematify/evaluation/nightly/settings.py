@@ -49,7 +49,7 @@ class NightlySettings(StageConfig):
     version: int
     """Part of every scenario."""
     data: str | None
-    """As `kinematify.benchmark.datasets.find_objects` takes it."""
+    """As `kinematify.evaluation.datasets.find_objects` takes it."""
     infer_config: str
     """Name or path of the configuration of the inference."""
     validation_config: str

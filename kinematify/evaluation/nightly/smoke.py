@@ -7,8 +7,8 @@ import shutil
 from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
+from kinematify.generate.procedural.request import from_text
 from kinematify.pipeline.generate import write_truth
-from kinematify.sources.procedural.request import from_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

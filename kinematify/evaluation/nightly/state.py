@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from kinematify import __version__
 from kinematify.errors import OutputError
-from kinematify.nightly.store import UNFINISHED, replace_text, unwritable
+from kinematify.evaluation.nightly.store import UNFINISHED, replace_text, unwritable
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -22,15 +22,15 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from kinematify.errors import InputError, OutputError
-from kinematify.nightly.compare import CHANGES
-from kinematify.nightly.record import RUN, SCHEMA
+from kinematify.evaluation.nightly.compare import CHANGES
+from kinematify.evaluation.nightly.record import RUN, SCHEMA
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from kinematify.nightly.compare import Change
-    from kinematify.nightly.record import Run, RunKey
+    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.record import Run, RunKey
 
 HEADER_FILE = "night.json"
 RUNS_FILE = "runs.jsonl"

@@ -1,4 +1,4 @@
-"""One validation of a night in a process of its own: ``python -m kinematify.nightly.unit REQUEST ANSWER``.
+"""One validation of a night in a process of its own: ``python -m kinematify.evaluation.nightly.unit REQUEST ANSWER``.
 
 Whatever happens to it, the night goes on.
 """
@@ -19,12 +19,13 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import TypeAdapter
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.nightly.record import Problem
 from kinematify.model.urdf import write_urdf
-from kinematify.nightly.record import Problem
+from kinematify.robot.description import read_description
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
@@ -32,14 +33,13 @@ from kinematify.validation.formats.picture import scene_of
 from kinematify.validation.formats.text import where
 from kinematify.validation.outcome import severity_counts, status_counts
 from kinematify.validation.run import validate
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from kinematify.config.validation import ValidationSettings
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.report import ValidationReport
-    from kinematify.validation.settings import ValidationSettings
 
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 _STATES = ("fail", "warn", "blocked", "pass", "skipped")

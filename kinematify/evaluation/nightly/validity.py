@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING
 
 from pydantic import ValidationError
 
-from kinematify.nightly.record import Run
-from kinematify.nightly.unit import ANSWER, REQUEST, UnitAnswer, UnitRequest
+from kinematify.evaluation.nightly.record import Run
+from kinematify.evaluation.nightly.unit import ANSWER, REQUEST, UnitAnswer, UnitRequest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kinematify.benchmark.datasets import BenchObject
-    from kinematify.nightly.settings import NightlySettings
+    from kinematify.evaluation.datasets import BenchObject
+    from kinematify.evaluation.nightly.settings import NightlySettings
 
 _LOOK = 0.05
 """Seconds between two looks at what has ended."""
@@ -113,7 +113,7 @@ def _start(unit: Unit, folder: Path) -> _Running:
     request.write_bytes(REQUEST.dump_json(unit.request))
     with log.open("wb") as out:
         process = subprocess.Popen(
-            [sys.executable, "-m", "kinematify.nightly.unit", str(request), str(answer)],
+            [sys.executable, "-m", "kinematify.evaluation.nightly.unit", str(request), str(answer)],
             stdin=subprocess.DEVNULL,
             stdout=out,
             stderr=subprocess.STDOUT,

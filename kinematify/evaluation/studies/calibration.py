@@ -11,8 +11,8 @@ import os
 import tempfile
 from pathlib import Path
 
-from kinematify.benchmark.calibration import judged_joints, write_calibration
-from kinematify.benchmark.run import BenchmarkRequest, run_benchmark
+from kinematify.evaluation.calibration import judged_joints, write_calibration
+from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
 from kinematify.pipeline.corpus import write_corpus
 
 HELD_OUT = 1213

@@ -16,31 +16,32 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.optimize import minimize
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.benchmark.axis_metrics import axis_angle
-from kinematify.benchmark.datasets import find_objects
-from kinematify.geometry.sdf_grid import exact_distance
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.axis_metrics import axis_angle
+from kinematify.evaluation.datasets import find_objects
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointType
-from kinematify.joints.motion import prismatic_transform, revolute_transform
+from kinematify.paper.motion import prismatic_transform, revolute_transform
+from kinematify.paper.sdf_grid import exact_distance
 from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.truth import ground_truth
-from kinematify.validation.settings import load_settings
+from kinematify.robot.description import read_description
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, Part
+    from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
+    from kinematify.robot.arrays import FloatArray
 
     Candidate = Mapping[str, Any]
     """score, kind, right, chosen; free: shares of the part's length or of half a turn to both sides; kept: share of

@@ -11,14 +11,13 @@ import tempfile
 import time
 from pathlib import Path
 
-from mutants.base import UNTOUCHED, write_base
-from mutants.fault import Fault
-from mutants.outcome import judge
-from mutants.plan import FAULTS, write_mutants
-from mutants.tables import Row, write_tables
-from mutants.work import FILE_FAMILIES, MOTION_FAMILIES, code_version, validated
-
-from kinematify.benchmark.datasets import find_objects
+from kinematify.evaluation.datasets import find_objects
+from kinematify.evaluation.studies.mutants.base import UNTOUCHED, write_base
+from kinematify.evaluation.studies.mutants.fault import Fault
+from kinematify.evaluation.studies.mutants.outcome import judge
+from kinematify.evaluation.studies.mutants.plan import FAULTS, write_mutants
+from kinematify.evaluation.studies.mutants.tables import Row, write_tables
+from kinematify.evaluation.studies.mutants.work import FILE_FAMILIES, MOTION_FAMILIES, code_version, validated
 
 
 def main() -> None:

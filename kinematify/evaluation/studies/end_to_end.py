@@ -21,18 +21,18 @@ from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 import yaml
-from generated.job import code_version
 from pydantic import TypeAdapter
 
-from kinematify.benchmark.job import JobResult
-from kinematify.benchmark.ledger import Ledger
-from kinematify.benchmark.summary import median_seconds, summarise
 from kinematify.cli.generation import Generation
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.job import JobResult
+from kinematify.evaluation.ledger import Ledger
+from kinematify.evaluation.studies.generated.job import code_version
+from kinematify.evaluation.summary import median_seconds, summarise
+from kinematify.generate.procedural.request import from_text
 from kinematify.refinement.simulate import Simulator
-from kinematify.sources.procedural.request import from_text
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Severity
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

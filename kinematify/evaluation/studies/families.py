@@ -15,15 +15,14 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from generated.job import run_job
-from generated.tables import write_tables
-
-from kinematify.sources.procedural.families import FAMILIES
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.studies.generated.job import run_job
+from kinematify.evaluation.studies.generated.tables import write_tables
+from kinematify.generate.procedural.families import FAMILIES
 from kinematify.validation.environment import environment
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
-    from generated.job import Result
+    from kinematify.evaluation.studies.generated.job import Result
 
 
 def main() -> None:

@@ -14,14 +14,14 @@ import torch
 from kinematify import load_assembly
 from kinematify.config import load_config
 from kinematify.geometry.sampling import sample_surface
-from kinematify.geometry.sdf_grid import SignedDistanceGrid, exact_signed_distance
-from kinematify.geometry.sdf_neural import train_fields
+from kinematify.paper.sdf_grid import SignedDistanceGrid, exact_signed_distance
+from kinematify.paper.sdf_neural import train_fields
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.assembly.part import Part
-    from kinematify.geometry.sdf import SignedDistanceField
+    from kinematify.paper.sdf import SignedDistanceField
 
 _MODELS = ("robots/panda", "robots/allegro", "everyday/cabinet_41083")
 _PARTS, _POINTS, _BAND = 20, 4000, 0.05

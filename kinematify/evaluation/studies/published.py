@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pybullet_data
 
-from kinematify.benchmark.datasets import find_objects
+from kinematify.evaluation.datasets import find_objects
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import validate
 

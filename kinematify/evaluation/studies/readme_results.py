@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
-from kinematify.benchmark.report import load_report
-from kinematify.benchmark.summary import condition_group, median_seconds, summarise
+from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.report import load_report
+from kinematify.evaluation.summary import condition_group, median_seconds, summarise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.benchmark.job import JobResult
-    from kinematify.benchmark.run import BenchmarkReport
+    from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.run import BenchmarkReport
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- results:begin -->", "<!-- results:end -->"

@@ -8,8 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.benchmark.perturb import CLEAN
-from kinematify.benchmark.refining_report import (
+from kinematify.evaluation.perturb import CLEAN
+from kinematify.evaluation.refining_report import (
     READING,
     harm_table,
     harmed,
@@ -21,7 +21,7 @@ from kinematify.benchmark.refining_report import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.benchmark.refining import RefiningResult
+    from kinematify.evaluation.refining import RefiningResult
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- refine:begin -->", "<!-- refine:end -->"

@@ -11,11 +11,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from corruption.bases import all_bases
-from corruption.cases import kinds_of
-from corruption.runner import Plan, hurried, run_cases
-from corruption.tables import BAD, write_tables
-
+from kinematify.evaluation.studies.corruption.bases import all_bases
+from kinematify.evaluation.studies.corruption.cases import kinds_of
+from kinematify.evaluation.studies.corruption.runner import Plan, hurried, run_cases
+from kinematify.evaluation.studies.corruption.tables import BAD, write_tables
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from kinematify.benchmark.scaling import SIZES, measure_scaling, write_scaling
 from kinematify.config import load_config
+from kinematify.evaluation.scaling import SIZES, measure_scaling, write_scaling
 from kinematify.pipeline import infer
 
 if __name__ == "__main__":

@@ -18,24 +18,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.description import parse_description
-from kinematify.assembly.robot import rotation_about
-from kinematify.assembly.urdf_geometry import geometry_source
-from kinematify.benchmark.datasets import find_objects
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.validation.geometry.scene import read_scene
-from kinematify.validation.read import read_model, read_parsed
+from kinematify.evaluation.datasets import find_objects
+from kinematify.geometry.scene import read_scene
+from kinematify.manipulation import execute_mujoco, execute_pybullet
+from kinematify.manipulation.copies import with_absolute_meshes, write_scaled
+from kinematify.manipulation.execute import Hold, load
+from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.place import object_box
+from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pull
+from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.sizes import sizing
+from kinematify.robot.description import parse_description
+from kinematify.robot.read import read_model, read_parsed
+from kinematify.robot.robot import rotation_about
+from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.validation.run import validate
-from kinematify.validation.settings import load_settings
-from kinematify.validation.task import execute_mujoco, execute_pybullet
-from kinematify.validation.task.copies import with_absolute_meshes, write_scaled
-from kinematify.validation.task.execute import Hold, load
-from kinematify.validation.task.kinematics import Arm
-from kinematify.validation.task.place import object_box
-from kinematify.validation.task.planning import Failure, PullPlan, depend, plan_pull
-from kinematify.validation.task.request import PULL, TaskRequest
-from kinematify.validation.task.robot import builtin_robot
-from kinematify.validation.task.sizes import sizing
 from kinematify.validation.task.stage import motion_of
 
 if TYPE_CHECKING:
@@ -43,9 +43,9 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.scene import Scene
     from kinematify.validation.finding import Finding
-    from kinematify.validation.geometry.scene import Scene
-    from kinematify.validation.settings import ValidationSettings
 
 _WAY = 0.12  # a door or drawer moves its outermost point by more [m]; buttons, knobs and levers move less
 _ENDLESS = "endless"  # wheels and dials have no range to be opened

@@ -22,18 +22,18 @@ import mujoco
 import numpy as np
 import pybullet as bullet
 
-from kinematify.benchmark.datasets import find_objects
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.datasets import find_objects
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.read import read_model
+from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.engines import mujoco_measure, mujoco_model, pybullet_measure, pybullet_model
-from kinematify.validation.engines.mechanism import Mechanism
-from kinematify.validation.prepare.prepared import load_prepared
-from kinematify.validation.prepare.stage import prepare
-from kinematify.validation.read import read_model
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 GOALS = {"panda": 6.0, "cabinet_41083": 3.0, "h1": 20.0}
 """Seconds on two cores for all checks."""

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.benchmark.datasets import CONDITIONS, find_objects
-from kinematify.benchmark.metrics import score_object
-from kinematify.benchmark.prediction import prediction_of
 from kinematify.config import load_config
+from kinematify.evaluation.datasets import CONDITIONS, find_objects
+from kinematify.evaluation.metrics import score_object
+from kinematify.evaluation.prediction import prediction_of
 from kinematify.joints.candidate import JointCandidate
 from kinematify.pipeline import infer
+from kinematify.robot.description import read_description
 from kinematify.vision.answer import TYPES, Direction, JointVotes, Side, Vote
 from kinematify.vision.votes import chosen_anew, direction_of, side_of
 
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.erase import ErasedModel
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import TrueJoint
-    from kinematify.benchmark.metrics import ObjectScore
     from kinematify.config import VisionConfig
+    from kinematify.evaluation.metrics import ObjectScore
     from kinematify.pipeline import Inference
 
 _VOTERS = ((1.0, 1.0), (0.9, 0.9), (0.8, 0.8), (0.8, 0.95))

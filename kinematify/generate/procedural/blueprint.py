@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.part import Assembly, Part, read_only
-from kinematify.assembly.robot import rotation_about
+from kinematify.assembly.part import Assembly, Part
+from kinematify.robot.arrays import read_only
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.errors import InputError
-from kinematify.sources.procedural.materials import COLORS, MATERIALS
-from kinematify.sources.procedural.styles import STYLES
-from kinematify.sources.procedural.workshop import Workshop
+from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.styles import STYLES
+from kinematify.generate.procedural.workshop import Workshop
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.sources.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
 
 Value = float | int | str
 

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.language.understand import understand
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.understand import understand
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.sources.procedural.blueprint import Blueprint
-    from kinematify.sources.procedural.family import Family, Value
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.procedural.family import Family, Value
 
 
 @dataclass(frozen=True, kw_only=True)

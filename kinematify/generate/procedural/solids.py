@@ -14,7 +14,7 @@ from manifold3d import CrossSection, Manifold, OpType
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 SEGMENTS = 48
 """Sides of the polygon that stands for a circle."""

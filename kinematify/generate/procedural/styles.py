@@ -12,7 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 STYLES = ("clean", "remeshed", "coarse", "bumpy")
 """As in ``--set style=``; clean is what a CAD program exports."""

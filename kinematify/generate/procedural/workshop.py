@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
-from kinematify.sources.procedural.blueprint import Blueprint, BlueprintJoint
-from kinematify.sources.procedural.materials import MATERIALS, color_of
-from kinematify.sources.procedural.solids import union
-from kinematify.sources.procedural.styles import styled
+from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+from kinematify.generate.procedural.materials import MATERIALS, color_of
+from kinematify.generate.procedural.solids import union
+from kinematify.generate.procedural.styles import styled
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.materials import RGB
-    from kinematify.sources.procedural.solids import Point
+    from kinematify.generate.procedural.materials import RGB
+    from kinematify.generate.procedural.solids import Point
 
 
 _MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError, OutputError
-from kinematify.sources.provided.found_parts import found_parts
-from kinematify.sources.provided.source import Generated, Provenance
+from kinematify.generate.providers.found_parts import found_parts
+from kinematify.generate.providers.source import Generated, Provenance
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.sources.provided.job import Job
-    from kinematify.sources.provided.prompt import Prompt
-    from kinematify.sources.provided.source import PartSource, Progress
+    from kinematify.generate.providers.job import Job
+    from kinematify.generate.providers.prompt import Prompt
+    from kinematify.generate.providers.source import PartSource, Progress
 
 _FILES, _FACTS = "files", "provenance.json"
 _NAMED = 16  # digits of the digest that name a recording

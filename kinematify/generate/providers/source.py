@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.sources.provided.job import Job
-    from kinematify.sources.provided.prompt import Prompt
+    from kinematify.generate.providers.job import Job
+    from kinematify.generate.providers.prompt import Prompt
 
     Progress = Callable[[str, float], None]
 

@@ -14,15 +14,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearing_fit import across_axis
 from kinematify.joints.candidate import JointType
+from kinematify.joints.hypotheses.bearing_fit import across_axis
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import Assembly, FloatArray, Part
+    from kinematify.assembly.part import Assembly, Part
     from kinematify.config import CompoundConfig
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.robot.arrays import FloatArray
 
 
 class CompoundKind(StrEnum):

@@ -8,27 +8,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
-from kinematify.joints.kind import Siblings, decide_kind
-from kinematify.joints.limits import find_range
-from kinematify.joints.panels import rank_turns
-from kinematify.joints.scene import joint_scene, part_frames
-from kinematify.joints.slides import rank_slides
-from kinematify.joints.workspace import PartCache
+from kinematify.joints.choice.kind import Siblings, decide_kind
+from kinematify.joints.choice.limits import find_range
+from kinematify.joints.hypotheses.panels import rank_turns
+from kinematify.joints.hypotheses.slides import rank_slides
+from kinematify.joints.measure.scene import joint_scene, part_frames
+from kinematify.joints.measure.workspace import PartCache
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.assembly.part import Assembly
     from kinematify.config import ConfidenceConfig, JointsConfig
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.bearing_line import EdgeBearing
-    from kinematify.joints.frames import BoxFrame
-    from kinematify.joints.kind import KindDecision
-    from kinematify.joints.line import Line
-    from kinematify.joints.panels import RankedTurns
-    from kinematify.joints.rooted import RootedTree
-    from kinematify.joints.scene import JointScene
-    from kinematify.joints.slides import RankedSlides
+    from kinematify.joints.choice.kind import KindDecision
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.hypotheses.panels import RankedTurns
+    from kinematify.joints.hypotheses.slides import RankedSlides
+    from kinematify.joints.measure.rooted import RootedTree
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray
 
 
 def estimate_joints(

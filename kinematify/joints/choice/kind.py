@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointType
-from kinematify.joints.frames import UP
-from kinematify.joints.play import contact_play
-from kinematify.joints.scene import eccentricity, is_cap
-from kinematify.joints.sweep import moving_points, sweep_slides, sweep_turns
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.clearance import contact_play
+from kinematify.joints.measure.scene import eccentricity, is_cap
+from kinematify.joints.measure.sweep import moving_points, sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.panels import RankedTurns
-    from kinematify.joints.scene import JointScene
-    from kinematify.joints.slides import RankedSlides
+    from kinematify.joints.hypotheses.panels import RankedTurns
+    from kinematify.joints.hypotheses.slides import RankedSlides
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True)

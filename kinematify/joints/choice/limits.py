@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointType
-from kinematify.joints.closing import closing_turns
-from kinematify.joints.frames import UP
-from kinematify.joints.joint_range import Range
-from kinematify.joints.scene import eccentricity
-from kinematify.joints.senses import clockwise_sense, neutral_sense, swing_sense, turn_sense
-from kinematify.joints.sweep import moving_points, sweep_turns
-from kinematify.joints.travel import slide_range
+from kinematify.joints.choice.joint_range import Range
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.closing import closing_turns
+from kinematify.joints.measure.opening_direction import clockwise_sense, neutral_sense, swing_sense, turn_sense
+from kinematify.joints.measure.scene import eccentricity
+from kinematify.joints.measure.sweep import moving_points, sweep_turns
+from kinematify.joints.measure.travel import slide_range
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray
 
 
 def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:

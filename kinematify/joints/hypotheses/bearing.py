@@ -14,26 +14,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
 from kinematify.geometry.directions import distinct_directions
-from kinematify.joints.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.bearing_fit import refine_line
-from kinematify.joints.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line
-from kinematify.joints.bearing_proposals import normal_pair_lines, propose_lines
-from kinematify.joints.bearing_scores import line_support, surface_support
-from kinematify.joints.bearing_twins import shared_by_twins
-from kinematify.joints.line import Line
-from kinematify.joints.rail import fit_rail
+from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
+from kinematify.joints.hypotheses.bearing_fit import refine_line
+from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line
+from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines, propose_lines
+from kinematify.joints.hypotheses.bearing_scores import line_support, surface_support
+from kinematify.joints.hypotheses.bearing_twins import shared_by_twins
+from kinematify.joints.hypotheses.line import Line
+from kinematify.joints.hypotheses.rail import fit_rail
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import Assembly, FloatArray
+    from kinematify.assembly.part import Assembly
     from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactEdge, ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearing_evidence import Side, Sides
-    from kinematify.joints.line import Lines
+    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.line import Lines
+    from kinematify.robot.arrays import FloatArray
 
 _EXACTLY = 0.1  # [deg] lines that were proposed along a direction
 

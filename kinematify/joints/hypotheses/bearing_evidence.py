@@ -13,10 +13,10 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactEdge, ContactSamples
     from kinematify.geometry.surface import PartSurface
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

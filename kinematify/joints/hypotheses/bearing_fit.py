@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import dots
-from kinematify.joints.bearing_scores import OCTAGON
-from kinematify.joints.line import Line
+from kinematify.joints.hypotheses.bearing_scores import OCTAGON
+from kinematify.joints.hypotheses.line import Line
+from kinematify.robot.vectors import dots
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import BearingConfig
-    from kinematify.joints.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.robot.arrays import FloatArray
 
 _LONGEST_STEP = 0.1  # in rad and in spreads: farther, the linear model means nothing
 

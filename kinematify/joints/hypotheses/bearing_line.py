@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
-from kinematify.joints.bearing_scores import circle_support, line_support
-from kinematify.joints.line import Line, Lines
+from kinematify.joints.hypotheses.bearing_scores import circle_support, line_support
+from kinematify.joints.hypotheses.line import Line, Lines
+from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import BearingConfig
-    from kinematify.joints.bearing_evidence import Sides
-    from kinematify.joints.rail import Rail
+    from kinematify.joints.hypotheses.bearing_evidence import Sides
+    from kinematify.joints.hypotheses.rail import Rail
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

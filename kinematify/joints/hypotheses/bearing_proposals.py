@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import crossed, lengths_of
-from kinematify.joints.bearing_evidence import thin
-from kinematify.joints.bearing_scores import surface_support
-from kinematify.joints.line import NO_LINES, Lines, join
+from kinematify.joints.hypotheses.bearing_evidence import thin
+from kinematify.joints.hypotheses.bearing_scores import surface_support
+from kinematify.joints.hypotheses.line import NO_LINES, Lines, join
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import BearingConfig
-    from kinematify.joints.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.robot.arrays import FloatArray
 
 _LEAST_SINE = 0.17  # below 10 deg between two normals their intersection is ill-conditioned
 _ALONG = np.cos(np.radians(1.0))

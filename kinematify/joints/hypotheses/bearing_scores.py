@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import crossed, lengths_of
-from kinematify.joints.line import Lines
+from kinematify.joints.hypotheses.line import Lines
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import BearingConfig
-    from kinematify.joints.bearing_evidence import Side
-    from kinematify.joints.line import Line
+    from kinematify.joints.hypotheses.bearing_evidence import Side
+    from kinematify.joints.hypotheses.line import Line
+    from kinematify.robot.arrays import FloatArray
 
 OCTAGON = 0.8
 """Length of an edge piece in radii beyond which it is no arc: an octagon's side is 0.77 long."""

@@ -18,19 +18,19 @@ from scipy.spatial import cKDTree
 
 from kinematify.contact.motions import Motion, motions_between
 from kinematify.geometry.surface import FACETED
-from kinematify.joints.bearing_evidence import contact_centroid, thin
-from kinematify.joints.bearing_fit import refine_line
-from kinematify.joints.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line
-from kinematify.joints.line import Line
+from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, thin
+from kinematify.joints.hypotheses.bearing_fit import refine_line
+from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line
+from kinematify.joints.hypotheses.line import Line
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.bearing_evidence import Sides
+    from kinematify.joints.hypotheses.bearing_evidence import Sides
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 Pair = tuple[int, int]
 

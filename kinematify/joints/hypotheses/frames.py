@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import FramesConfig
     from kinematify.geometry.sampling import SurfaceSamples
+    from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
 

@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.vectors import crossed, lengths_of
-from kinematify.joints.frames import UP
-from kinematify.joints.sweep import moving_points, sweep_turns
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.sweep import moving_points, sweep_turns
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.line import Line
-    from kinematify.joints.scene import JointScene
-    from kinematify.joints.sweep import Sweep
+    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.measure.sweep import Sweep
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 CORNER, HALF_WAY, CENTRE, OTHER = range(4)
 

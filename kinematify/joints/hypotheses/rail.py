@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.part import read_only
-from kinematify.assembly.vectors import crossed, lengths_of
+from kinematify.robot.arrays import read_only
+from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import RailConfig
-    from kinematify.joints.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.frames import UP
-from kinematify.joints.panels import GIVEN
-from kinematify.joints.scene import is_cap
-from kinematify.joints.sweep import moving_points, sweep_slides
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.hypotheses.panels import GIVEN
+from kinematify.joints.measure.scene import is_cap
+from kinematify.joints.measure.sweep import moving_points, sweep_slides
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.assembly.part import FloatArray, IntArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.scene import JointScene
-    from kinematify.joints.sweep import Sweep
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.measure.sweep import Sweep
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.sweep import sweep_slides, sweep_turns
+from kinematify.joints.measure.sweep import sweep_slides, sweep_turns
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig, SweepConfig
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)

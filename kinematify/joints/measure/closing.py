@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import rotation_about
-from kinematify.joints.frames import UP
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.robot.robot import rotation_about
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray
 
 
 def closing_turns(

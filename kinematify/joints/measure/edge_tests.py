@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearing_fit import across_axis
-from kinematify.joints.journal import facing_faces, find_journal
-from kinematify.joints.sweep import moving_points, sweep_turns
+from kinematify.joints.hypotheses.bearing_fit import across_axis
+from kinematify.joints.measure.journal import facing_faces, find_journal
+from kinematify.joints.measure.sweep import moving_points, sweep_turns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from collections.abc import Set as AbstractSet
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.bearing_line import BearingLine
-    from kinematify.joints.workspace import PartCache
+    from kinematify.joints.hypotheses.bearing_line import BearingLine
+    from kinematify.joints.measure.workspace import PartCache
+    from kinematify.robot.arrays import FloatArray
 
 Pair = tuple[int, int]
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.frames import UP
+from kinematify.joints.hypotheses.frames import UP
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import FootingConfig
-    from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.robot.arrays import FloatArray
 
 
 def foot_side(part: BoxFrame, body: FloatArray, config: FootingConfig) -> FloatArray:

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.joints.bearing_fit import across_axis
+from kinematify.joints.hypotheses.bearing_fit import across_axis
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JournalConfig
-    from kinematify.joints.workspace import PartCache
+    from kinematify.joints.measure.workspace import PartCache
+    from kinematify.robot.arrays import FloatArray
 
 _LEAST = 6  # faces all around: fewer are the sides of a box
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.frames import UP
+from kinematify.joints.hypotheses.frames import UP
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray
 
 
 def turn_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig) -> float:

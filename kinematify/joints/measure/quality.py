@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from kinematify.config import QualityConfig
     from kinematify.contact.graph import ContactEdge
-    from kinematify.joints.bearing_line import EdgeBearing
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
 
 
 def edge_quality(edge: ContactEdge, bearing: EdgeBearing | None, config: QualityConfig) -> float:

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import RockersConfig
     from kinematify.geometry.sampling import SurfaceSamples
-    from kinematify.joints.frames import BoxFrame
+    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

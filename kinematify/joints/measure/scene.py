@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.bearing_line import BearingLine, EdgeBearing
-from kinematify.joints.footing import foot_side, front_of, is_level_plate
-from kinematify.joints.frames import UP, body_axes, box_frame
-from kinematify.joints.journal import facing_faces, find_journal
-from kinematify.joints.rockers import find_fold
+from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
+from kinematify.joints.hypotheses.frames import UP, body_axes, box_frame
+from kinematify.joints.measure.front_cues import foot_side, front_of, is_level_plate
+from kinematify.joints.measure.journal import facing_faces, find_journal
+from kinematify.joints.measure.rockers import find_fold
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig, RailsConfig
-    from kinematify.joints.frames import BoxFrame
-    from kinematify.joints.journal import Journal
-    from kinematify.joints.rockers import Fold
-    from kinematify.joints.rooted import RootedTree
-    from kinematify.joints.workspace import ContactView, PartCache
+    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.joints.measure.journal import Journal
+    from kinematify.joints.measure.rockers import Fold
+    from kinematify.joints.measure.rooted import RootedTree
+    from kinematify.joints.measure.workspace import ContactView, PartCache
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointType
-from kinematify.joints.frames import UP
-from kinematify.joints.guide import guided_travel
-from kinematify.joints.joint_range import Range
-from kinematify.joints.play import slide_play
-from kinematify.joints.scene import is_cap
-from kinematify.joints.sweep import moving_points, sweep_slides
+from kinematify.joints.choice.joint_range import Range
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.clearance import slide_play
+from kinematify.joints.measure.guide import guided_travel
+from kinematify.joints.measure.scene import is_cap
+from kinematify.joints.measure.sweep import moving_points, sweep_slides
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
     from kinematify.config import JointsConfig
-    from kinematify.joints.scene import JointScene
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray
 
 
 def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Range:

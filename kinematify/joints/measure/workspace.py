@@ -15,9 +15,10 @@ from kinematify.geometry.sampling import sample_surface
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.assembly.part import Assembly, FloatArray, IntArray
+    from kinematify.assembly.part import Assembly
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.sampling import SurfaceSamples
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

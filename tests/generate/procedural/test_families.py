@@ -8,10 +8,10 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.blueprint import Blueprint
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.styles import STYLES
+from kinematify.generate.procedural.blueprint import Blueprint
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.styles import STYLES
 
 SEEDS = (None, 0)
 

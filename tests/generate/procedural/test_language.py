@@ -10,12 +10,12 @@ import pytest
 import yaml
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.blueprint import Blueprint
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.language.understand import understand
-from kinematify.sources.procedural.layout import parse_layout
-from kinematify.sources.procedural.materials import COLORS
+from kinematify.generate.procedural.blueprint import Blueprint
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.understand import understand
+from kinematify.generate.procedural.layout import parse_layout
+from kinematify.generate.procedural.materials import COLORS
 
 SENTENCES = {
     name: yaml.safe_load(Path(__file__).with_name(name).read_text(encoding="utf-8"))

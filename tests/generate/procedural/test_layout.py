@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.layout import parse_layout
+from kinematify.generate.procedural.layout import parse_layout
 
 
 def kinds(text: str) -> list[str]:

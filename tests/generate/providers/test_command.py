@@ -15,14 +15,14 @@ from PIL import Image
 
 from kinematify.cli.app import run
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.sources.provided.command import LOG_FILE, CommandSource, filled
-from kinematify.sources.provided.job import open_job
-from kinematify.sources.provided.prompt import MOST_WORDS, check_prompt
+from kinematify.generate.providers.command import LOG_FILE, CommandSource, filled
+from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.prompt import MOST_WORDS, check_prompt
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.sources.provided.source import Generated
+    from kinematify.generate.providers.source import Generated
 
 
 def program(body: str) -> str:

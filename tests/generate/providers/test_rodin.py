@@ -18,17 +18,17 @@ from PIL import Image
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, OutputError
-from kinematify.sources.provided.job import open_job
-from kinematify.sources.provided.prompt import check_prompt
-from kinematify.sources.provided.rodin.source import ADDRESS, KEY, RodinSource
-from tests.provided.rodin_server import KEY as SECRET
-from tests.provided.rodin_server import RodinServer
+from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.prompt import check_prompt
+from kinematify.generate.providers.rodin.source import ADDRESS, KEY, RodinSource
+from tests.generate.providers.rodin_server import KEY as SECRET
+from tests.generate.providers.rodin_server import RodinServer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kinematify.sources.provided.source import Generated
+    from kinematify.generate.providers.source import Generated
 
 QUICK = {"first_pause": 0.01, "longest_pause": 0.02, "tries": 3, "answer_seconds": 2.0, "job_seconds": 0.5}
 

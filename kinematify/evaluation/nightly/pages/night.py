@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from kinematify.nightly.compare import QUALITY, Class
-from kinematify.nightly.store import MODELS
-from kinematify.nightly.validity import page_name
+from kinematify.evaluation.nightly.compare import QUALITY, Class
+from kinematify.evaluation.nightly.store import MODELS
+from kinematify.evaluation.nightly.validity import page_name
 from kinematify.validation.catalogue import FAMILIES
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from kinematify.nightly.compare import Change
-    from kinematify.nightly.record import Run
-    from kinematify.nightly.store import Night
+    from kinematify.evaluation.nightly.compare import Change
+    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.store import Night
     from kinematify.validation.formats.html_frame import Cell
 
 METRIC_TITLES = {

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from kinematify.nightly.pages.night import METRIC_SCALES, METRIC_TITLES
+from kinematify.evaluation.nightly.pages.night import METRIC_SCALES, METRIC_TITLES
 from kinematify.validation.formats.chart import Axes, Series, line_chart, sparkline
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.nightly.record import Run
-    from kinematify.nightly.store import Night
+    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.store import Night
     from kinematify.validation.formats.html_frame import Cell
 
 _COLUMNS = ("angle_deg", "ted", "types", "limit_iou")

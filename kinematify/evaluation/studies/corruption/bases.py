@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import trimesh
 from lxml import etree
-from mutants.base import write_base
 
-from kinematify.benchmark.datasets import find_objects
 from kinematify.errors import InputError
+from kinematify.evaluation.datasets import find_objects
+from kinematify.evaluation.studies.mutants.base import write_base
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from corruption import meshes, text
+from kinematify.evaluation.studies.corruption import meshes, text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from corruption.bases import Base
+    from kinematify.evaluation.studies.corruption.bases import Base
 
 KINDS = (*text.CORRUPTIONS, *meshes.CORRUPTIONS)
 _BUILT_SHARE = 0.5

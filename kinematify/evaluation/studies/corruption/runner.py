@@ -14,8 +14,9 @@ from multiprocessing import connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from corruption.cases import write_case
+from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
+from kinematify.evaluation.studies.corruption.cases import write_case
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
@@ -24,17 +25,16 @@ from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.outcome import Unusable
 from kinematify.validation.run import validate
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
-    from corruption.bases import Base
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.evaluation.studies.corruption.bases import Base
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
-    from kinematify.validation.settings import ValidationSettings
 
 Result = dict[str, Any]
 """number, kind, base, outcome, seconds, message, errors, unexplained."""

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from corruption.cases import KINDS
-from corruption.runner import READY
+from kinematify.evaluation.studies.corruption.cases import KINDS
+from kinematify.evaluation.studies.corruption.runner import READY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from corruption.runner import Result
+    from kinematify.evaluation.studies.corruption.runner import Result
 
 NAME = "validate_robustness"
 BAD = ("crash", "hang", "traceback")

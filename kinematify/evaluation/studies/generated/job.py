@@ -10,24 +10,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import kinematify
-from kinematify.benchmark.metrics import score_object
-from kinematify.benchmark.prediction import prediction_of
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.metrics import score_object
+from kinematify.evaluation.prediction import prediction_of
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.truth import ground_truth
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import true_model
-from kinematify.sources.procedural.families import FAMILIES
-from kinematify.sources.procedural.family import build
-from kinematify.sources.procedural.truth import ground_truth
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
-from kinematify.validation.settings import load_settings
 
 if TYPE_CHECKING:
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
-    from kinematify.sources.procedural.blueprint import Blueprint
-    from kinematify.validation.settings import ValidationSettings
 
 Result = dict[str, Any]
 """family, seed, key, joints; truth and inferred: errors of each (check, where, message), seconds; accuracy."""

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from generated.job import Result
+    from kinematify.evaluation.studies.generated.job import Result
 
 TITLES = ("family", "objects", "joints", "truth without error", "inferred without error", "errors of the truth",
           "errors of the inferred", "angle [deg]", "types", "TED", "seconds")  # fmt: skip

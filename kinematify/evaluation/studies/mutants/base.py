@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.assembly.description import read_description
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.model.inertia import inertial_of
+from kinematify.robot.description import read_description
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.assembly.robot import DescribedLink, RobotDescription
-    from kinematify.benchmark.datasets import BenchObject
+    from kinematify.evaluation.datasets import BenchObject
+    from kinematify.robot.robot import DescribedLink, RobotDescription
 
 UNTOUCHED = "untouched"
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import numpy as np
     from lxml.etree import _Element
 
-    from kinematify.assembly.robot import DescribedJoint, DescribedLink, RobotDescription
+    from kinematify.robot.robot import DescribedJoint, DescribedLink, RobotDescription
     from kinematify.validation.finding import Blame
 
 

@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import rigid_groups
+from kinematify.evaluation.studies.mutants.base import link_part, words
+from kinematify.evaluation.studies.mutants.fault import Fault, Planted
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import rigid_groups
 from kinematify.validation.finding import Blame
-from mutants.base import link_part, words
-from mutants.fault import Fault, Planted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from lxml.etree import _Element
 
-    from kinematify.assembly.robot import DescribedJoint, DescribedLink, RobotDescription
+    from kinematify.robot.robot import DescribedJoint, DescribedLink, RobotDescription
 
     Random = np.random.Generator
 

@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.joint_type import JointType
-from kinematify.assembly.robot import forward_kinematics, rest_configuration, rigid_groups, rotation_about
+from kinematify.evaluation.studies.mutants.base import link_part, words
+from kinematify.evaluation.studies.mutants.fault import Fault, Planted
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups, rotation_about
 from kinematify.validation.finding import Blame
-from mutants.base import link_part, words
-from mutants.fault import Fault, Planted
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.assembly.robot import DescribedJoint, RobotDescription
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import DescribedJoint, RobotDescription
 
 PIVOT_SHARE = 0.2
 """How far a pivot is moved, fraction of the part's diagonal."""

@@ -11,9 +11,9 @@ from kinematify.validation.finding import Severity
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from kinematify.evaluation.studies.mutants.fault import Fault, Planted
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport
-    from mutants.fault import Fault, Planted
 
 Fact = dict[str, Any]
 """What is kept of a finding: check, severity, blame, joint, link, pair."""

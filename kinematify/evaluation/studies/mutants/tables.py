@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mutants.outcome import Verdict
+from kinematify.evaluation.studies.mutants.outcome import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from mutants.fault import Fault
-    from mutants.outcome import Outcome
-    from mutants.plan import Mutant
-    from mutants.work import Result
+    from kinematify.evaluation.studies.mutants.fault import Fault
+    from kinematify.evaluation.studies.mutants.outcome import Outcome
+    from kinematify.evaluation.studies.mutants.plan import Mutant
+    from kinematify.evaluation.studies.mutants.work import Result
 
 NAME = "validate_detection"
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import kinematify
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.studies.mutants.outcome import facts
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.run import validate
-from kinematify.validation.settings import load_settings
-from mutants.outcome import facts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.families import (
+from kinematify.generate.procedural.families import (
     bottle,
     box,
     bucket,
@@ -54,7 +54,7 @@ from kinematify.sources.procedural.families import (
 )
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Family
+    from kinematify.generate.procedural.family import Family
 
 FAMILIES: dict[str, Family] = {
     module.FAMILY.name: module.FAMILY

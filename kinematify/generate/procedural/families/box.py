@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.lids import BackEdge, add_barrels
-from kinematify.sources.procedural.solids import box, cylinder, tray
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
+from kinematify.generate.procedural.solids import box, cylinder, tray
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 
 def _build(values: Values, workshop: Workshop) -> None:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.solids import bore, cylinder, ring, turned, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.solids import bore, cylinder, ring, turned, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.003
 _BEAD = 0.002  # how far the rim stands out [m]

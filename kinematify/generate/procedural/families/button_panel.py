@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
-from kinematify.sources.procedural.solids import box
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
+from kinematify.generate.procedural.solids import box
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _DEEP = 0.012  # pockets of the buttons [m]
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from itertools import count
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.layout import parse_layout
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, carcass
-from kinematify.sources.procedural.pieces.handles import HANDLES
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.layout import parse_layout
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, carcass
+from kinematify.generate.procedural.pieces.handles import HANDLES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.layout import Cell
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.layout import Cell
+    from kinematify.generate.procedural.workshop import Workshop
 
 
 def _build(values: Values, workshop: Workshop) -> None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, off
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, off
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _THICK = 0.0015  # of a hand and of the wall of an arbor [m]
 _HANDS = ((0.5, 1.0), (0.78, 0.7), (0.85, 0.3))

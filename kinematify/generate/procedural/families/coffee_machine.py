@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, room
-from kinematify.sources.procedural.pieces.lids import BackEdge, add_barrels
-from kinematify.sources.procedural.solids import box, cylinder, rod, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, room
+from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
+from kinematify.generate.procedural.solids import box, cylinder, rod, union
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.012
 _BASE = 0.05  # height of the base [m]

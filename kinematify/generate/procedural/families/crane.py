@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import bent_fork, stub
-from kinematify.sources.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
-from kinematify.sources.procedural.solids import ball, bore, box, cylinder, off, rod, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
+from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder, off, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _LEAN = 0.7  # of a mobile crane's boom at zero, from the upright to the front [rad]
 _RISES = (-0.35, 0.5)  # of the boom, positive upwards [rad]

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import bent_fork, stub
-from kinematify.sources.procedural.pieces.controls import TOP, Mount, add_button, add_knob
-from kinematify.sources.procedural.solids import ball, cylinder, rod
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
+from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button, add_knob
+from kinematify.generate.procedural.solids import ball, cylinder, rod
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _LEANS = {1: (0.0, 0.9), 2: (0.0, 0.3, 1.3), 3: (0.0, -0.4, 0.8, 1.6)}
 """Of the post, the arms and the head's neck, from the upright towards the front [rad]; by hinges."""

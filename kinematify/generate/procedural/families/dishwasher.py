@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_button
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
-from kinematify.sources.procedural.solids import box, tray, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
+from kinematify.generate.procedural.solids import box, tray, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.04
 _PLINTH = 0.1

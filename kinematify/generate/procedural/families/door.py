@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import barrel
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_knob, add_lever
-from kinematify.sources.procedural.pieces.handles import handle
-from kinematify.sources.procedural.pieces.leaves import (
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob, add_lever
+from kinematify.generate.procedural.pieces.handles import handle
+from kinematify.generate.procedural.pieces.leaves import (
     Field,
     Hinge,
     Tracks,
@@ -20,13 +20,13 @@ from kinematify.sources.procedural.pieces.leaves import (
     side_by_side,
     stopped_opening,
 )
-from kinematify.sources.procedural.solids import box
+from kinematify.generate.procedural.solids import box
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _DEPTH = 0.11  # of a frame without grooves [m]
 _BARREL = 0.007  # radius [m]

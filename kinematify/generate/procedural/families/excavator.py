@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import bent_fork, room
-from kinematify.sources.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
-from kinematify.sources.procedural.solids import box, cylinder, hull, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import bent_fork, room
+from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
+from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _LEANS = (0.0, 0.45, 1.25, 2.3, 2.7)
 """Of the house, the boom below and above its bend, the stick and the bucket: from the upright to the front [rad]."""

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.robot import rotation_about
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import at, barrel
-from kinematify.sources.procedural.solids import ball, box, cylinder, hull, rod, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import at, barrel
+from kinematify.generate.procedural.solids import ball, box, cylinder, hull, rod, union
+from kinematify.robot.robot import rotation_about
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _LEAN = 0.1  # of the pins [rad]
 _KNUCKLE, _HINGE = 0.0018, 0.006  # radius and length of a hinge [m]

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import at, bent_fork, stub
-from kinematify.sources.procedural.pieces.controls import FRONT, TOP, Mount, add_button, add_knob
-from kinematify.sources.procedural.solids import box, cylinder, hull, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
+from kinematify.generate.procedural.pieces.controls import FRONT, TOP, Mount, add_button, add_knob
+from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _DOWN = np.diag([1.0, -1.0, -1.0])
 _PITCH = 16.0  # of the blades [deg]

@@ -6,16 +6,16 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import fork, room, stub
-from kinematify.sources.procedural.solids import box, cylinder, off, rod, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import fork, room, stub
+from kinematify.generate.procedural.solids import box, cylinder, off, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.solids import Point
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.workshop import Workshop
 
 _PLATE = 0.01  # thickness of the base plate [m]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.solids import bore, box, cylinder
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _PIN = 0.004  # radius [m]
 _BOARD = 0.014  # thickness of the slats [m]

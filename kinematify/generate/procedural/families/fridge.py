@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
-from kinematify.sources.procedural.solids import box, tray
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
+from kinematify.generate.procedural.solids import box, tray
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.05  # a door's thickness; walls of the body are half as thick, between two rooms as thick [m]
 _INSET = 0.06  # of a bin from the room's sides, so that it swings out of the room [m]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.solids import box, cylinder, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.solids import box, cylinder, union
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _BAR = 0.02
 """Half the width of a rail [m]."""

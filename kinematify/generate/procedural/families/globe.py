@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.solids import ball, bore, cylinder, ring, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.solids import ball, bore, cylinder, ring, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _FOOT = 0.014  # thickness of the foot [m]
 _LATITUDES = (-40.0, 0.0, 40.0)  # of the raised lines [deg]

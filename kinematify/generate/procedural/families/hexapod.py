@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import at
-from kinematify.sources.procedural.pieces.limbs import leg_solids
-from kinematify.sources.procedural.solids import ball, cylinder, off
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import at
+from kinematify.generate.procedural.pieces.limbs import leg_solids
+from kinematify.generate.procedural.solids import ball, cylinder, off
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _OUTWARDS = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """Turns a leg that hangs down, its first joint along x, so that it reaches out along x, that joint upright."""

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.pieces.limbs import leg_solids, limb_solids
-from kinematify.sources.procedural.solids import ball, box, cylinder, hull, off, rod
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.pieces.limbs import leg_solids, limb_solids
+from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _SIDES = {"left": 1, "right": -1}
 _SOLE = 1.6  # of the ankles over the floor, in joint radii

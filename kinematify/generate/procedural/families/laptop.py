@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.controls import grid
-from kinematify.sources.procedural.pieces.lids import BackEdge, add_barrels
-from kinematify.sources.procedural.solids import box
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.controls import grid
+from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
+from kinematify.generate.procedural.solids import box
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _RADIUS = 0.005  # of the hinges [m]
 _OPENS = 2.2  # [rad]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
+from kinematify.generate.procedural.solids import box, cylinder
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.03
 _PANEL = 0.26  # share of the width that the control panel takes

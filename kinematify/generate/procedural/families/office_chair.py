@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import at, bent_fork, stub
-from kinematify.sources.procedural.pieces.castors import STEM, castor
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, rod
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
+from kinematify.generate.procedural.pieces.castors import STEM, castor
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _COLUMN = 0.026  # radius of the tube around the gas spring [m]
 _SPRING = 0.014  # radius of the gas spring [m]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.solids import bore, box, cylinder, ring, turned, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.solids import bore, box, cylinder, ring, turned, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _CAP = 0.0012  # wall of a cap [m]
 _CONE = 0.012  # length of the tip's cone [m]

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.crossed import disc, riveted, strip
-from kinematify.sources.procedural.solids import box, hull, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
+from kinematify.generate.procedural.solids import box, hull, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.pieces.crossed import Span
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.pieces.crossed import Span
+    from kinematify.generate.procedural.workshop import Workshop
 
 _OPENS = 0.55  # [rad]
 _JAWS = {"flat": (0.34, 1.0, 0.75), "needle": (0.5, 0.7, 0.25), "cutting": (0.2, 1.0, 0.55)}

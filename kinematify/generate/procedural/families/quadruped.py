@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.limbs import leg_solids
-from kinematify.sources.procedural.solids import box, cylinder, off
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.limbs import leg_solids
+from kinematify.generate.procedural.solids import box, cylinder, off
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _LEGS = {"front_left": (1, 1), "front_right": (1, -1), "rear_left": (-1, 1), "rear_right": (-1, -1)}
 

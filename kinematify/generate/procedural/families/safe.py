@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
-from kinematify.sources.procedural.solids import bore, cylinder, rod
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
+from kinematify.generate.procedural.solids import bore, cylinder, rod
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 
 def _build(values: Values, workshop: Workshop) -> None:

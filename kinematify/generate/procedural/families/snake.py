@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import fork, room
-from kinematify.sources.procedural.solids import cylinder, rod
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import fork, room
+from kinematify.generate.procedural.solids import cylinder, rod
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _SIZE = 0.45
 """Radius of a hinge beside that of the body."""

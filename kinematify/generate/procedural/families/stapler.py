@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _SHEET = 0.0015  # thickness of ears, arm and magazine [m]
 _PIN = 0.0025  # radius [m]

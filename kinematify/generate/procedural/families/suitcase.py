@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import barrel
-from kinematify.sources.procedural.pieces.castors import STEM, castor
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, rod, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.pieces.castors import STEM, castor
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.003
 _ROUND = 0.04  # radius of the corners [m]

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_knob
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, rod
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _DEPTH = 0.034  # of the housing [m]
 _POCKET = 0.024  # depth of the room behind a switch [m]

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.layout import parse_layout
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
-from kinematify.sources.procedural.pieces.handles import HANDLES
-from kinematify.sources.procedural.solids import box, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.layout import parse_layout
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
+from kinematify.generate.procedural.pieces.handles import HANDLES
+from kinematify.generate.procedural.solids import box, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _OVERHANG = 0.03  # of the top on all sides [m]
 _LEG = 0.05  # [m]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.controls import TOP, Mount, add_button
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, rod, union
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _SEAT, _LID = 0.018, 0.014  # thickness [m]
 _KNUCKLE, _PIN = 0.009, 0.0045  # radius [m]

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import bent_fork
-from kinematify.sources.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
-from kinematify.sources.procedural.solids import ball, cylinder
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import bent_fork
+from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
+from kinematify.generate.procedural.solids import ball, cylinder
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _START = 0.6  # lean of the trunk's arms from the upright [rad]
 _LEANS = (1.0, 0.5)  # of the links of a branch, in turn [rad]

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.handles import handle
-from kinematify.sources.procedural.pieces.lids import BackEdge, add_barrels
-from kinematify.sources.procedural.solids import bore, box, cylinder, tray
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.handles import handle
+from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
+from kinematify.generate.procedural.solids import bore, box, cylinder, tray
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _WALL = 0.004
 _BASE = 0.06  # height of the solid foot that holds a pedal [m]

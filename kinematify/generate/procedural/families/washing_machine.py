@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.bearings import barrel, stub
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
-from kinematify.sources.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
-from kinematify.sources.procedural.solids import box, cylinder
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.bearings import barrel, stub
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
+from kinematify.generate.procedural.solids import box, cylinder
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _STRIP = 0.14  # height of the strip with the controls [m]
 _WALL = 0.03

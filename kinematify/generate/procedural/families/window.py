@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.family import Family, Parameter
-from kinematify.sources.procedural.pieces.controls import FRONT, Mount, add_lever
-from kinematify.sources.procedural.pieces.leaves import (
+from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_lever
+from kinematify.generate.procedural.pieces.leaves import (
     Field,
     Hinge,
     Tracks,
@@ -18,13 +18,13 @@ from kinematify.sources.procedural.pieces.leaves import (
     side_by_side,
     stopped_opening,
 )
-from kinematify.sources.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.solids import bore, box, cylinder
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.family import Values
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.workshop import Workshop
 
 _THICK = 0.04  # of a sash [m]
 _DEPTH = 0.07  # of a frame without grooves [m]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.language.words import NUMBERS
-from kinematify.sources.procedural.layout import CELLS
+from kinematify.generate.procedural.language.words import NUMBERS
+from kinematify.generate.procedural.layout import CELLS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.language.arrangement import Mention
-from kinematify.sources.procedural.language.reading import nouns_of
-from kinematify.sources.procedural.language.sizes import JOINING
-from kinematify.sources.procedural.language.words import ARTICLES, singular
-from kinematify.sources.procedural.layout import CELLS
+from kinematify.generate.procedural.language.arrangement import Mention
+from kinematify.generate.procedural.language.reading import nouns_of
+from kinematify.generate.procedural.language.sizes import JOINING
+from kinematify.generate.procedural.language.words import ARTICLES, singular
+from kinematify.generate.procedural.layout import CELLS
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Parameter
-    from kinematify.sources.procedural.language.reading import Reading
+    from kinematify.generate.procedural.family import Parameter
+    from kinematify.generate.procedural.language.reading import Reading
 
 _LINES = ("row", "column")
 _NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of them counts something else

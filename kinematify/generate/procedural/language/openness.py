@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.language.sizes import angle_at, length_at
+from kinematify.generate.procedural.language.sizes import angle_at, length_at
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Value
-    from kinematify.sources.procedural.language.reading import Reading
+    from kinematify.generate.procedural.family import Value
+    from kinematify.generate.procedural.language.reading import Reading
 
 OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0, "opened": 1.0, "unfolded": 1.0}
 """Words for a state, and the share of the way that they mean by themselves."""

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.language.words import NOUNS
+from kinematify.generate.procedural.language.words import NOUNS
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Family, Parameter, Value
-    from kinematify.sources.procedural.language.arrangement import Mention
-    from kinematify.sources.procedural.language.words import Token
+    from kinematify.generate.procedural.family import Family, Parameter, Value
+    from kinematify.generate.procedural.language.arrangement import Mention
+    from kinematify.generate.procedural.language.words import Token
 
 
 @dataclass(kw_only=True)

@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.language.words import UNITS
+from kinematify.generate.procedural.language.words import UNITS
 
 if TYPE_CHECKING:
-    from kinematify.sources.procedural.family import Parameter
-    from kinematify.sources.procedural.language.reading import Reading
+    from kinematify.generate.procedural.family import Parameter
+    from kinematify.generate.procedural.language.reading import Reading
 
 DIMENSIONS = {
     "width": ("wide", "width", "across", "broad"),

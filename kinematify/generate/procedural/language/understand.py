@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.sources.procedural.language.arrangement import layout_of
-from kinematify.sources.procedural.language.counts import read_counted_name, read_counts, read_grids
-from kinematify.sources.procedural.language.openness import FRACTIONS, OPENNESS, read_openness
-from kinematify.sources.procedural.language.reading import Reading, nouns_of
-from kinematify.sources.procedural.language.sizes import DIMENSIONS, read_bare_length, read_sizes
-from kinematify.sources.procedural.language.words import (
+from kinematify.generate.procedural.language.arrangement import layout_of
+from kinematify.generate.procedural.language.counts import read_counted_name, read_counts, read_grids
+from kinematify.generate.procedural.language.openness import FRACTIONS, OPENNESS, read_openness
+from kinematify.generate.procedural.language.reading import Reading, nouns_of
+from kinematify.generate.procedural.language.sizes import DIMENSIONS, read_bare_length, read_sizes
+from kinematify.generate.procedural.language.words import (
     ARTICLES,
     CHOICES,
     STOP_WORDS,
@@ -24,13 +24,13 @@ from kinematify.sources.procedural.language.words import (
     singular,
     tokens_of,
 )
-from kinematify.sources.procedural.layout import CELLS
-from kinematify.sources.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.layout import CELLS
+from kinematify.generate.procedural.materials import COLORS, MATERIALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kinematify.sources.procedural.family import Family, Parameter, Value
+    from kinematify.generate.procedural.family import Family, Parameter, Value
 
     _Name = tuple[tuple[str, ...], Family]
 

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.solids import bore, box, cylinder, hull, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.solids import Point
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.robot.arrays import FloatArray
 
 Rectangle = tuple[float, float, float, float]
 """Lower x, upper x, lower y, upper y in a cross-section."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.solids import bore, box, cylinder, off, union
+from kinematify.generate.procedural.solids import bore, box, cylinder, off, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
+    from kinematify.robot.arrays import FloatArray
 
 STEM = 0.006
 """Radius of a castor's stem [m]; it reaches 22 mm above the fork."""

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import at
-from kinematify.sources.procedural.solids import bore, box, cylinder, rod
+from kinematify.generate.procedural.pieces.bearings import at
+from kinematify.generate.procedural.solids import bore, box, cylinder, rod
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.solids import Point
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 FRONT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns what is built to look along z so that it looks along -y, with its y up."""

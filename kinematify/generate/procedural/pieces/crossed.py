@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.solids import bore, cylinder, hull, union
+from kinematify.generate.procedural.solids import bore, cylinder, hull, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

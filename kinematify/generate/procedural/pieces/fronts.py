@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import ALONG_X, at, barrel
-from kinematify.sources.procedural.pieces.handles import handle
-from kinematify.sources.procedural.solids import box, off, tray, union
+from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel
+from kinematify.generate.procedural.pieces.handles import handle
+from kinematify.generate.procedural.solids import box, off, tray, union
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.workshop import Workshop
 
 _REVEAL = 0.002  # of a front towards its neighbours, besides the clearance
 _BARREL = (0.004, 0.06)  # radius and length of a barrel hinge [m]

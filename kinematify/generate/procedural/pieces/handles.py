@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.solids import ball, box, cylinder, rod, union
+from kinematify.generate.procedural.solids import ball, box, cylinder, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.solids import Point
+    from kinematify.generate.procedural.solids import Point
 
 HANDLES = ("bar", "knob", "cup", "edge", "none")
 """Kinds, as in ``--set handle=``."""

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import barrel
-from kinematify.sources.procedural.solids import box, union
+from kinematify.generate.procedural.pieces.bearings import barrel
+from kinematify.generate.procedural.solids import box, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _REVEAL = 0.001  # around a leaf, besides the clearance [m]
 _STOP = 0.012  # how far the strip that a leaf lies against reaches into the opening [m]

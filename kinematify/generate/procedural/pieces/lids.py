@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.sources.procedural.pieces.bearings import ALONG_X, at, barrel
+from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.workshop import Workshop
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.solids import off, rod, union
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.solids import off, rod, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.assembly.part import FloatArray
-    from kinematify.sources.procedural.solids import Point
+    from kinematify.generate.procedural.solids import Point
+    from kinematify.robot.arrays import FloatArray
 
 _SIDES = 20  # of rods; a robot has many
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.sources.procedural.pieces.bearings import stub
-from kinematify.sources.procedural.solids import box, cylinder, hull, off, union
+from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.solids import box, cylinder, hull, off, union
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.sources.procedural.workshop import Workshop
+    from kinematify.generate.procedural.workshop import Workshop
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,18 +14,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.sources.provided.found_parts import found_parts
-from kinematify.sources.provided.job import ACCEPTED, DONE, FAILED
-from kinematify.sources.provided.service import LinkExpired, NotTaken, Service
-from kinematify.sources.provided.source import Generated, Provenance
+from kinematify.generate.providers.found_parts import found_parts
+from kinematify.generate.providers.job import ACCEPTED, DONE, FAILED
+from kinematify.generate.providers.service import LinkExpired, NotTaken, Service
+from kinematify.generate.providers.source import Generated, Provenance
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import RodinConfig
-    from kinematify.sources.provided.job import Job
-    from kinematify.sources.provided.prompt import Prompt
-    from kinematify.sources.provided.source import Progress
+    from kinematify.generate.providers.job import Job
+    from kinematify.generate.providers.prompt import Prompt
+    from kinematify.generate.providers.source import Progress
 
 KEY, ADDRESS = "RODIN_API_KEY", "RODIN_API_URL"
 OUTPUT_FOLDER = "made"

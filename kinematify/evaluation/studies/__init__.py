@@ -1,0 +1,1 @@
+"""Studies of accuracy, validation and speed."""

@@ -1,0 +1,1 @@
+"""Which hypothesis, which sign, how far."""

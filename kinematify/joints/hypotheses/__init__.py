@@ -1,0 +1,1 @@
+"""Lines and directions that geometry proposes."""

@@ -1,0 +1,1 @@
+"""A robot uses an articulated object: grasp, plan, execute."""

@@ -1,0 +1,1 @@
+"""What only `--config paper` runs."""
