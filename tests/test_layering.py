@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent
+from tests.places import ROOT
+
 ORDER = (
     "errors", "versions", "config", "assembly", "geometry", "sources", "contact", "joints", "topology", "model",
     "pipeline", "validation", "formats", "refinement", "vision", "envs", "benchmark", "batch", "nightly",

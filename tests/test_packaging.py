@@ -17,8 +17,8 @@ import pytest
 
 import kinematify
 from kinematify.cli.doctor import MODULES
+from tests.places import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "kinematify", "validation", "envs", "configs")
 INSTALLED = """
 from importlib import resources, util

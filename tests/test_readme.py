@@ -5,15 +5,14 @@ from __future__ import annotations
 import ast
 import re
 import shlex
-from pathlib import Path
 
 import click
 import pytest
 
 import kinematify
 from kinematify.cli.app import COMMANDS, cli
+from tests.places import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 PAGES = ("README.md", "CONTRIBUTING.md")
 MADE_BY_COMMANDS = ("out/", "meshes/", "parts/", "truth/")
 

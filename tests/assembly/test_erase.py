@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,12 +27,12 @@ from kinematify.robot.robot import (
     RobotDescription,
     rotation_about,
 )
+from tests.places import BENCH
 
 if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.robot.arrays import FloatArray
 
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 MODELS = sorted(BENCH.glob("*/*/model.urdf"))
 needs_bench = pytest.mark.skipif(not MODELS, reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
 

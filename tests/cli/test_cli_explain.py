@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 
 from kinematify.cli.app import run
 from kinematify.validation.catalogue import CATALOGUE, FAMILIES
+from tests.places import ROOT
 from tests.reports import add_checks
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "checks.md"
+PAGE = ROOT / "docs" / "checks.md"
 
 
 def said(capsys: pytest.CaptureFixture[str], *words: str) -> str:

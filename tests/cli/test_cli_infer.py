@@ -18,8 +18,8 @@ from lxml import etree
 
 from examples.make_cabinet import JOINTS, TrueJoint
 from kinematify.cli.app import run
+from tests.places import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 CABINET = ROOT / "examples" / "cabinet"
 BOX = trimesh.creation.box()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -12,17 +11,14 @@ from lxml import etree
 
 from kinematify.assembly.erase import ErasedModel, erase
 from kinematify.evaluation.datasets import BenchObject
-from kinematify.robot.description import read_description
-from tests.household import barrel_hinge_door, nested_drawer
-from tests.known import KnownObject
-from tests.validation.planted import write
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
-
 from kinematify.evaluation.studies.mutants.base import BaseModel, write_base
 from kinematify.evaluation.studies.mutants.fault import Planted
 from kinematify.evaluation.studies.mutants.outcome import Verdict, judge
 from kinematify.evaluation.studies.mutants.plan import FAULTS, Mutant, write_mutants
+from kinematify.robot.description import read_description
+from tests.household import barrel_hinge_door, nested_drawer
+from tests.known import KnownObject
+from tests.validation.planted import write
 
 
 def base_of(known: KnownObject, folder: Path) -> BaseModel:

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from tests.validation.task import furniture
 
 from kinematify.manipulation import execute_mujoco, execute_pybullet
 from kinematify.manipulation.execute import Execution, Hold, Loaded, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.motion import Motion, timed
+from tests.manipulation import furniture
 
 SETTINGS = furniture.SETTINGS
 EXECUTION = SETTINGS.task.execution

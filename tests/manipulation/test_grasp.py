@@ -7,12 +7,12 @@ from pathlib import Path
 import fcl
 import numpy as np
 import pytest
-from tests.validation.task import furniture
 
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.grasp import search_grasps
 from kinematify.robot.read import read_model
+from tests.manipulation import furniture
 
 PLAIN = """<robot name="thing">
 <link name="body">{body}</link>

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +14,8 @@ from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.scene import read_scene, relative
 from kinematify.manipulation.robot import GRASP_LINK, TaskRobot, builtin_robot, user_robot
 from kinematify.robot.read import read_model
+from tests.places import BENCH
 
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[4] / "shared" / "bench"))
 needs_bench = pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")
 
 

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.validation.task import furniture
 
 from kinematify.errors import InputError
 from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.sizes import SIZES, category_of, is_normalised, sizing
 from kinematify.robot.read import read_model
 from kinematify.robot.robot import forward_kinematics
-
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[4] / "shared" / "bench"))
+from tests.manipulation import furniture
+from tests.places import BENCH
 
 
 def box_of(extent: float, *, stands: bool = True) -> np.ndarray:

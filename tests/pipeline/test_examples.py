@@ -10,8 +10,9 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from examples.make_cabinet import JOINTS, TrueJoint, build_cabinet, write_cabinet
+from tests.places import ROOT
 
-CABINET = Path(__file__).resolve().parent.parent / "examples" / "cabinet"
+CABINET = ROOT / "examples" / "cabinet"
 
 
 def test_committed_files_are_what_the_script_writes(tmp_path: Path) -> None:

@@ -12,8 +12,9 @@ from PIL import Image
 from kinematify.errors import OutputError
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.pipeline.gallery import write_gallery
+from tests.places import ROOT
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
+DOCS = ROOT / "docs"
 LARGEST, LARGEST_IN_ALL = 60_000, 2_500_000  # bytes
 
 

@@ -5,9 +5,7 @@ The models are not ours to ship; they are read from the folder that KINEMATIFY_B
 
 from __future__ import annotations
 
-import os
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,11 +14,11 @@ import pytest
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.job import Job, run_job
+from tests.places import BENCH
 
 if TYPE_CHECKING:
     from kinematify.evaluation.job import JobResult
 
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 REST = next(condition for condition in CONDITIONS if condition.name == "rest")
 DIAGONAL_SHARE = 0.06
 """A door's axis stands somewhere in the thickness of its edge, which is what the meshes leave open."""

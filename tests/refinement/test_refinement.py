@@ -33,8 +33,8 @@ from kinematify.refinement.simulate import Simulator
 from kinematify.validation.finding import Severity
 from kinematify.validation.inferred import round_rows
 from tests.objects import BUILDERS
+from tests.places import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
 CONFIG = load_config()
 SETTINGS = load_settings()
 

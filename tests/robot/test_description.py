@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +19,8 @@ from kinematify.robot.description import (
     rigid_groups,
 )
 from kinematify.robot.joint_type import JointType
+from tests.places import BENCH
 
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
 needs_bench = pytest.mark.skipif(not BENCH.is_dir(), reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
 

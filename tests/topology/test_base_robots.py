@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
 import yourdfpy
@@ -16,8 +13,8 @@ from kinematify.geometry.surface import PartSurface
 from kinematify.topology.base import rank_bases
 from kinematify.topology.evidence import EdgeEvidence, pair
 from kinematify.topology.stats import part_stats
+from tests.places import BENCH
 
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).resolve().parents[2] / "shared" / "bench"))
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
 CONFIG = load_config()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -29,6 +28,7 @@ from kinematify.validation.engines.configurations import (
 from kinematify.validation.engines.loading import LoadedJoint, LoadedModel, compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+from tests.places import BENCH
 from tests.validation.engine_models import Box, Model, Part, cabinet, prepared_request, tell
 
 if TYPE_CHECKING:
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 ENGINES = ("mujoco", "pybullet", "pinocchio")
 IDS = {"KV601", "KV602", "KV603", "KV604", "KV605"}
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).parents[2] / "../shared/bench"))
 PANDA = BENCH / "robots/panda/model.urdf"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from kinematify.validation.engines.placed import link_poses
 from kinematify.validation.engines.run_end import RunEnd, find_unstable
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from kinematify.validation.stage import OpenCheck, StageRequest
+from tests.places import BENCH
 from tests.validation.engine_models import (
     Box,
     Model,
@@ -35,7 +35,6 @@ from tests.validation.engine_models import (
 )
 
 IDS = {check.id for check in CHECKS if "mujoco" in check.engines}
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).parents[2] / "../shared/bench"))
 PANDA = BENCH / "robots/panda/model.urdf"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +20,10 @@ from kinematify.validation.engines.pybullet_measure import measure
 from kinematify.validation.engines.pybullet_model import load
 from kinematify.validation.engines.pybullet_stage import run
 from kinematify.validation.finding import Blame, Finding, Severity, Status
+from tests.places import BENCH
 from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
 
 IDS = {check.id for check in CHECKS if "pybullet" in check.engines}
-BENCH = Path(os.environ.get("KINEMATIFY_BENCH", Path(__file__).parents[2] / "../shared/bench"))
 PANDA = BENCH / "robots/panda/model.urdf"
 
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
 from kinematify.evaluation.studies.corruption.bases import Base, built_base
 from kinematify.evaluation.studies.corruption.cases import KINDS, write_case
