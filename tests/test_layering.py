@@ -12,9 +12,9 @@ import pytest
 from tests.places import ROOT
 
 ORDER = (
-    "errors", "versions", "config", "assembly", "geometry", "sources", "contact", "joints", "topology", "model",
-    "pipeline", "validation", "formats", "refinement", "vision", "envs", "benchmark", "batch", "nightly",
-    "view", "cli", "__main__",
+    "errors", "versions", "config", "robot", "assembly", "geometry", "render", "contact", "joints", "topology", "paper",
+    "model", "formats", "generate", "pipeline", "simulation", "manipulation", "validation", "refinement", "vision",
+    "envs", "evaluation", "view", "cli", "__main__",
 )  # fmt: skip
 NEVER = {("validation", "topology"), ("validation", "pipeline")}  # validation knows models, never the search
 FROM_THE_TOP = {"__version__"}
