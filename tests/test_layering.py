@@ -2,44 +2,12 @@
 
 from __future__ import annotations
 
-import ast
-import os
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
-from tests.places import ROOT
+from tools.imports import ORDER, imported_names, modules
 
-ORDER = (
-    "errors", "versions", "config", "robot", "assembly", "geometry", "render", "contact", "joints", "topology", "paper",
-    "model", "formats", "generate", "pipeline", "simulation", "manipulation", "validation", "refinement", "vision",
-    "envs", "evaluation", "view", "cli", "__main__",
-)  # fmt: skip
 NEVER = {("validation", "topology"), ("validation", "pipeline")}  # validation knows models, never the search
 FROM_THE_TOP = {"__version__"}
-
-
-def modules() -> list[tuple[str, str]]:
-    """Dotted name and source of every module of the package, through the symlinks too."""
-    found = []
-    for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):
-        for file in sorted(files):
-            path = Path(folder, file)
-            if path.suffix == ".py":
-                parts = path.relative_to(ROOT).with_suffix("").parts
-                found.append((".".join(parts[:-1] if parts[-1] == "__init__" else parts), path.read_text("utf-8")))
-    return found
-
-
-def imported_names(source: str) -> Iterator[str]:
-    """Dotted names of what a module imports, wherever in the file."""
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, "relative imports hide the layer"
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
 def violations(name: str, source: str) -> list[str]:
@@ -62,12 +30,21 @@ def violations(name: str, source: str) -> list[str]:
 
 
 def test_every_module_imports_only_from_its_left() -> None:
-    assert [problem for name, source in modules() for problem in violations(name, source)] == []
+    package = {name: path for name, path in modules().items() if name.split(".")[0] == "kinematify"}
+    assert [line for name, path in package.items() for line in violations(name, path.read_text("utf-8"))] == []
+
+
+def test_every_layer_exists() -> None:
+    assert [layer for layer in ORDER if f"kinematify.{layer}" not in modules()] == []
 
 
 def test_modules_behind_symlinks_are_seen() -> None:
-    names = {name for name, _ in modules()}
-    assert {"kinematify", "kinematify.cli.app", "kinematify.validation", "kinematify.envs"} <= names
+    assert {"kinematify", "kinematify.cli.app", "kinematify.validation", "kinematify.envs"} <= set(modules())
+
+
+def test_relative_imports_are_refused() -> None:
+    with pytest.raises(ValueError, match="relative import"):
+        list(imported_names("from . import load"))
 
 
 @pytest.mark.parametrize(
