@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import os
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -12,9 +13,9 @@ from kinematify import _HOMES
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = (
-    "errors", "versions", "config", "robot", "assembly", "geometry", "render", "contact", "joints", "topology", "paper",
-    "model", "formats", "generate", "pipeline", "simulation", "manipulation", "validation", "refinement", "vision",
-    "envs", "evaluation", "view", "cli", "__main__",
+    "errors", "versions", "configs", "config", "robot", "assembly", "geometry", "render", "contact", "joints",
+    "topology", "paper", "model", "generate", "pipeline", "simulation", "manipulation", "formats", "validation",
+    "refinement", "vision", "envs", "evaluation", "view", "cli", "__main__",
 )  # fmt: skip
 """Packages and modules of `kinematify`: each imports only from what stands to its left."""
 
@@ -31,7 +32,7 @@ def modules() -> dict[str, Path]:
 
 
 def imported_names(source: str) -> Iterator[str]:
-    """Dotted names of what a module imports, wherever in the file."""
+    """Dotted names of what a module imports, wherever in the file, or names in a string to import it late."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -39,30 +40,25 @@ def imported_names(source: str) -> Iterator[str]:
             if node.level:
                 raise ValueError(f"line {node.lineno} has a relative import; write the whole name of the module")
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            if named := re.fullmatch(r"(kinematify(?:\.\w+)+)(?::[\w/-]+)?", node.value):
+                yield named[1]
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "kinematify":
+            yield f"kinematify.{node.attr}"
 
 
 @cache
 def import_graph() -> dict[str, frozenset[str]]:
-    """For every module the modules that it imports or names in a string, as the command line does to load late.
-
-    A public name of `kinematify` stands for the module that it is loaded from.
-    """
-    return {name: frozenset(_resolved(path) - {name}) for name, path in modules().items()}
-
-
-def _resolved(path: Path) -> set[str]:
-    source = path.read_text("utf-8")
-    names = set(imported_names(source))
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "kinematify":
-            names.add(f"kinematify.{node.attr}")
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            names.add(node.value.partition(":")[0])
-    return {module for name in names if (module := _module_of(name))}
+    """For every module the modules of the package, its tests and tools that it imports."""
+    resolved = {
+        name: {_module_of(imported) for imported in imported_names(path.read_text("utf-8"))}
+        for name, path in modules().items()
+    }
+    return {name: frozenset(module for module in found - {name} if module) for name, found in resolved.items()}
 
 
 def _module_of(name: str) -> str | None:
-    """The module that a dotted name is, or is taken from."""
+    """The module that a dotted name is, or is taken from; where a public name of `kinematify` is loaded from."""
     top, _, public = name.partition(".")
     if top == "kinematify" and public in _HOMES:
         return _HOMES[public]
