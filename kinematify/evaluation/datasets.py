@@ -17,6 +17,11 @@ from kinematify.errors import EnvironmentFault, InputError
 BENCH_VARIABLE = "KINEMATIFY_BENCH"
 PIP_DATA = "pip"
 """The word that stands for robots of the PyPI package example-robot-data."""
+SETS = ("robots", "everyday", "everyday2")
+"""Sets of the benchmark folder, each a folder in it and a word for it: robots, household objects of one data set, and
+household objects and devices of many others."""
+DEFAULT_SETS = ("robots", "everyday")
+"""What is measured where nothing is asked for; `everyday2` was added later and is measured by itself."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,15 +82,19 @@ def find_objects(data: str | Path | None = None) -> tuple[BenchObject, ...]:
     """Return the objects of a data set, by name.
 
     Args:
-        data: A folder searched for URDF files at any depth, one URDF file, ``pip`` for robots of the PyPI package
-            example-robot-data, or None for the benchmark folder (`bench_folder`).
+        data: A folder searched for URDF files at any depth, one URDF file, one of `SETS`, ``pip`` for robots of the
+            PyPI package example-robot-data, or None for the `DEFAULT_SETS` of the benchmark folder (`bench_folder`), or
+            all of that folder where it is not divided into sets.
 
     Raises:
         InputError: The path does not exist or holds no URDF.
         EnvironmentFault: The package example-robot-data is not installed.
     """
     if data is None:
-        return _objects_below(bench_folder())
+        folder = bench_folder()
+        return _objects_below(*[found for name in DEFAULT_SETS if (found := folder / name).is_dir()] or [folder])
+    if str(data) in SETS:
+        return _objects_below(bench_folder() / str(data))
     if str(data) == PIP_DATA:
         return _pip_objects()
     path = Path(data)
@@ -94,7 +103,8 @@ def find_objects(data: str | Path | None = None) -> tuple[BenchObject, ...]:
     if path.is_dir():
         return _objects_below(path)
     raise InputError(
-        f"There is no benchmark data at {path}. Give a folder with URDF files, one URDF file, or the word `{PIP_DATA}`."
+        f"There is no benchmark data at {path}. Give a folder with URDF files, one URDF file, or one of "
+        f"the words {', '.join((*SETS, PIP_DATA))}."
     )
 
 
@@ -115,22 +125,22 @@ def bench_folder() -> Path:
     )
 
 
-def _objects_below(folder: Path) -> tuple[BenchObject, ...]:
-    files = [path for path in sorted(folder.rglob("*.urdf")) if _is_main_description(path)]
-    if not files:
-        raise InputError(
-            f"The folder {folder} holds no URDF file at any depth. Give a folder with `model.urdf` folders or `*.urdf` "
-            "files."
-        )
-    objects = [_object_of(path) for path in files]
-    clashes = {name for name, count in Counter(item.name for item in objects).items() if count > 1}
-    return tuple(replace(item, name=_path_name(item, folder)) if item.name in clashes else item for item in objects)
-
-
-def _path_name(item: BenchObject, folder: Path) -> str:
-    """Name by place, for objects whose own names clash."""
-    place = item.urdf.relative_to(folder)
-    return (place.parent if place.name == "model.urdf" else place.with_suffix("")).as_posix()
+def _objects_below(*folders: Path) -> tuple[BenchObject, ...]:
+    """Objects of all folders by name; those whose own names clash are named by their place."""
+    found: list[tuple[BenchObject, str]] = []
+    for folder in folders:
+        files = [path for path in sorted(folder.rglob("*.urdf")) if _is_main_description(path)]
+        if not files:
+            raise InputError(
+                f"The folder {folder} holds no URDF file at any depth. Give a folder with `model.urdf` folders or "
+                "`*.urdf` files."
+            )
+        for path in files:
+            place = path.relative_to(folder)
+            stem = place.parent if place.name == "model.urdf" else place.with_suffix("")
+            found.append((_object_of(path), stem.as_posix()))
+    counts = Counter(item.name for item, _ in found)
+    return tuple(replace(item, name=place) if counts[item.name] > 1 else item for item, place in found)
 
 
 def _is_main_description(path: Path) -> bool:

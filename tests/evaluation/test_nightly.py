@@ -26,11 +26,11 @@ from kinematify.evaluation.nightly.run import NightRequest, run_night
 from kinematify.evaluation.nightly.settings import NightlySettings, load_nightly
 from kinematify.evaluation.nightly.smoke import write_smoke_objects
 from kinematify.evaluation.nightly.store import accept, load_nights, locked
+from tests.places import ROOT
 
 if TYPE_CHECKING:
     from kinematify.evaluation.nightly.run import NightResult
 
-TESTS = Path(__file__).resolve().parent
 SETTINGS = load_nightly()
 AXIS = Problem(id="axis hinge", check="axis", severity="error", text="off by 40 deg")
 TOUCH = Problem(id="KV312 joint hinge", check="KV312", severity="error", text="runs into the frame")
@@ -130,7 +130,9 @@ def kinds(result: NightResult) -> Counter[str]:
 @pytest.fixture(autouse=True)
 def _tests_on_the_path(monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers import the function under test by its name."""
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(TESTS), *filter(None, [os.environ.get("PYTHONPATH")])]))
+    monkeypatch.setenv(
+        "PYTHONPATH", os.pathsep.join([str(ROOT / "tests"), *filter(None, [os.environ.get("PYTHONPATH")])])
+    )
 
 
 def test_an_unchanged_night_reports_nothing_and_a_slow_object_fails_nothing(boxes: Path, tmp_path: Path) -> None:
