@@ -1,101 +1,118 @@
-"""The text of a URDF as an XML tree: no entity is expanded, no DTD is loaded, no oversized file is opened."""
+"""The elements of a document as all probes use them."""
 
 from __future__ import annotations
 
-import re
-from typing import TYPE_CHECKING, Any, cast
-
-from lxml import etree
-
-from kinematify.errors import DescriptionError
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from lxml.etree import _Element
 
-MAX_URDF_BYTES = 50_000_000
-"""Larger files hold no robot: the largest known ones stay below 1 MB."""
-
-_DECLARATION = re.compile(rb"<\?xml\s[^>]*\?>")
-_VERSION = re.compile(rb"""(\sversion\s*=\s*)(["'])[^"']*\2""")
+    from kinematify.config.validation import FileSettings
+    from kinematify.validation.stage import StageRequest
 
 
-def parse_description(path: Path) -> _Element:
-    """Return the robot element; entities, DOCTYPE and oversized files are refused before anything is expanded.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointElement:
+    """A joint with what it names; a name that is absent is empty."""
 
-    Raises:
-        DescriptionError: The file cannot be read, is not well-formed, or is no URDF.
-    """
-    try:
-        size = path.stat().st_size
-        text = path.read_bytes() if size <= MAX_URDF_BYTES else b""
-    except OSError as error:
-        raise DescriptionError(f"The description {path} cannot be read: {error.strerror}. Check the path.") from error
-    if size > MAX_URDF_BYTES:
-        raise DescriptionError(
-            f"The description {path} has {size} bytes; a URDF has at most {MAX_URDF_BYTES}. Is it a mesh?"
+    element: _Element
+    name: str
+    kind: str
+    parent: str
+    child: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Urdf:
+    """A well-formed document whose root is a robot."""
+
+    robot: _Element
+    text: bytes
+    folder: Path
+    """Where relative mesh paths begin."""
+    package_dirs: tuple[Path, ...]
+    settings: FileSettings
+
+    @classmethod
+    def of(cls, robot: _Element, request: StageRequest, text: bytes) -> Urdf:
+        """Put together what the probes need."""
+        return cls(
+            robot=robot,
+            text=text,
+            folder=request.urdf.resolve().parent,
+            package_dirs=tuple(folder.resolve() for folder in request.package_dirs),
+            settings=request.settings.file,
         )
-    try:
-        robot = parse_text(text)
-    except etree.XMLSyntaxError as error:
-        raise DescriptionError(f"The description {path} is not well-formed XML: {error}. Correct it there.") from error
-    if has_doctype(robot):
-        raise DescriptionError(
-            f"The description {path} declares a DOCTYPE, which no URDF needs and which can hide attacks. Remove it."
-        )
-    if robot.tag != "robot":
-        raise DescriptionError(
-            f"The description {path} begins with <{robot.tag}>, not <robot>. Give a URDF; expand xacro files with "
-            "`xacro FILE > robot.urdf`, and convert MJCF or SDF first."
-        )
-    return robot
+
+    @cached_property
+    def links(self) -> list[_Element]:
+        """Link elements in the order of the document."""
+        return self.robot.findall("link")
+
+    @cached_property
+    def joints(self) -> list[JointElement]:
+        """Joints in the order of the document."""
+        return [
+            JointElement(
+                element=element,
+                name=element.get("name") or "",
+                kind=element.get("type") or "",
+                parent=_end(element, "parent"),
+                child=_end(element, "child"),
+            )
+            for element in self.robot.findall("joint")
+        ]
+
+    @cached_property
+    def link_names(self) -> list[str]:
+        """Names of links, the unnamed left out, in the order of the document."""
+        return [name for link in self.links if (name := link.get("name"))]
+
+    @cached_property
+    def edges(self) -> list[JointElement]:
+        """Joints between two links that are there and differ."""
+        known = set(self.link_names)
+        return [j for j in self.joints if j.parent in known and j.child in known and j.parent != j.child]
+
+    @cached_property
+    def below(self) -> dict[str, list[JointElement]]:
+        """Edges that hang on a link, by its name."""
+        found: dict[str, list[JointElement]] = defaultdict(list)
+        for edge in self.edges:
+            found[edge.parent].append(edge)
+        return found
+
+    @cached_property
+    def roots(self) -> list[str]:
+        """Links that no edge carries."""
+        carried = {edge.child for edge in self.edges}
+        return [name for name in dict.fromkeys(self.link_names) if name not in carried]
+
+    def depths(self, start: Sequence[str]) -> dict[str, int]:
+        """Joints between the links of `start` and each link below them, by name."""
+        found = dict.fromkeys(start, 0)
+        frontier = list(start)
+        for link in frontier:
+            for edge in self.below.get(link, ()):
+                if edge.child not in found:
+                    found[edge.child] = found[link] + 1
+                    frontier.append(edge.child)
+        return found
+
+    def shapes(self) -> Iterator[tuple[str, _Element]]:
+        """Every visual and collision element with the name of its link."""
+        for link in self.links:
+            name = link.get("name") or ""
+            for tag in ("visual", "collision"):
+                yield from ((name, element) for element in link.findall(tag))
 
 
-def parse_text(text: bytes) -> _Element:
-    """Return the root element of a document, comments and processing instructions left out.
-
-    Raises:
-        lxml.etree.XMLSyntaxError: It is not well-formed, or deeper or larger than the limits of the parser.
-    """
-    return etree.fromstring(with_plain_declaration(text), _parser())
-
-
-def syntax_errors(text: bytes) -> list[tuple[int, str]]:
-    """Return line and message of everything that keeps `parse_text` from reading a text."""
-    parser = _parser()
-    try:
-        etree.fromstring(with_plain_declaration(text), parser)
-    except etree.XMLSyntaxError as error:
-        # The log of the exception holds the errors of earlier documents too; that of the parser does not.
-        log = cast("Iterable[Any]", parser.error_log)
-        return [(entry.line, entry.message.strip()) for entry in log] or [(error.lineno or 1, str(error))]
-    return []
-
-
-def _parser() -> etree.XMLParser:
-    return etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
-    )
-
-
-def has_doctype(root: _Element) -> bool:
-    """True if the document of `root` declares a DOCTYPE."""
-    return etree.ElementTree(root).docinfo.internalDTD is not None
-
-
-def with_plain_declaration(text: bytes) -> bytes:
-    """Return the text with an XML declaration that parsers take.
-
-    Files with ``<?xml version="0.0" ?>``, or with a comment before the declaration, are common, because the readers of
-    ROS and PyBullet never look at it. Lines keep their numbers.
-    """
-    declaration = _DECLARATION.search(text[:4096])
-    if declaration is None:
-        return text
-    if text[: declaration.start()].strip(b"\xef\xbb\xbf") == b"":
-        mended = _VERSION.sub(rb"\1\g<2>1.0\2", declaration.group())
-    else:
-        mended = b"\n" * declaration.group().count(b"\n")
-    return text[: declaration.start()] + mended + text[declaration.end() :]
+def _end(joint: _Element, tag: str) -> str:
+    element = joint.find(tag)
+    return "" if element is None else element.get("link") or ""
