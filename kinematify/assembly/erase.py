@@ -25,8 +25,8 @@ from kinematify.robot.robot import (
     joint_values,
     rest_configuration,
     rigid_groups,
-    rotation_about,
 )
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence

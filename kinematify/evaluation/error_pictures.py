@@ -12,7 +12,7 @@ from kinematify.model.scene import GLYPH_COLORS, camera_for
 from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import rotation_about
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -11,7 +11,7 @@ from kinematify.formats.content import body_name, told_renaming
 from kinematify.formats.mesh_files import MeshFiles
 from kinematify.model.urdf_elements import numbers
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.rotation import quaternion
+from kinematify.robot.transforms import quaternion_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -81,7 +81,7 @@ class _Writer:
         joint = declared.joint
         T = joint.T_parent_child
         child = etree.SubElement(
-            parent, "body", name=body_name(joint.child), pos=numbers(T[:3, 3]), quat=numbers(quaternion(T[:3, :3]))
+            parent, "body", name=body_name(joint.child), pos=numbers(T[:3, 3]), quat=numbers(quaternion_of(T[:3, :3]))
         )
         if joint.kind is JointType.FIXED:
             return child
@@ -123,7 +123,7 @@ class _Writer:
             return geom
         T = shape.T_link_shape
         geom.set("pos", numbers(T[:3, 3]))
-        geom.set("quat", numbers(quaternion(T[:3, :3])))
+        geom.set("quat", numbers(quaternion_of(T[:3, :3])))
         geom.set("size", numbers(_half(shape)))
         return geom
 

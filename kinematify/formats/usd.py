@@ -10,7 +10,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 from kinematify.errors import OutputError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
-from kinematify.robot.rotation import from_x, quaternion
+from kinematify.robot.transforms import quaternion_of, rotation_from_x
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -129,7 +129,7 @@ class _Writer:
         found.GetPrim().SetDisplayName(joint.name)
         found.CreateBody0Rel().SetTargets([self._paths[joint.parent]])
         found.CreateBody1Rel().SetTargets([self._paths[joint.child]])
-        turn = np.eye(3) if joint.kind is JointType.FIXED else from_x(joint.axis)
+        turn = np.eye(3) if joint.kind is JointType.FIXED else rotation_from_x(joint.axis)
         T = joint.T_parent_child
         found.CreateLocalPos0Attr(_vector(T[:3, 3]))
         found.CreateLocalRot0Attr(_turn(T[:3, :3] @ turn))
@@ -208,4 +208,4 @@ def _vector(values: Iterable[float]) -> Any:
 
 
 def _turn(rotation: FloatArray) -> Any:
-    return Gf.Quatf(*map(float, quaternion(np.asarray(rotation))))
+    return Gf.Quatf(*map(float, quaternion_of(np.asarray(rotation))))

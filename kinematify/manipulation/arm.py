@@ -13,7 +13,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.model.urdf_elements import numbers
-from kinematify.robot.robot import rotation_about
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -21,7 +21,8 @@ from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
 from kinematify.robot.description import parse_description
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_model
-from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rotation_about
+from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from pathlib import Path

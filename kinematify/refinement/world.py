@@ -7,7 +7,6 @@ trees, signed distances) is built once for all of them: a candidate costs only t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,16 +14,15 @@ import numpy as np
 from kinematify.geometry.scene import Body, Scene
 from kinematify.geometry.solid import Solid
 from kinematify.joints.candidate import JointType
-from kinematify.robot.declared import DeclaredLink, DeclaredModel
 from kinematify.robot.mechanism import Mechanism
-from kinematify.robot.robot import DescribedJoint, DescribedLink, LinkMesh, RobotDescription, rigid_groups
+from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.assembly.part import Part
     from kinematify.config.validation import GeometrySettings
-    from kinematify.model.kinematic_model import Joint, KinematicModel
+    from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.arrays import FloatArray
 
 _UNIT_SHARE = 1e-3  # of the largest part: a good unit for FCL, which takes short lengths for none
@@ -66,21 +64,12 @@ class World:
 
     def scene(self, model: KinematicModel) -> WorldScene:
         """A plan as the checks see it."""
-        kinematics = _described(model, self._visuals)
-        groups = rigid_groups(kinematics)
+        robot = _in_world_frame(model, self._visuals)
+        groups = rigid_groups(robot)
         origins = {link.name: link.T_world_link[:3, 3] for link in model.links}
         return WorldScene(
-            model=DeclaredModel(
-                path=Path(model.name),
-                name=model.name,
-                links=tuple(
-                    DeclaredLink(name=link.name, inertial=None, visuals=(), collisions=(), line=0)
-                    for link in model.links
-                ),
-                joints=(),
-                kinematics=kinematics,
-            ),
-            mechanism=Mechanism(description=kinematics),
+            model=robot,
+            mechanism=Mechanism(description=robot),
             bodies=tuple(
                 Body(name=group.links[0], links=group.links, group=index, solid=self._solid(group.links), shapes=())
                 for index, group in enumerate(groups)
@@ -106,32 +95,31 @@ class World:
         return self._solids[key]
 
 
-def _described(model: KinematicModel, visuals: Mapping[str, Part]) -> RobotDescription:
+def _in_world_frame(model: KinematicModel, visuals: Mapping[str, Part]) -> Robot:
     """The same tree with all link frames in the world frame; the lines of the joints are told apart from it."""
-    return RobotDescription(
+    return Robot(
         name=model.name,
         links=tuple(
-            DescribedLink(name=name, meshes=(LinkMesh(vertices=part.vertices, faces=part.faces),))
+            Link(name=name, visuals=(Shape(mesh=LinkMesh(vertices=part.vertices, faces=part.faces)),))
             for name, part in visuals.items()
         ),
-        joints=tuple(_joint(joint) for joint in model.joints),
+        joints=tuple(
+            Joint(
+                name=joint.name,
+                kind=joint.kind,
+                parent=joint.parent,
+                child=joint.child,
+                T_parent_child=np.eye(4),
+                axis=joint.axis,
+                lower=joint.lower,
+                upper=joint.upper,
+            )
+            for joint in model.joints
+        ),
     )
 
 
-def _joint(joint: Joint) -> DescribedJoint:
-    return DescribedJoint(
-        name=joint.name,
-        kind=joint.kind,
-        parent=joint.parent,
-        child=joint.child,
-        T_parent_child=np.eye(4),
-        axis=joint.axis,
-        lower=joint.lower,
-        upper=joint.upper,
-    )
-
-
-def _motions_about(joint: DescribedJoint, point: FloatArray, values: FloatArray) -> FloatArray:
+def _motions_about(joint: Joint, point: FloatArray, values: FloatArray) -> FloatArray:
     """Motion of a joint about its line in the world frame at many values [rad or m], shape (n, 4, 4)."""
     motions = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
     if joint.kind is JointType.PRISMATIC:

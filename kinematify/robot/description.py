@@ -1,276 +1,34 @@
-"""Reading a URDF: strict where a mistake would change the mechanism, tolerant where files commonly differ."""
+"""Temporary: the old names of what `robot` and `read` hold."""
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kinematify.errors import DescriptionError
-from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Joint as DescribedJoint
+from kinematify.robot.robot import Link as DescribedLink
 from kinematify.robot.robot import (
-    DescribedJoint,
-    DescribedLink,
     LinkMesh,
     Mimic,
     RigidGroup,
-    RobotDescription,
     forward_kinematics,
     joint_values,
     rest_configuration,
     rigid_groups,
 )
-from kinematify.robot.urdf_document import parse_description
-from kinematify.robot.urdf_geometry import geometry_source
-from kinematify.robot.urdf_numbers import number, origin_transform, vector
+from kinematify.robot.robot import Robot as RobotDescription
+from kinematify.robot.urdf_text import parse_description
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from lxml.etree import _Element
-
-    from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.urdf_geometry import GeometrySource
-
 __all__ = [
-    "DescribedJoint",
-    "DescribedLink",
-    "LinkMesh",
-    "Mimic",
-    "RigidGroup",
-    "RobotDescription",
-    "describe",
-    "forward_kinematics",
-    "joint_values",
-    "parse_description",
-    "read_description",
-    "rest_configuration",
-    "rigid_groups",
-]
-
-_FREE = ("floating", "planar")
-
-
-@dataclass(frozen=True)
-class _ReadJoint:
-    joint: DescribedJoint
-    declared: str
-    """Type as written, e.g. ``floating``."""
-    note: str = ""
+    "DescribedJoint", "DescribedLink", "LinkMesh", "Mimic", "RigidGroup", "RobotDescription", "forward_kinematics",
+    "joint_values", "parse_description", "read_description", "rest_configuration", "rigid_groups",
+]  # fmt: skip
 
 
 def read_description(path: Path, *, package_dirs: Sequence[Path] = ()) -> RobotDescription:
-    """Read a URDF with its meshes.
-
-    Links without visual geometry use their collision geometry. ``package://NAME/...`` is looked up in `package_dirs`
-    (each a package or a folder of packages), then in the folders above the URDF. Floating and planar joints stand for
-    a body that is free in the world: above the first geometry they are read as fixed, elsewhere they are refused. A
-    revolute joint without limits is continuous. Each such reading is a note in the result.
-
-    Args:
-        path: The URDF file.
-        package_dirs: Where packages lie.
-
-    Raises:
-        DescriptionError: The file cannot be read, is not a kinematic tree of single-axis joints, or a mesh is missing
-            or broken. The message names the link or joint.
-    """
-    return describe(parse_description(path), path, geometry_source(path, package_dirs))
-
-
-def describe(robot: _Element, path: Path, source: GeometrySource) -> RobotDescription:
-    """Do the work of `read_description` on a parsed document, so that its other content can be read beside it.
-
-    Args:
-        robot: What `parse_description` returned.
-        path: The URDF file, for messages.
-        source: Where meshes are looked up.
-
-    Raises:
-        DescriptionError: As for `read_description`.
-    """
-    read = [_joint(element) for element in robot.findall("joint")]
-    _check_tree(path, [_name(element) for element in robot.findall("link")], [item.joint for item in read])
-    _check_mimics([item.joint for item in read])
-    links = tuple(_link(element, source) for element in robot.findall("link"))
-    description = RobotDescription(
-        name=robot.get("name") or path.stem,
-        links=links,
-        joints=tuple(item.joint for item in read),
-        notes=tuple(item.note for item in read if item.note),
-    )
-    _check_free_joints(description, [item.joint for item in read if item.declared in _FREE])
-    return description
-
-
-def _link(element: _Element, source: GeometrySource) -> DescribedLink:
-    visual = source.meshes(element, "visual")
-    meshes = visual or source.meshes(element, "collision")
-    return DescribedLink(name=_name(element), meshes=meshes, from_collision=bool(meshes) and not visual)
-
-
-def _name(element: _Element) -> str:
-    name = element.get("name")
-    if not name:
-        raise DescriptionError(f"A <{element.tag}> in line {element.sourceline} has no name. Name it.")
-    return name
-
-
-def _joint(element: _Element) -> _ReadJoint:
-    name = _name(element)
-    where = f"joint {name}"
-    declared = element.get("type") or ""
-    kind, note = _kind(element, declared, where)
-    lower, upper = _limits(element, kind, where)
-    joint = DescribedJoint(
-        name=name,
-        kind=kind,
-        parent=_end(element, "parent", where),
-        child=_end(element, "child", where),
-        T_parent_child=origin_transform(element, where),
-        axis=_axis(element, kind, where),
-        lower=lower,
-        upper=upper,
-        mimic=None if kind is JointType.FIXED else _mimic(element, where),
-    )
-    return _ReadJoint(joint, declared, note)
-
-
-def _kind(element: _Element, declared: str, where: str) -> tuple[JointType, str]:
-    """Type of a joint, and a note where it is not the declared one."""
-    if declared in _FREE:
-        return JointType.FIXED, f"The {declared} {where} above the root body is read as fixed."
-    if declared not in tuple(JointType):
-        known = ", ".join([*JointType, *_FREE])
-        raise DescriptionError(f"The {where} has the type {declared!r}; URDF knows {known}. Correct it.")
-    if declared == JointType.REVOLUTE and element.find("limit") is None:
-        return JointType.CONTINUOUS, f"The revolute {where} has no limits and is read as continuous."
-    return JointType(declared), ""
-
-
-def _limits(element: _Element, kind: JointType, where: str) -> tuple[float, float]:
-    if kind is JointType.CONTINUOUS:
-        return -np.inf, np.inf
-    if kind is JointType.FIXED:
-        return 0.0, 0.0
-    limit = element.find("limit")
-    if limit is None:
-        raise DescriptionError(f"The prismatic {where} has no <limit>. Give it lower and upper in metres.")
-    lower, upper = number(limit, "lower", 0.0, where), number(limit, "upper", 0.0, where)
-    if lower > upper:
-        raise DescriptionError(f"The {where} has the lower limit {lower} above the upper limit {upper}. Swap them.")
-    return lower, upper
-
-
-def _end(element: _Element, tag: str, where: str) -> str:
-    end = element.find(tag)
-    link = None if end is None else end.get("link")
-    if not link:
-        raise DescriptionError(f'The {where} names no {tag} link. Add <{tag} link="..."/>.')
-    return link
-
-
-def _axis(element: _Element, kind: JointType, where: str) -> FloatArray:
-    default = (1.0, 0.0, 0.0)
-    axis = element.find("axis")
-    if kind is JointType.FIXED or axis is None:
-        return np.array(default)
-    direction = vector(axis, "xyz", default, where)
-    length = float(np.linalg.norm(direction))
-    if length == 0.0:
-        raise DescriptionError(f"The {where} has an axis of zero length. Give it a direction.")
-    return direction / length
-
-
-def _mimic(element: _Element, where: str) -> Mimic | None:
-    mimic = element.find("mimic")
-    if mimic is None:
-        return None
-    return Mimic(
-        joint=mimic.get("joint") or "",
-        multiplier=number(mimic, "multiplier", 1.0, where),
-        offset=number(mimic, "offset", 0.0, where),
-    )
-
-
-def _check_tree(path: Path, links: Sequence[str], joints: Sequence[DescribedJoint]) -> None:
-    """One root, one parent per link, no cycle, every name once and every reference resolved."""
-    _check_unique(path, "links", links)
-    _check_unique(path, "joints", (joint.name for joint in joints))
-    _check_ends(path, set(links), joints)
-    children = {joint.child for joint in joints}
-    roots = [link for link in links if link not in children]
-    if not links:
-        raise DescriptionError(f"The description {path} holds no link. Give a URDF with at least one.")
-    if len(roots) > 1:
-        raise DescriptionError(
-            f"The description {path} has {len(roots)} root links: {', '.join(roots[:8])}. Join them to one with fixed "
-            "joints, or split the file."
-        )
-    _check_no_cycle(path, joints)
-
-
-def _check_unique(path: Path, what: str, names: Iterable[str]) -> None:
-    name, count = max(Counter(names).items(), key=lambda item: item[1], default=("", 0))
-    if count > 1:
-        raise DescriptionError(f"The description {path} has {count} {what} named {name!r}. Names must be unique.")
-
-
-def _check_ends(path: Path, links: set[str], joints: Sequence[DescribedJoint]) -> None:
-    carried: dict[str, str] = {}
-    for joint in joints:
-        for end in (joint.parent, joint.child):
-            if end not in links:
-                raise DescriptionError(
-                    f"The joint {joint.name} in {path} connects the link {end!r}, which is not there. Correct the name."
-                )
-        if joint.child in carried:
-            raise DescriptionError(
-                f"The link {joint.child} in {path} hangs on two joints, {carried[joint.child]} and {joint.name}. A "
-                "URDF is a tree: cut one of them."
-            )
-        carried[joint.child] = joint.name
-
-
-def _check_no_cycle(path: Path, joints: Sequence[DescribedJoint]) -> None:
-    above = {joint.child: joint.parent for joint in joints}
-    settled: set[str] = set()
-    for start in above:
-        walked = [start]
-        while walked[-1] in above and walked[-1] not in settled:
-            walked.append(above[walked[-1]])
-            if walked[-1] in walked[:-1]:
-                cycle = " -> ".join(reversed(walked[walked.index(walked[-1]) :]))
-                raise DescriptionError(f"The links of {path} form a cycle: {cycle}. A URDF is a tree: cut one joint.")
-        settled.update(walked)
-
-
-def _check_mimics(joints: Sequence[DescribedJoint]) -> None:
-    by_name = {joint.name: joint for joint in joints}
-    for joint in joints:
-        chain = [joint]
-        while (mimic := chain[-1].mimic) is not None:
-            if mimic.joint not in by_name:
-                raise DescriptionError(
-                    f"The joint {chain[-1].name} mimics {mimic.joint!r}, which is not there. Correct the name."
-                )
-            if by_name[mimic.joint] in chain:
-                names = " -> ".join(item.name for item in (*chain, by_name[mimic.joint]))
-                raise DescriptionError(f"The mimic joints {names} follow each other in a circle. Let one of them lead.")
-            chain.append(by_name[mimic.joint])
-
-
-def _check_free_joints(description: RobotDescription, free: Sequence[DescribedJoint]) -> None:
-    for joint in free:
-        above = [joint.parent]
-        while above[-1] in description.joint_above:
-            above.append(description.joint_above[above[-1]].parent)
-        solid = next((link for link in above if description.link_by_name[link].has_geometry), None)
-        if solid is not None:
-            raise DescriptionError(
-                f"The joint {joint.name} lets {joint.child} move freely (floating or planar) below the link {solid}. "
-                "Only joints with one axis are supported there: describe it as several joints, or as two robots."
-            )
+    """Read what is shown of a URDF; see `read_robot`."""
+    return read_robot(path, package_dirs=package_dirs, geometry="shown")

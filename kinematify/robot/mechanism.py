@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import joint_values, rest_configuration, rigid_groups
-from kinematify.validation.engines.configurations import joint_ends
+from kinematify.robot.robot import joint_ends, joint_values, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import RobotDescription
+    from kinematify.robot.robot import Robot
 
     BoolArray = NDArray[np.bool_]
 
@@ -53,7 +52,7 @@ class Travel:
 class Mechanism:
     """A tree, its leading joints and its bodies (links held together by fixed joints)."""
 
-    description: RobotDescription
+    description: Robot
     standing: Mapping[str, float] = field(default_factory=dict)
     """Leaders that rest elsewhere than they would, and where [rad or m]."""
 

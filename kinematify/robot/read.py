@@ -1,137 +1,100 @@
-"""From a URDF that the pre-check let pass to a `DeclaredModel`; every mesh file is read once."""
+"""From a URDF to a `Robot`: strict where a mistake would change the mechanism, tolerant where files commonly differ."""
 
 from __future__ import annotations
 
-import pickle
-from typing import TYPE_CHECKING
+from collections import Counter
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from kinematify.robot.declared import (
-    DeclaredInertial,
-    DeclaredJoint,
-    DeclaredLink,
-    DeclaredModel,
-    DeclaredShape,
-)
-from kinematify.robot.description import describe, parse_description
-from kinematify.robot.robot import LinkMesh
+from kinematify.errors import DescriptionError
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
 from kinematify.robot.urdf_geometry import geometry_source
-from kinematify.robot.urdf_numbers import number, origin_transform, vector
+from kinematify.robot.urdf_numbers import line_of, number, optional_number, origin_transform, vector
+from kinematify.robot.urdf_text import parse_description
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
     from lxml.etree import _Element
 
-    from kinematify.robot.robot import DescribedJoint
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.urdf_geometry import GeometrySource
-    from kinematify.validation.stage import StageRequest
 
-_LEFT = "model.pickle"
-"""In the folder of the run, which nobody else writes to."""
+    Geometry = Literal["all", "shown", "none"]
+
+_FREE = ("floating", "planar")
 
 
-def read_model(path: Path, *, package_dirs: Sequence[Path] = ()) -> DeclaredModel:
-    """Read everything that a URDF declares, meshes included.
+def read_robot(path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geometry = "all") -> Robot:
+    """Read a URDF; every mesh file is opened once.
+
+    ``package://NAME/...`` is looked up in `package_dirs` (each a package or a folder of packages), then in the folders
+    above the URDF. Floating and planar joints stand for a body that is free in the world: above the first geometry they
+    are read as fixed, elsewhere they are refused. A revolute joint without limits is continuous. Each such reading is a
+    note in the result.
 
     Args:
         path: The URDF file.
-        package_dirs: Where packages lie (``package://``).
+        package_dirs: Where packages lie.
+        geometry: ``shown`` leaves out the collision shapes of links that have visual ones, ``none`` opens no mesh file
+            and gives links without any shapes.
 
     Raises:
-        DescriptionError: It cannot be read or is no tree of single-axis joints; the message says where and what to do.
+        DescriptionError: The file cannot be read, is not a kinematic tree of single-axis joints, or a mesh is missing
+            or broken. The message names the link or joint and says what to do.
     """
-    return read_parsed(parse_description(path), path, geometry_source(path, package_dirs))
+    return parse_robot(parse_description(path), path, geometry_source(path, package_dirs), geometry)
 
 
-def leave_model(model: DeclaredModel, work: Path) -> None:
-    """Leave a model for the later stages of a run, so that they need not parse its meshes again."""
-    partly = work / f"{_LEFT}.partly"
-    with partly.open("wb") as file:
-        pickle.dump(model, file, protocol=pickle.HIGHEST_PROTOCOL)
-    partly.replace(work / _LEFT)  # a stage that is stopped leaves no half of it
+def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry: Geometry = "all") -> Robot:
+    """Do the work of `read_robot` on a parsed document with a source that may have opened the mesh files already.
 
-
-def model_of(request: StageRequest) -> DeclaredModel:
-    """Read the model of a run: what an earlier stage left, or else the files.
+    Args:
+        element: What `parse_description` returned.
+        path: The URDF file.
+        source: Where meshes are looked up.
+        geometry: As for `read_robot`.
 
     Raises:
-        DescriptionError: As for `read_model`.
+        DescriptionError: As for `read_robot`.
     """
-    left = request.work / _LEFT
-    if not left.is_file():
-        return read_model(request.urdf, package_dirs=request.package_dirs)
-    with left.open("rb") as file:
-        model: DeclaredModel = pickle.load(file)
-    return model
-
-
-def read_without_geometry(path: Path) -> DeclaredModel:
-    """Read what `read_model` reads but for the geometry, for what needs the tree only: no mesh file is opened.
-
-    Raises:
-        DescriptionError: As for `read_model`.
-    """
-    robot = parse_description(path)
-    for link in robot.findall("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            link.remove(shape)
-    return read_parsed(robot, path, geometry_source(path, ()))
-
-
-def read_parsed(robot: _Element, path: Path, source: GeometrySource) -> DeclaredModel:
-    """Do the work of `read_model` on a parsed document with a source that may have opened the mesh files already.
-
-    Raises:
-        DescriptionError: As for `read_model`.
-    """
-    kinematics = describe(robot, path, source)
-    return DeclaredModel(
+    joints = tuple(_joint(item) for item in element.findall("joint"))
+    _check_tree(path, [_name(item) for item in element.findall("link")], joints)
+    _check_mimics(joints)
+    robot = Robot(
+        name=element.get("name") or path.stem,
+        links=tuple(_link(item, source, geometry) for item in element.findall("link")),
+        joints=joints,
         path=path.resolve(),
-        name=kinematics.name,
-        links=tuple(_link(element, source) for element in robot.findall("link")),
-        joints=tuple(
-            _joint(element, joint) for element, joint in zip(robot.findall("joint"), kinematics.joints, strict=True)
-        ),
-        kinematics=kinematics,
+        notes=tuple(note for joint in joints if (note := _note(joint))),
     )
+    _check_free_joints(robot, [joint for joint in joints if joint.declared_kind in _FREE])
+    return robot
 
 
-def _link(element: _Element, source: GeometrySource) -> DeclaredLink:
-    return DeclaredLink(
-        name=element.get("name") or "",
+def _link(element: _Element, source: GeometrySource, geometry: Geometry) -> Link:
+    visuals = () if geometry == "none" else source.shapes(element, "visual")
+    hidden = geometry == "none" or (geometry == "shown" and visuals)
+    return Link(
+        name=_name(element),
         inertial=_inertial(element),
-        visuals=_shapes(element, "visual", source),
-        collisions=_shapes(element, "collision", source),
-        line=_line(element),
+        visuals=visuals,
+        collisions=() if hidden else source.shapes(element, "collision"),
+        line=line_of(element),
     )
 
 
-def _shapes(link: _Element, tag: str, source: GeometrySource) -> tuple[DeclaredShape, ...]:
-    meshes = source.meshes(link, tag)
-    where = f"link {link.get('name')}"
-    return tuple(_shape(element, mesh, source, where) for element, mesh in zip(link.findall(tag), meshes, strict=True))
+def _name(element: _Element) -> str:
+    name = element.get("name")
+    if not name:
+        raise DescriptionError(f"A <{element.tag}> in line {element.sourceline} has no name. Name it.")
+    return name
 
 
-def _shape(element: _Element, mesh: LinkMesh, source: GeometrySource, where: str) -> DeclaredShape:
-    shape = element[[child.tag for child in element].index("geometry")][0]
-    kind = str(shape.tag)
-    sizes = {"box": ("size",), "sphere": ("radius",)}.get(kind, ("radius", "length"))
-    numbers = [] if kind == "mesh" else [float(word) for key in sizes for word in (shape.get(key) or "").split()]
-    return DeclaredShape(
-        kind=kind,
-        mesh=mesh,
-        file=source.resolved(shape.get("filename") or "", where) if kind == "mesh" else None,
-        scale=vector(shape, "scale", (1.0, 1.0, 1.0), where) if kind == "mesh" else np.ones(3),
-        size=tuple(numbers),
-        T_link_shape=origin_transform(element, where),
-        line=_line(element),
-    )
-
-
-def _inertial(link: _Element) -> DeclaredInertial | None:
+def _inertial(link: _Element) -> Inertial | None:
     element = link.find("inertial")
     if element is None:
         return None
@@ -144,33 +107,194 @@ def _inertial(link: _Element) -> DeclaredInertial | None:
     T_link_inertial = origin_transform(element, where)
     rotation = T_link_inertial[:3, :3]
     tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-    return DeclaredInertial(
+    return Inertial(
         mass=0.0 if mass is None else number(mass, "value", 0.0, where),
         center_of_mass=T_link_inertial[:3, 3],
         tensor=rotation @ tensor @ rotation.T,
-        line=_line(element),
+        line=line_of(element),
     )
 
 
-def _joint(element: _Element, joint: DescribedJoint) -> DeclaredJoint:
-    return DeclaredJoint(
-        joint=joint,
-        declared_kind=element.get("type") or "",
+def _joint(element: _Element) -> Joint:
+    name = _name(element)
+    where = f"joint {name}"
+    declared = element.get("type") or ""
+    kind = _kind(element, declared, where)
+    lower, upper = _limits(element, kind, where)
+    return Joint(
+        name=name,
+        kind=kind,
+        parent=_end(element, "parent", where),
+        child=_end(element, "child", where),
+        T_parent_child=origin_transform(element, where),
+        axis=_axis(element, kind, where),
+        lower=lower,
+        upper=upper,
+        mimic=None if kind is JointType.FIXED else _mimic(element, where),
+        declared_kind=declared,
         has_limit=element.find("limit") is not None,
-        effort=_optional(element, "limit", "effort"),
-        velocity=_optional(element, "limit", "velocity"),
-        damping=_optional(element, "dynamics", "damping"),
-        friction=_optional(element, "dynamics", "friction"),
-        line=_line(element),
+        effort=optional_number(element, "limit", "effort", where),
+        velocity=optional_number(element, "limit", "velocity", where),
+        damping=optional_number(element, "dynamics", "damping", where),
+        friction=optional_number(element, "dynamics", "friction", where),
+        line=line_of(element),
     )
 
 
-def _optional(joint: _Element, tag: str, attribute: str) -> float | None:
-    element = joint.find(tag)
-    if element is None or element.get(attribute) is None:
+def _kind(element: _Element, declared: str, where: str) -> JointType:
+    if declared in _FREE:
+        return JointType.FIXED
+    if declared not in tuple(JointType):
+        known = ", ".join([*JointType, *_FREE])
+        raise DescriptionError(f"The {where} has the type {declared!r}; URDF knows {known}. Correct it.")
+    if declared == JointType.REVOLUTE and element.find("limit") is None:
+        return JointType.CONTINUOUS
+    return JointType(declared)
+
+
+def _note(joint: Joint) -> str:
+    if joint.declared_kind in _FREE:
+        return f"The {joint.declared_kind} joint {joint.name} above the root body is read as fixed."
+    if joint.declared_kind != joint.kind:
+        return f"The revolute joint {joint.name} has no limits and is read as continuous."
+    return ""
+
+
+def _limits(element: _Element, kind: JointType, where: str) -> tuple[float, float]:
+    if kind is JointType.CONTINUOUS:
+        return -np.inf, np.inf
+    if kind is JointType.FIXED:
+        return 0.0, 0.0
+    limit = element.find("limit")
+    if limit is None:
+        raise DescriptionError(f"The prismatic {where} has no <limit>. Give it lower and upper in metres.")
+    lower, upper = number(limit, "lower", 0.0, where), number(limit, "upper", 0.0, where)
+    if lower > upper:
+        raise DescriptionError(f"The {where} has the lower limit {lower} above the upper limit {upper}. Swap them.")
+    return lower, upper
+
+
+def _end(element: _Element, tag: str, where: str) -> str:
+    end = element.find(tag)
+    link = None if end is None else end.get("link")
+    if not link:
+        raise DescriptionError(f'The {where} names no {tag} link. Add <{tag} link="..."/>.')
+    return link
+
+
+def _axis(element: _Element, kind: JointType, where: str) -> FloatArray:
+    default = (1.0, 0.0, 0.0)
+    axis = element.find("axis")
+    if kind is JointType.FIXED or axis is None:
+        return np.array(default)
+    direction = vector(axis, "xyz", default, where)
+    length = float(np.linalg.norm(direction))
+    if length == 0.0:
+        raise DescriptionError(f"The {where} has an axis of zero length. Give it a direction.")
+    return direction / length
+
+
+def _mimic(element: _Element, where: str) -> Mimic | None:
+    mimic = element.find("mimic")
+    if mimic is None:
         return None
-    return number(element, attribute, None, f"joint {joint.get('name')}")
+    return Mimic(
+        joint=mimic.get("joint") or "",
+        multiplier=number(mimic, "multiplier", 1.0, where),
+        offset=number(mimic, "offset", 0.0, where),
+    )
 
 
-def _line(element: _Element) -> int:
-    return int(str(element.sourceline))  # the stubs of lxml do not know its type
+def _check_tree(path: Path, links: Sequence[str], joints: Sequence[Joint]) -> None:
+    """One root, one parent per link, no cycle, every name once and every reference resolved."""
+    _check_unique(path, "links", links)
+    _check_unique(path, "joints", (joint.name for joint in joints))
+    _check_ends(path, set(links), joints)
+    children = {joint.child for joint in joints}
+    roots = [link for link in links if link not in children]
+    if not links:
+        raise DescriptionError(f"The description {path} holds no link. Give a URDF with at least one.")
+    if len(roots) > 1:
+        raise DescriptionError(
+            f"The description {path} has {len(roots)} root links: {', '.join(roots[:8])}. Join them to one with fixed "
+            "joints, or split the file."
+        )
+    _check_no_cycle(path, joints)
+
+
+def _check_unique(path: Path, what: str, names: Iterable[str]) -> None:
+    name, count = max(Counter(names).items(), key=lambda item: item[1], default=("", 0))
+    if count > 1:
+        raise DescriptionError(f"The description {path} has {count} {what} named {name!r}. Names must be unique.")
+
+
+def _check_ends(path: Path, links: set[str], joints: Sequence[Joint]) -> None:
+    carried: dict[str, str] = {}
+    for joint in joints:
+        for end in (joint.parent, joint.child):
+            if end not in links:
+                raise DescriptionError(
+                    f"The joint {joint.name} in {path} connects the link {end!r}, which is not there. Correct the name."
+                )
+        if joint.child in carried:
+            raise DescriptionError(
+                f"The link {joint.child} in {path} hangs on two joints, {carried[joint.child]} and {joint.name}. A "
+                "URDF is a tree: cut one of them."
+            )
+        carried[joint.child] = joint.name
+
+
+def _check_no_cycle(path: Path, joints: Sequence[Joint]) -> None:
+    above = {joint.child: joint.parent for joint in joints}
+    settled: set[str] = set()
+    for start in above:
+        walked = [start]
+        while walked[-1] in above and walked[-1] not in settled:
+            walked.append(above[walked[-1]])
+            if walked[-1] in walked[:-1]:
+                cycle = " -> ".join(reversed(walked[walked.index(walked[-1]) :]))
+                raise DescriptionError(f"The links of {path} form a cycle: {cycle}. A URDF is a tree: cut one joint.")
+        settled.update(walked)
+
+
+def _check_mimics(joints: Sequence[Joint]) -> None:
+    by_name = {joint.name: joint for joint in joints}
+    for joint in joints:
+        chain = [joint]
+        while (mimic := chain[-1].mimic) is not None:
+            if mimic.joint not in by_name:
+                raise DescriptionError(
+                    f"The joint {chain[-1].name} mimics {mimic.joint!r}, which is not there. Correct the name."
+                )
+            if by_name[mimic.joint] in chain:
+                names = " -> ".join(item.name for item in (*chain, by_name[mimic.joint]))
+                raise DescriptionError(f"The mimic joints {names} follow each other in a circle. Let one of them lead.")
+            chain.append(by_name[mimic.joint])
+
+
+def _check_free_joints(robot: Robot, free: Sequence[Joint]) -> None:
+    for joint in free:
+        above = [joint.parent]
+        while above[-1] in robot.joint_above:
+            above.append(robot.joint_above[above[-1]].parent)
+        solid = next((link for link in above if robot.link_by_name[link].has_geometry), None)
+        if solid is not None:
+            raise DescriptionError(
+                f"The joint {joint.name} lets {joint.child} move freely (floating or planar) below the link {solid}. "
+                "Only joints with one axis are supported there: describe it as several joints, or as two robots."
+            )
+
+
+def read_model(path: Path, *, package_dirs: Sequence[Path] = ()) -> Robot:
+    """Temporary: `read_robot`."""
+    return read_robot(path, package_dirs=package_dirs)
+
+
+def read_without_geometry(path: Path) -> Robot:
+    """Temporary: `read_robot` with ``geometry="none"``."""
+    return read_robot(path, geometry="none")
+
+
+def read_parsed(robot: _Element, path: Path, source: GeometrySource) -> Robot:
+    """Temporary: `parse_robot`."""
+    return parse_robot(robot, path, source)

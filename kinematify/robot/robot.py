@@ -1,10 +1,11 @@
-"""A robot description: links with meshes, single-axis joints, and where every link stands in a configuration."""
+"""A robot: links with mass and geometry, single-axis joints, and where every link stands in a configuration."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +13,18 @@ import numpy as np
 from kinematify.errors import DescriptionError
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from kinematify.robot.arrays import FloatArray, IntArray
+
+_UNLIMITED_TURN = np.pi
+_WIDEST_TURN = 4.0 * np.pi
+"""Wider ranges [rad] repeat the same poses."""
+_WIDEST_SLIDE = 100.0
+"""Beyond it [m] floating-point error of the pose would be taken for disagreement."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,19 +42,69 @@ class LinkMesh:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DescribedLink:
-    """A link; without meshes it is only a frame."""
+class Shape:
+    """One `visual` or `collision` element."""
+
+    kind: str = "mesh"
+    """``mesh``, ``box``, ``cylinder``, ``sphere`` or ``capsule``."""
+    mesh: LinkMesh
+    """Its triangles in the link frame [m]; primitives are tessellated."""
+    file: Path | None = None
+    """Mesh file, resolved; None for primitives and for meshes that come from no file."""
+    scale: FloatArray = field(default_factory=lambda: np.ones(3))
+    """Scale of a mesh as written, ones for primitives, shape (3,). Read-only."""
+    size: tuple[float, ...] = ()
+    """Box: x, y, z; cylinder and capsule: radius, length; sphere: radius [m]; empty for a mesh."""
+    T_link_shape: FloatArray = field(default_factory=lambda: np.eye(4))
+    """The element's origin, shape (4, 4). Read-only."""
+    color: tuple[float, float, float, float] | None = None
+    """Red, green, blue, opacity in [0, 1]; None where the file states none."""
+    line: int = 0
+    """Where the file declares it; 0 for what no file declares, here and below."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "scale", read_only(self.scale, np.float64))
+        object.__setattr__(self, "T_link_shape", read_only(self.T_link_shape, np.float64))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Inertial:
+    """Mass properties of a link, expressed in the link frame."""
+
+    mass: float
+    """[kg]; a file may declare one that is not above zero."""
+    center_of_mass: FloatArray
+    """Link frame [m], shape (3,). Read-only."""
+    tensor: FloatArray
+    """About the centre of mass, axes of the link frame [kg m^2], shape (3, 3). Read-only."""
+    source: str = "file"
+    """``file``; or ``volume`` for a closed mesh, ``hull`` for the convex hull of an open or flat one."""
+    line: int = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "center_of_mass", read_only(self.center_of_mass, np.float64))
+        object.__setattr__(self, "tensor", read_only(self.tensor, np.float64))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Link:
+    """A rigid body; without shapes it is only a frame."""
 
     name: str
-    meshes: tuple[LinkMesh, ...] = ()
-    """Visual geometry, or collision geometry where there is no visual one."""
-    from_collision: bool = False
-    """True where `meshes` are the collision geometry."""
+    inertial: Inertial | None = None
+    visuals: tuple[Shape, ...] = ()
+    collisions: tuple[Shape, ...] = ()
+    line: int = 0
 
-    @property
+    @cached_property
+    def meshes(self) -> tuple[LinkMesh, ...]:
+        """Visual geometry, or collision geometry where there is no visual one."""
+        return tuple(shape.mesh for shape in self.visuals or self.collisions)
+
+    @cached_property
     def has_geometry(self) -> bool:
         """True if it has at least one triangle."""
-        return any(len(mesh.faces) for mesh in self.meshes)
+        return any(len(shape.mesh.faces) for shape in (*self.visuals, *self.collisions))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +119,7 @@ class Mimic:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DescribedJoint:
+class Joint:
     """A joint; its frame is the child link's frame."""
 
     name: str
@@ -77,10 +135,33 @@ class DescribedJoint:
     upper: float
     """[rad or m]; +inf for continuous, 0 for fixed."""
     mimic: Mimic | None = None
+    declared_kind: str = ""
+    """Type as a file declares it, e.g. ``floating``, which `kind` has as fixed; empty where no file does."""
+    has_limit: bool = True
+    """False if a file declares no `limit`."""
+    effort: float | None = None
+    """[N m or N]; None where absent."""
+    velocity: float | None = None
+    """[rad/s or m/s]; None where absent."""
+    damping: float | None = None
+    """[N m s/rad or N s/m]; None where absent."""
+    friction: float | None = None
+    """[N m or N]; None where absent."""
+    line: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "T_parent_child", read_only(self.T_parent_child, np.float64))
         object.__setattr__(self, "axis", read_only(self.axis, np.float64))
+
+    @property
+    def joint(self) -> Joint:
+        """Itself; temporary."""
+        return self
+
+    @property
+    def leads(self) -> bool:
+        """True if it moves by itself: neither fixed nor mimic."""
+        return self.kind is not JointType.FIXED and self.mimic is None
 
     def motion(self, value: float) -> FloatArray:
         """Return the transform of the child in the joint frame, shape (4, 4), at `value` [rad or m]."""
@@ -93,35 +174,37 @@ class DescribedJoint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RobotDescription:
-    """A kinematic tree as it was described; links and joints in the order of the document."""
+class Robot:
+    """A kinematic tree; links and joints in the order of the document."""
 
     name: str
-    links: tuple[DescribedLink, ...]
-    joints: tuple[DescribedJoint, ...]
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...]
     """As many as links less one: one root, no cycle."""
+    path: Path = Path()
+    """The URDF file, absolute; the working directory for what was read from none."""
     notes: tuple[str, ...] = ()
     """What was read with a meaning that the document does not state plainly, one sentence each."""
 
     @cached_property
-    def link_by_name(self) -> dict[str, DescribedLink]:
+    def link_by_name(self) -> dict[str, Link]:
         """Links keyed by name."""
         return {link.name: link for link in self.links}
 
     @cached_property
-    def joint_by_name(self) -> dict[str, DescribedJoint]:
+    def joint_by_name(self) -> dict[str, Joint]:
         """Joints keyed by name."""
         return {joint.name: joint for joint in self.joints}
 
     @cached_property
-    def joint_above(self) -> dict[str, DescribedJoint]:
+    def joint_above(self) -> dict[str, Joint]:
         """Joint that carries a link, keyed by the link; the root is missing."""
         return {joint.child: joint for joint in self.joints}
 
     @cached_property
-    def joints_below(self) -> dict[str, tuple[DescribedJoint, ...]]:
+    def joints_below(self) -> dict[str, tuple[Joint, ...]]:
         """Joints that hang on a link, keyed by the link."""
-        below: dict[str, list[DescribedJoint]] = defaultdict(list)
+        below: dict[str, list[Joint]] = defaultdict(list)
         for joint in self.joints:
             below[joint.parent].append(joint)
         return {link.name: tuple(below[link.name]) for link in self.links}
@@ -131,10 +214,25 @@ class RobotDescription:
         """Name of the link that no joint carries."""
         return next(link.name for link in self.links if link.name not in self.joint_above)
 
+    @property
+    def kinematics(self) -> Robot:
+        """Itself; temporary."""
+        return self
+
+    @property
+    def moving(self) -> tuple[Joint, ...]:
+        """Temporary: `leaders`."""
+        return self.leaders
+
     @cached_property
-    def joints_downward(self) -> tuple[DescribedJoint, ...]:
+    def leaders(self) -> tuple[Joint, ...]:
+        """Joints that move by themselves (neither fixed nor mimic), in the order of the document."""
+        return tuple(joint for joint in self.joints if joint.leads)
+
+    @cached_property
+    def joints_downward(self) -> tuple[Joint, ...]:
         """All joints, parents before children, breadth first."""
-        found: list[DescribedJoint] = []
+        found: list[Joint] = []
         frontier = [self.root]
         for link in frontier:
             found.extend(self.joints_below[link])
@@ -156,78 +254,83 @@ class RigidGroup:
         return self.links[0]
 
 
-def rigid_groups(description: RobotDescription) -> tuple[RigidGroup, ...]:
+def rigid_groups(robot: Robot) -> tuple[RigidGroup, ...]:
     """Return the groups of links joined by fixed joints, the root's first, parents before children."""
-    members: dict[str, list[str]] = {description.root: [description.root]}
-    top_of = {description.root: description.root}
-    for joint in description.joints_downward:
+    members: dict[str, list[str]] = {robot.root: [robot.root]}
+    top_of = {robot.root: robot.root}
+    for joint in robot.joints_downward:
         top = top_of[joint.parent] if joint.kind is JointType.FIXED else joint.child
         top_of[joint.child] = top
         members.setdefault(top, []).append(joint.child)
     return tuple(
-        RigidGroup(links=tuple(links), has_geometry=any(description.link_by_name[n].has_geometry for n in links))
+        RigidGroup(links=tuple(links), has_geometry=any(robot.link_by_name[n].has_geometry for n in links))
         for links in members.values()
     )
 
 
-def joint_values(description: RobotDescription, q: Mapping[str, float]) -> dict[str, float]:
+def joint_values(robot: Robot, q: Mapping[str, float]) -> dict[str, float]:
     """Return the value of every joint [rad or m]: leaders from `q`, followers by their mimic rule, the rest 0.
 
     Args:
-        description: The robot.
+        robot: The robot.
         q: Joint name -> value; followers and fixed joints in it have no effect.
 
     Raises:
         DescriptionError: `q` names a joint that the robot does not have.
     """
-    unknown = sorted(set(q) - set(description.joint_by_name))
+    unknown = sorted(set(q) - set(robot.joint_by_name))
     if unknown:
         raise DescriptionError(
-            f"The robot {description.name} has no joint {unknown[0]}. Its joints are "
-            f"{', '.join(sorted(description.joint_by_name))}."
+            f"The robot {robot.name} has no joint {unknown[0]}. Its joints are "
+            f"{', '.join(sorted(robot.joint_by_name))}."
         )
-    return {joint.name: _value(description, joint, q) for joint in description.joints}
+    return {joint.name: _value(robot, joint, q) for joint in robot.joints}
 
 
-def _value(description: RobotDescription, joint: DescribedJoint, q: Mapping[str, float]) -> float:
+def _value(robot: Robot, joint: Joint, q: Mapping[str, float]) -> float:
     if joint.kind is JointType.FIXED:
         return 0.0
     if joint.mimic is None:
         return float(q.get(joint.name, 0.0))
-    leader = description.joint_by_name[joint.mimic.joint]
-    return joint.mimic.multiplier * _value(description, leader, q) + joint.mimic.offset
+    leader = robot.joint_by_name[joint.mimic.joint]
+    return joint.mimic.multiplier * _value(robot, leader, q) + joint.mimic.offset
 
 
-def forward_kinematics(description: RobotDescription, q: Mapping[str, float]) -> dict[str, FloatArray]:
+def forward_kinematics(robot: Robot, q: Mapping[str, float]) -> dict[str, FloatArray]:
     """Return T_world_link of every link, shape (4, 4); the root link's frame is the world.
 
     Args:
-        description: The robot.
+        robot: The robot.
         q: Joint name -> value [rad or m]; missing joints stand at zero, followers follow their leader.
 
     Raises:
         DescriptionError: `q` names a joint that the robot does not have.
     """
-    values = joint_values(description, q)
-    poses: dict[str, FloatArray] = {description.root: np.eye(4)}
-    for joint in description.joints_downward:
+    values = joint_values(robot, q)
+    poses: dict[str, FloatArray] = {robot.root: np.eye(4)}
+    for joint in robot.joints_downward:
         poses[joint.child] = poses[joint.parent] @ joint.T_parent_child @ joint.motion(values[joint.name])
     return poses
 
 
-def rest_configuration(description: RobotDescription) -> dict[str, float]:
+def rest_configuration(robot: Robot) -> dict[str, float]:
     """Return the rest value of every joint: zero, or mid-limits where zero lies outside; followers follow."""
     leaders = {
         joint.name: 0.0 if joint.lower <= 0.0 <= joint.upper else 0.5 * (joint.lower + joint.upper)
-        for joint in description.joints
+        for joint in robot.joints
         if joint.mimic is None
     }
-    return joint_values(description, leaders)
+    return joint_values(robot, leaders)
 
 
-def rotation_about(axis: FloatArray, angle: float) -> FloatArray:
-    """Return the rotation matrix, shape (3, 3), by `angle` [rad] about a unit `axis` (Rodrigues)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    matrix: FloatArray = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
-    return matrix
+def joint_ends(joints: Sequence[Joint]) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest value of each joint [rad or m], shape (n,) each; unlimited ones turn once."""
+    widest = np.array([_WIDEST_TURN if joint.kind.turns else _WIDEST_SLIDE for joint in joints])
+    lower = np.array([joint.lower if np.isfinite(joint.lower) else -_UNLIMITED_TURN for joint in joints])
+    upper = np.array([joint.upper if np.isfinite(joint.upper) else _UNLIMITED_TURN for joint in joints])
+    return np.clip(lower, -widest, widest), np.clip(upper, -widest, widest)
+
+
+DescribedJoint = Joint
+DescribedLink = Link
+RobotDescription = Robot

@@ -1,4 +1,4 @@
-"""The elements of a document as all probes use them."""
+"""The elements of a well-formed URDF and how they refer to each other, whatever is wrong with them."""
 
 from __future__ import annotations
 
@@ -9,12 +9,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from lxml.etree import _Element
-
-    from kinematify.config.validation import FileSettings
-    from kinematify.validation.stage import StageRequest
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,26 +25,10 @@ class JointElement:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Urdf:
-    """A well-formed document whose root is a robot."""
+class UrdfDocument:
+    """A well-formed document whose root is a robot; links may be missing, repeated or joined in circles."""
 
     robot: _Element
-    text: bytes
-    folder: Path
-    """Where relative mesh paths begin."""
-    package_dirs: tuple[Path, ...]
-    settings: FileSettings
-
-    @classmethod
-    def of(cls, robot: _Element, request: StageRequest, text: bytes) -> Urdf:
-        """Put together what the probes need."""
-        return cls(
-            robot=robot,
-            text=text,
-            folder=request.urdf.resolve().parent,
-            package_dirs=tuple(folder.resolve() for folder in request.package_dirs),
-            settings=request.settings.file,
-        )
 
     @cached_property
     def links(self) -> list[_Element]:

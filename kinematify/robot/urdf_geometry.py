@@ -12,14 +12,16 @@ import numpy as np
 from kinematify.errors import AssemblyError, DescriptionError
 from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import find_mesh
-from kinematify.robot.robot import LinkMesh
-from kinematify.robot.urdf_numbers import number, origin_transform, vector
+from kinematify.robot.robot import LinkMesh, Shape
+from kinematify.robot.urdf_numbers import line_of, number, origin_transform, vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from lxml.etree import _Element
 
+SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
+"""Attributes that hold the size of a primitive."""
 _SECTIONS = 64
 """Sides of a tessellated cylinder: its flats lie 0.12 % of the radius inside the circle."""
 _SUBDIVISIONS = 4
@@ -36,15 +38,15 @@ class GeometrySource:
     """Folders that are packages, or hold them."""
     cache: dict[Path, RawMesh]
 
-    def meshes(self, link: _Element, tag: str) -> tuple[LinkMesh, ...]:
-        """Return the triangles of all ``visual`` or ``collision`` elements of a link.
+    def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
+        """Return all ``visual`` or ``collision`` elements of a link with their triangles.
 
         Raises:
             DescriptionError: An element has no geometry, an unknown one, bad numbers, or a mesh that is missing.
         """
-        return tuple(self._mesh(element, f"link {link.get('name')}") for element in link.findall(tag))
+        return tuple(self._shape(element, f"link {link.get('name')}") for element in link.findall(tag))
 
-    def _mesh(self, element: _Element, where: str) -> LinkMesh:
+    def _shape(self, element: _Element, where: str) -> Shape:
         geometry = element.find("geometry")
         if geometry is None or len(geometry) != 1:
             raise DescriptionError(
@@ -52,13 +54,23 @@ class GeometrySource:
                 "box, cylinder or sphere, or remove it."
             )
         shape = geometry[0]
-        mesh = self._mesh_file(shape, where) if shape.tag == "mesh" else _primitive(shape, where)
+        kind = str(shape.tag)
+        mesh = self._mesh_file(shape, where) if kind == "mesh" else _primitive(shape, where)
         transform = origin_transform(element, where)
         scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
         vertices = (mesh.vertices * scale) @ transform[:3, :3].T + transform[:3, 3]
         # A mirroring scale turns the triangles inside out.
         order = [0, 2, 1] if np.prod(scale) < 0 else [0, 1, 2]
-        return LinkMesh(vertices=vertices, faces=mesh.faces[:, order])
+        return Shape(
+            kind=kind,
+            mesh=LinkMesh(vertices=vertices, faces=mesh.faces[:, order]),
+            file=self.resolved(shape.get("filename") or "", where) if kind == "mesh" else None,
+            scale=scale if kind == "mesh" else np.ones(3),
+            size=tuple(float(word) for key in SIZES.get(kind, ()) for word in (shape.get(key) or "").split()),
+            T_link_shape=transform,
+            color=_color(element.find("material")),
+            line=line_of(element),
+        )
 
     def _mesh_file(self, shape: _Element, where: str) -> RawMesh:
         path = self.resolved(shape.get("filename") or "", where)
@@ -113,3 +125,28 @@ def _primitive(shape: _Element, where: str) -> RawMesh:
 def _positive(where: str, shape: str, *sizes: float) -> None:
     if not all(size > 0 and math.isfinite(size) for size in sizes):
         raise DescriptionError(f"The {shape} of {where} has the size {sizes}. Every length must be above zero.")
+
+
+def _color(material: _Element | None) -> tuple[float, float, float, float] | None:
+    """Colour of a material, looked up by its name in the document where it states none itself."""
+    if material is None:
+        return None
+    found = _stated_color(material)
+    if found is None:
+        named = [
+            other for other in material.getroottree().iter("material") if other.get("name") == material.get("name")
+        ]
+        found = next((color for color in map(_stated_color, named) if color is not None), None)
+    return found
+
+
+def _stated_color(material: _Element) -> tuple[float, float, float, float] | None:
+    color = material.find("color")
+    try:
+        values = [float(word) for word in (color.get("rgba") or "").split()] if color is not None else []
+    except ValueError:
+        return None
+    if len(values) != 4 or not all(0.0 <= value <= 1.0 for value in values):
+        return None
+    red, green, blue, opacity = values
+    return red, green, blue, opacity

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import DescriptionError
+from kinematify.robot.transforms import rotation_from_rpy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,6 +65,23 @@ def _finite(text: str | None) -> list[float]:
     return values if all(map(math.isfinite, values)) else []
 
 
+def optional_number(parent: _Element, tag: str, attribute: str, where: str) -> float | None:
+    """Return one finite number of an attribute of a child; None where the child or the attribute is absent.
+
+    Raises:
+        DescriptionError: The attribute is anything but one finite number.
+    """
+    element = parent.find(tag)
+    if element is None or element.get(attribute) is None:
+        return None
+    return number(element, attribute, None, where)
+
+
+def line_of(element: _Element) -> int:
+    """Return the line of the start tag."""
+    return int(str(element.sourceline))  # the stubs of lxml do not know its type
+
+
 def origin_transform(element: _Element, where: str) -> FloatArray:
     """Return the transform of the ``origin`` child, shape (4, 4); identity where there is none.
 
@@ -75,17 +93,6 @@ def origin_transform(element: _Element, where: str) -> FloatArray:
     origin = element.find("origin")
     transform = np.eye(4)
     if origin is not None:
-        transform[:3, :3] = _rotation(vector(origin, "rpy", (0.0, 0.0, 0.0), where))
+        transform[:3, :3] = rotation_from_rpy(vector(origin, "rpy", (0.0, 0.0, 0.0), where))
         transform[:3, 3] = vector(origin, "xyz", (0.0, 0.0, 0.0), where)
     return transform
-
-
-def _rotation(roll_pitch_yaw: FloatArray) -> FloatArray:
-    (sr, sp, sy), (cr, cp, cy) = np.sin(roll_pitch_yaw), np.cos(roll_pitch_yaw)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )

@@ -10,8 +10,8 @@ from lxml import etree
 from kinematify.model import urdf_elements as document
 from kinematify.model.collision_pieces import Pieces, decomposed
 from kinematify.model.masses import prepared_inertials
-from kinematify.robot.read import model_of
 from kinematify.simulation.prepared import URDF_FILE, Prepared, PreparedLink, write_record
+from kinematify.validation.left_model import model_of
 
 if TYPE_CHECKING:
     from pathlib import Path

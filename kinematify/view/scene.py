@@ -18,8 +18,8 @@ from kinematify.robot.robot import (
     joint_values,
     rest_configuration,
     rigid_groups,
-    rotation_about,
 )
+from kinematify.robot.transforms import rotation_about
 from kinematify.validation.formats.view_data import camera_turn
 
 if TYPE_CHECKING:

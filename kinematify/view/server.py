@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.rotation import quaternion
+from kinematify.robot.transforms import quaternion_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -224,7 +224,7 @@ class ModelViewer:
                 colors[group.top] = _TOUCHING
         with self._server.atomic():
             for top, mesh in self._meshes.items():
-                mesh.wxyz, mesh.position = quaternion(poses[top][:3, :3]), poses[top][:3, 3]
+                mesh.wxyz, mesh.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3]
                 if top in colors and mesh.color != colors[top]:
                     mesh.color = colors[top]
             for joint in self._scene.leaders:
@@ -234,7 +234,7 @@ class ModelViewer:
     def _place_axis(self, joint: DescribedJoint, poses: Mapping[str, FloatArray]) -> None:
         T = poses[joint.parent] @ joint.T_parent_child
         handle = self._axes[joint.name]
-        handle.wxyz, handle.position = quaternion(T[:3, :3]), T[:3, 3]
+        handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3]
 
 
 def _ignoring_event(action: Callable[[], None]) -> Callable[[Any], None]:

@@ -19,14 +19,8 @@ from kinematify.config import load_config
 from kinematify.errors import DescriptionError, InputError, OutputError
 from kinematify.robot.description import read_description
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import (
-    DescribedJoint,
-    DescribedLink,
-    LinkMesh,
-    Mimic,
-    RobotDescription,
-    rotation_about,
-)
+from kinematify.robot.robot import Joint, Link, LinkMesh, Mimic, Robot, Shape
+from kinematify.robot.transforms import rotation_about
 from tests.places import BENCH
 
 if TYPE_CHECKING:
@@ -37,30 +31,30 @@ MODELS = sorted(BENCH.glob("*/*/model.urdf"))
 needs_bench = pytest.mark.skipif(not MODELS, reason="no benchmark models: set KINEMATIFY_BENCH to their folder")
 
 
-def wedge(name: str, size: float) -> DescribedLink:
+def wedge(name: str, size: float) -> Link:
     """A link whose shape no rotation maps to itself, so that its pose can be read off its vertices."""
     vertices = size * np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3.0]])
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    return DescribedLink(name=name, meshes=(LinkMesh(vertices=vertices, faces=faces),))
+    return Link(name=name, visuals=(Shape(mesh=LinkMesh(vertices=vertices, faces=faces)),))
 
 
-def joint(name: str, parent: str, child: str, kind: str = "revolute", **changes: object) -> DescribedJoint:
+def joint(name: str, parent: str, child: str, kind: str = "revolute", **changes: object) -> Joint:
     pose = np.eye(4)
     pose[:3, :3] = rotation_about(np.array([0.6, 0.0, 0.8]), 0.7)
     pose[:3, 3] = [0.3, -0.2, 0.5]
     unlimited = kind == "continuous"
-    base = DescribedJoint(
+    base = Joint(
         name=name, kind=JointType(kind), parent=parent, child=child, T_parent_child=pose, axis=np.array([0, 0.6, 0.8]),
         lower=-math.inf if unlimited else -1.0, upper=math.inf if unlimited else 2.0,
     )  # fmt: skip
     return replace(base, **changes)  # type: ignore[arg-type]
 
 
-def robot(links: list[DescribedLink], *joints: DescribedJoint) -> RobotDescription:
-    return RobotDescription(name="r", links=tuple(links), joints=joints)
+def robot(links: list[Link], *joints: Joint) -> Robot:
+    return Robot(name="r", links=tuple(links), joints=joints)
 
 
-def chain() -> RobotDescription:
+def chain() -> Robot:
     """Base, arm, slide and a mimicking finger; the tip is fixed to the arm."""
     return robot(
         [wedge(name, 1.0 + 0.1 * k) for k, name in enumerate("abcdt")],
@@ -71,8 +65,8 @@ def chain() -> RobotDescription:
     )
 
 
-def empty(name: str) -> DescribedLink:
-    return DescribedLink(name=name)
+def empty(name: str) -> Link:
+    return Link(name=name)
 
 
 def screwed(true: TrueJoint, value: float, points: FloatArray) -> FloatArray:

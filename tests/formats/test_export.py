@@ -17,7 +17,8 @@ from kinematify.cli.app import run
 from kinematify.errors import InputError, OutputError
 from kinematify.robot.description import read_description
 from kinematify.robot.read import read_model
-from kinematify.robot.robot import forward_kinematics, rotation_about
+from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from pathlib import Path

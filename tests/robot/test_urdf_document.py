@@ -9,7 +9,7 @@ from lxml import etree
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import find_mesh, mesh_candidates
-from kinematify.robot.urdf_document import has_doctype, parse_text, with_plain_declaration
+from kinematify.robot.urdf_text import has_doctype, parse_text, with_plain_declaration
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ import numpy as np
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_parsed
-from kinematify.robot.urdf_document import parse_description
 from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.urdf_text import parse_description
 from kinematify.validation.asset.mesh_files import open_mesh_files, worst_coordinate
 from kinematify.validation.asset.mesh_quality import surface_quality
 from kinematify.validation.asset.units import check_model_size, check_unit_slips

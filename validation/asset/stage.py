@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.robot.read import leave_model
 from kinematify.validation.asset import collision, drives, inertias, limits, masses
 from kinematify.validation.asset.bodies import measure
 from kinematify.validation.asset.meshes import check_mesh_files
+from kinematify.validation.left_model import leave_model
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

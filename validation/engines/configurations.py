@@ -14,23 +14,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.robot import joint_values, rest_configuration
+from kinematify.robot.robot import joint_ends, joint_values, rest_configuration
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from kinematify.config.validation import AgreementSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import DescribedJoint, RobotDescription
+    from kinematify.robot.robot import RobotDescription
 
 GRAVITY = 9.81
 """Along -z of the root link's frame [m/s^2]; every engine is set to it."""
-_UNLIMITED_TURN = np.pi
-_WIDEST_TURN = 4.0 * np.pi
-"""Wider ranges [rad] repeat the same poses."""
-_WIDEST_SLIDE = 100.0
-"""Beyond it [m] floating-point error of the pose would be taken for disagreement."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,14 +109,6 @@ def agreement_configurations(description: RobotDescription, settings: AgreementS
         q=_with_followers(description, [joint.name for joint in leaders], joints, values),
         dynamic=min(len(values), settings.dynamic_rows, max(2, settings.dynamic_numbers // max(1, len(joints) ** 2))),
     )
-
-
-def joint_ends(leaders: Sequence[DescribedJoint]) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest value of each joint [rad or m], shape (m,) each; unlimited ones turn once."""
-    widest = np.array([_WIDEST_TURN if joint.kind.turns else _WIDEST_SLIDE for joint in leaders])
-    lower = np.array([joint.lower if np.isfinite(joint.lower) else -_UNLIMITED_TURN for joint in leaders])
-    upper = np.array([joint.upper if np.isfinite(joint.upper) else _UNLIMITED_TURN for joint in leaders])
-    return np.clip(lower, -widest, widest), np.clip(upper, -widest, widest)
 
 
 def spread_rows(lower: FloatArray, upper: FloatArray, rows: int, seed: int) -> FloatArray:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.mechanism import sweep_rows
-from kinematify.robot.read import model_of
 from kinematify.validation.engines.surfaces import surfaces_meet
 from kinematify.validation.engines.touching import stand_in_error, stand_in_reason
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.left_model import model_of
 from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:

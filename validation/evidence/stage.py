@@ -8,12 +8,12 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import model_of
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.validation.catalogue.evidence import CHECKS
 from kinematify.validation.evidence.bodies import read_bodies
 from kinematify.validation.evidence.judge import better_joint, doubts_about
 from kinematify.validation.evidence.measure import measure_joints
+from kinematify.validation.left_model import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:

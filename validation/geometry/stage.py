@@ -17,7 +17,6 @@ from kinematify.geometry.scene import read_scene, simplified, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import model_of
 from kinematify.validation.catalogue.geometry import CHECKS
 from kinematify.validation.engine_results import EXACT
 from kinematify.validation.engines.configurations import write_poses
@@ -34,6 +33,7 @@ from kinematify.validation.geometry.judge_rest import (
     strangers,
 )
 from kinematify.validation.geometry.judge_together import free_configurations, in_each_others_way
+from kinematify.validation.left_model import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:

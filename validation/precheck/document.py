@@ -8,10 +8,10 @@ from __future__ import annotations
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kinematify.robot.urdf_text import read_text
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.precheck import joints, names, numbers, references, shapes, text, tree
-from kinematify.validation.precheck.source import read_text
 from kinematify.validation.precheck.urdf import Urdf
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.validation.precheck.urdf import JointElement, Urdf
+    from kinematify.robot.urdf_document import JointElement
+    from kinematify.validation.precheck.urdf import Urdf
 
 _SINGLE = ("revolute", "continuous", "prismatic")
 _FREE = ("floating", "planar")

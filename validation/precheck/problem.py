@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.stage import OpenCheck
+
+
+__all__ = ["Problem", "blame_of", "line_of", "shown"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,11 +48,6 @@ class Problem:
             unit=self.unit,
             line=self.line,
         )
-
-
-def line_of(element: _Element) -> int:
-    """Line of the start tag."""
-    return int(str(element.sourceline))  # the stubs of lxml do not know its type
 
 
 def blame_of(element: _Element) -> Blame:

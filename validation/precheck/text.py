@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.robot.urdf_document import has_doctype
+from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.finding import Severity
 from kinematify.validation.precheck.problem import Problem, line_of, shown
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.validation.precheck.source import UrdfText
+    from kinematify.robot.urdf_text import UrdfText
     from kinematify.validation.precheck.urdf import Urdf
 
 _CHILDREN = {

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.validation.precheck.urdf import JointElement, Urdf
+    from kinematify.robot.urdf_document import JointElement
+    from kinematify.validation.precheck.urdf import Urdf
 
 _SHOWN = 8
 

@@ -33,7 +33,7 @@ from kinematify.manipulation.robot import builtin_robot
 from kinematify.manipulation.sizes import sizing
 from kinematify.robot.description import parse_description
 from kinematify.robot.read import read_model, read_parsed
-from kinematify.robot.robot import rotation_about
+from kinematify.robot.transforms import rotation_about
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.validation.run import validate
 from kinematify.validation.task.stage import motion_of

@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.assembly.part import Assembly, Part
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import rotation_about
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.hypotheses.frames import UP
-from kinematify.robot.robot import rotation_about
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig

@@ -15,7 +15,8 @@ import numpy as np
 from kinematify.evaluation.studies.mutants.base import link_part, words
 from kinematify.evaluation.studies.mutants.fault import Fault, Planted
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups, rotation_about
+from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
+from kinematify.robot.transforms import rotation_about
 from kinematify.validation.finding import Blame
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import numpy as np
 from kinematify.generate.procedural.family import Family, Parameter
 from kinematify.generate.procedural.pieces.bearings import at, barrel
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, rod, union
-from kinematify.robot.robot import rotation_about
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
