@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import agreement, engines, evidence, geometry, meshes, physics, task
+from kinematify.validation.catalogue import agreement, engines, evidence, meshes, physics, task
+from kinematify.validation.checks import checks_of
 from kinematify.validation.isolation import Stage
 
 if TYPE_CHECKING:
@@ -30,7 +31,11 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
     """Everything that moves the model, the longest first; engines that were not chosen are left out."""
     stages = [
         Stage(name="prepare", function="kinematify.simulation.prepare:run", checks=()),
-        Stage(name="geometry", function="kinematify.validation.geometry.stage:run", checks=keys(geometry.CHECKS)),
+        Stage(
+            name="geometry",
+            function="kinematify.validation.geometry.stage:run",
+            checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
+        ),
         Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(evidence.CHECKS)),
     ]
     for engine in chosen:

@@ -15,11 +15,12 @@ from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from pathlib import Path
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.request import Suspicion, TaskRequest
+    from kinematify.validation.check import Check
     from kinematify.validation.finding import Blame
     from kinematify.validation.report import Summary
 
@@ -140,6 +141,25 @@ class Recorder:
             check.block(f"{type(error).__name__}: {error}")
         if name in self._selected:
             self._tell(_closed(check, time.perf_counter() - start))
+
+    def run(self, check: Check, context: object, engine: str | None = None) -> None:
+        """Run one check on the context of its stage."""
+        with self.check(check.id, engine) as result:
+            check.run(result, context)
+
+    def skip(self, checks: Iterable[Check], reason: str) -> None:
+        """Say of checks that they do not apply."""
+        for check in checks:
+            for engine in check.engines or (None,):
+                with self.check(check.id, engine) as result:
+                    result.skip(reason)
+
+    def block(self, checks: Iterable[Check], reason: str) -> None:
+        """Say of checks that an earlier failure keeps them from running."""
+        for check in checks:
+            for engine in check.engines or (None,):
+                with self.check(check.id, engine) as result:
+                    result.block(reason)
 
     def summarise(self, summary: Summary) -> None:
         """Tell what is known of a joint or a pair; later summaries of the same joint add to earlier ones."""

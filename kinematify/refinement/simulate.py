@@ -1,6 +1,6 @@
 """The cheap tier: what the exact geometry says of a plan, in this process and without a file.
 
-The judges are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here passes there. Sweeps
+The checks are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here passes there. Sweeps
 of joints that did not change since an earlier plan are not repeated.
 """
 
@@ -9,33 +9,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
-from kinematify.geometry.sweep import Sweeper
 from kinematify.refinement.world import World
-from kinematify.validation.geometry import judge_motion
-from kinematify.validation.geometry.judge_motion import MotionCase
-from kinematify.validation.geometry.judge_rest import hovering, neighbours, strangers
+from kinematify.validation.checks import checks_of
+from kinematify.validation.geometry.look import GeometryLook, JointMotion
 from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import OpenCheck
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
     from kinematify.config.validation import GeometrySettings
     from kinematify.geometry.sweep import JointSweep
     from kinematify.model.kinematic_model import Joint, KinematicModel
-    from kinematify.refinement.world import WorldScene
+    from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
-    from kinematify.validation.geometry.remark import Remark
-
-_MOTION: dict[str, Callable[[MotionCase], Iterator[Remark]]] = {
-    "KV310": judge_motion.through_parent,
-    "KV311": judge_motion.into_others,
-    "KV312": judge_motion.beyond_free_travel,
-    "KV320": judge_motion.lost_contact,
-    "KV321": judge_motion.out_of_guide,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,10 +51,8 @@ class Simulator:
 
     def judge(self, model: KinematicModel) -> Verdict:
         """Judge a whole plan."""
-        look = _Look(self._world.scene(model))
-        found = list(_findings("KV301", strangers(look.scene, look.allowance, None)))
-        found += _findings("KV302", neighbours(look.scene, look.overlap, look.allowance, None))
-        found += _findings("KV303", hovering(look.scene, look.allowance))
+        look = GeometryLook(self._world.scene(model), compare_visible=False)
+        found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table, no failure
         summaries: list[JointSummary] = []
         for leader, travel in enumerate(look.scene.travels):
             told, summary = self._joint(look, model, leader, travel.joint)
@@ -77,22 +62,23 @@ class Simulator:
 
     def judge_joint(self, model: KinematicModel, joint: str) -> Verdict:
         """Judge one joint of a plan by its motion alone; a fixed joint has nothing to say."""
-        look = _Look(self._world.scene(model))
+        look = GeometryLook(self._world.scene(model), compare_visible=False)
         names = [travel.joint for travel in look.scene.travels]
         if joint not in names:
             return Verdict(findings=(), joints=())
         found, summary = self._joint(look, model, names.index(joint), joint)
         return Verdict(findings=tuple(found), joints=(summary,))
 
-    def _joint(self, look: _Look, model: KinematicModel, leader: int, name: str) -> tuple[list[Finding], JointSummary]:
+    def _joint(
+        self, look: GeometryLook, model: KinematicModel, leader: int, name: str
+    ) -> tuple[list[Finding], JointSummary]:
         key = _key(model, name)
         if key not in self._sweeps:
             self._sweeps[key] = look.sweeper.sweep(leader)
         sweep = self._sweeps[key]
         if sweep.leader != leader:  # another joint became fixed or free: the same motion under another number
             sweep = self._sweeps[key] = look.sweeper.sweep(leader)
-        case = MotionCase(scene=look.scene, overlap=look.overlap, allowance=look.allowance, sweep=sweep, visible=None)
-        found = [finding for check, judge in _MOTION.items() for finding in _findings(check, judge(case))]
+        found = _findings(checks_of("KV31", "KV32"), JointMotion(look=look, sweep=sweep))
         joint = next(item for item in model.joints if item.name == name)
         summary = JointSummary(
             joint=name, kind=joint.kind.value, declared_limits=(joint.lower, joint.upper), free_travel=sweep.free
@@ -100,21 +86,13 @@ class Simulator:
         return found, summary
 
 
-class _Look:
-    """A scene with what asks it."""
-
-    def __init__(self, scene: WorldScene) -> None:
-        self.scene = scene
-        self.overlap = Overlap(scene)
-        self.allowance = Allowance(scene, self.overlap)
-        self.sweeper = Sweeper(scene, self.overlap, self.allowance)
-
-
-def _findings(check: str, remarks: Iterator[Remark]) -> Iterator[Finding]:
-    opened = OpenCheck(id=check, engine=None)
-    for remark in remarks:
-        remark.add_to(opened)
-    yield from opened.findings
+def _findings(checks: Iterable[Check], context: object) -> list[Finding]:
+    found: list[Finding] = []
+    for check in checks:
+        result = OpenCheck(id=check.id, engine=None)
+        check.run(result, context)
+        found += result.findings
+    return found
 
 
 def _key(model: KinematicModel, name: str) -> tuple[object, ...]:

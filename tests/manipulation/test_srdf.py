@@ -19,7 +19,7 @@ from kinematify.geometry.together import looked_at, random_rows
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.manipulation.srdf import DisableReason, disabled_pairs, write_srdf
 from kinematify.robot.read import read_model
-from kinematify.validation.geometry.judge_rest import allowed_pairs
+from kinematify.validation.geometry.look import allowed_pairs
 
 SETTINGS = load_settings()
 STUCK = """<robot name="stuck">

@@ -5,28 +5,21 @@ from __future__ import annotations
 import difflib
 
 from kinematify.errors import InputError
-from kinematify.validation.catalogue import agreement, engines, evidence, file, geometry, meshes, physics, task
-from kinematify.validation.catalogue.check import Check
+from kinematify.validation.catalogue import agreement, engines, evidence, file, meshes, physics, task
+from kinematify.validation.check import FAMILIES, Check
+from kinematify.validation.checks import CHECKS
 
 __all__ = ["CATALOGUE", "FAMILIES", "Check", "find_check"]
 
-FAMILIES = {
-    "KV1": "file and tree",
-    "KV2": "declared physics",
-    "KV3": "kinematics by geometry",
-    "KV4": "MuJoCo",
-    "KV5": "PyBullet",
-    "KV6": "agreement",
-    "KV7": "task of a robot",
-}
-"""Title of each family, keyed by the beginning of its ids."""
-
-CATALOGUE: dict[str, Check] = {
-    check.id: check
-    for module in (file, meshes, physics, geometry, evidence, engines, agreement, task)
-    for check in sorted(module.CHECKS, key=lambda check: check.id)
-}
-"""Checks keyed by id, in ascending order within each module."""
+CATALOGUE: dict[str, Check] = dict(
+    sorted(
+        {
+            **CHECKS,
+            **{c.id: c for m in (file, meshes, physics, evidence, engines, agreement, task) for c in m.CHECKS},
+        }.items()
+    )
+)
+"""Checks keyed by id, in ascending order."""
 
 
 def find_check(name: str) -> Check:

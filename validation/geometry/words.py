@@ -1,8 +1,7 @@
-"""What the geometry has to say, before it becomes a finding, and how it writes numbers."""
+"""How findings about geometry write numbers and names."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,47 +10,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.geometry.scene import Pair, Scene
-    from kinematify.validation.finding import Blame, Severity
-    from kinematify.validation.stage import OpenCheck
 
 
 UNSEEN = "Only the collision geometry does so; the visible surfaces stay clear."
 SLIMMER = "Make the collision geometry of the two links follow the visible one more closely; the joint may be right."
-
-
-@dataclass(frozen=True, kw_only=True)
-class Remark:
-    """One finding; severity and blame are those of the check unless given."""
-
-    message: str
-    remedy: str
-    severity: Severity | None = None
-    blame: Blame | None = None
-    joint: str | None = None
-    link: str | None = None
-    pair: tuple[str, str] | None = None
-    q: Mapping[str, float] | None = None
-    value: float | None = None
-    limit: float | None = None
-    unit: str | None = None
-    line: int | None = None
-
-    def add_to(self, check: OpenCheck) -> None:
-        """Turn it into a finding."""
-        check.find(
-            self.message,
-            self.remedy,
-            severity=self.severity,
-            blame=self.blame,
-            joint=self.joint,
-            link=self.link,
-            pair=self.pair,
-            q=None if self.q is None else dict(self.q),
-            value=self.value,
-            limit=self.limit,
-            unit=self.unit,
-            line=self.line,
-        )
 
 
 def length(metres: float) -> str:

@@ -1,0 +1,209 @@
+"""The registry of checks: each is one function, and all that is told about it stands at that function.
+
+    @check("KV222", title="Zero lies within the limits", severity=Severity.NOTE, blame=Blame.KINEMATICS)
+    def zero_outside(result: OpenCheck, physics: Physics) -> None:
+        '''Zero is a value that the joint may take.
+
+        Why it matters: Engines and viewers start at zero, which is then outside the limits.
+
+        Remedy: Start from a configuration within the limits.
+        '''
+
+`kinematify explain`, `docs/checks.md`, the rules of SARIF, the plan of a run and the feedback of `kinematify refine`
+are made from it. The functions stand in `validation/checks`; reading them loads no engine.
+"""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, TypedDict
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kinematify.validation.finding import Blame, Severity
+    from kinematify.validation.stage import OpenCheck
+
+    CheckFunction = Callable[[OpenCheck, Any], None]
+    Need = Callable[[Any], str | None]
+
+FAMILIES = {
+    "KV1": "file and tree",
+    "KV2": "declared physics",
+    "KV3": "kinematics by geometry",
+    "KV4": "MuJoCo",
+    "KV5": "PyBullet",
+    "KV6": "agreement",
+    "KV7": "task of a robot",
+}
+"""Title of each family, keyed by the beginning of its ids."""
+ENGINE_FAMILIES = {"mujoco": "KV4", "pybullet": "KV5"}
+"""Family of each engine that the same checks run in."""
+_NOT_OURS = ("KV1", "KV2", "KV6")
+"""Families whose findings no choice of a joint can mend."""
+
+
+class FeedbackRow(StrEnum):
+    """What `kinematify refine` makes of a finding, a row of the table in `validation/feedback.py`."""
+
+    ALLOWED = "an allowance with its reason: the overlap is as given, no axis is to blame"
+    INTO_PARENT = "against this line and, weaker, this type; if one side is free, it is the opening one"
+    END = "the range ends there"
+    OTHER_PARENT = "against this parent, for the body that the part meets"
+    NOT_CARRIED = "against this parent"
+    DERAILED = "against this line and this type; a slide ends before"
+    GUIDE = "the range ends before"
+    LINE = "against this line"
+    TYPE = "against this type"
+    NOT_REACHED = "against this line, unless convex stand-ins explain it"
+    UNSTABLE = "weak, against this line, once masses and overlaps at rest are fine"
+    SINKS = "weak, against this line"
+    NO_WAY = "weak, against this line, if several places of the robot were tried"
+    COLLISION = "none: collision geometry is in the way"
+    EXPORTER = "none: files, frames or masses are the exporter's to mend"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """A check with its documentation; ids are stable for ever."""
+
+    id: str
+    """``KVnnn``; the first digit is the family."""
+    title: str
+    """A few words, as in a table."""
+    severity: Severity
+    """The worst that it reports, and what it reports where nothing else is said."""
+    blame: Blame
+    """What it usually blames."""
+    engines: tuple[str, ...] = ()
+    """Engines that it runs in; empty: none."""
+    verifies: str
+    """What is looked at and what counts as wrong, thresholds by their setting's name."""
+    matters: str
+    """What goes wrong in practice if it is ignored."""
+    remedy: str
+    """How to mend it."""
+    feedback: FeedbackRow | None = None
+    """What refinement makes of its findings; None if nothing."""
+    doubts: bool = False
+    """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
+    needs: tuple[Need, ...] = ()
+    """Asked before it runs, with the context: each gives the reason why there is nothing to look at, or None."""
+    function: CheckFunction | None = None
+
+    def run(self, result: OpenCheck, context: Any) -> None:
+        """Look at a context and add what is found, or say why there is nothing to look at."""
+        assert self.function is not None, f"{self.id} has no function"
+        reason = next((reason for need in self.needs if (reason := need(context)) is not None), None)
+        if reason is not None:
+            result.skip(reason)
+        else:
+            self.function(result, context)
+
+
+REGISTRY: dict[str, Check] = {}
+"""Checks keyed by id, in the order in which their modules were read; `validation.checks.CHECKS` has all of them."""
+
+
+def check(
+    id: str,
+    *,
+    title: str,
+    severity: Severity,
+    blame: Blame,
+    engines: tuple[str, ...] = (),
+    feedback: FeedbackRow | None = None,
+    doubts: bool = False,
+    needs: tuple[Need, ...] = (),
+) -> Callable[[CheckFunction], CheckFunction]:
+    """Register the decorated function as a check; see `Check` for the arguments.
+
+    The function is called with the open check and the context of its stage, and adds findings to the former. Its
+    docstring has three paragraphs: what it verifies, ``Why it matters: ...`` and ``Remedy: ...``.
+    """
+
+    def register(function: CheckFunction) -> CheckFunction:
+        _add(
+            Check(
+                id=id,
+                title=title,
+                severity=severity,
+                blame=blame,
+                engines=engines,
+                feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
+                doubts=doubts,
+                needs=needs,
+                function=function,
+                **_documentation(id, function),
+            )
+        )
+        return function
+
+    return register
+
+
+def engine_check(
+    number: str,
+    *,
+    title: str,
+    severity: Severity,
+    blame: Blame,
+    feedback: FeedbackRow | None = None,
+    needs: tuple[Need, ...] = (),
+) -> Callable[[CheckFunction], CheckFunction]:
+    """Register the decorated function once for each engine of `ENGINE_FAMILIES`: ``"05"`` is KV405 and KV505.
+
+    In its docstring ``{engine}`` stands for the engine's name, and a paragraph such as ``PyBullet: ...`` is added to
+    what that engine's check verifies.
+    """
+    names = tuple(FAMILIES[family] for family in ENGINE_FAMILIES.values())
+
+    def register(function: CheckFunction) -> CheckFunction:
+        for engine, family in ENGINE_FAMILIES.items():
+            id = family + number
+            _add(
+                Check(
+                    id=id,
+                    title=title,
+                    severity=severity,
+                    blame=blame,
+                    engines=(engine,),
+                    feedback=feedback,
+                    needs=needs,
+                    function=function,
+                    **_documentation(id, function, names),
+                )
+            )
+        return function
+
+    return register
+
+
+class _Documentation(TypedDict):
+    verifies: str
+    matters: str
+    remedy: str
+
+
+def _add(entry: Check) -> None:
+    assert entry.id not in REGISTRY, f"{entry.id} stands at two functions"
+    REGISTRY[entry.id] = entry
+
+
+def _documentation(id: str, function: CheckFunction, engines: tuple[str, ...] = ()) -> _Documentation:
+    """Split a docstring into what `Check` holds; a paragraph for one of `engines` is kept for that one only."""
+    paragraphs = [" ".join(part.split()) for part in inspect.cleandoc(function.__doc__ or "").split("\n\n")]
+    verifies, named = paragraphs[0], dict(part.partition(": ")[::2] for part in paragraphs[1:])
+    own = FAMILIES[id[:3]]
+    assert verifies, f"{id}: its docstring must say what it verifies"
+    assert {"Why it matters", "Remedy"} <= set(named) <= {"Why it matters", "Remedy", *engines}, (
+        f"{id}: after what it verifies, its docstring must have the paragraphs `Why it matters: ...` and "
+        f"`Remedy: ...`, not {', '.join(named) or 'nothing'}"
+    )
+    if own in engines and own in named:
+        verifies = f"{verifies} {named[own]}"
+    texts = (verifies, named["Why it matters"], named["Remedy"])
+    verifies, matters, remedy = (text.replace("{engine}", own) for text in texts) if engines else texts
+    return {"verifies": verifies, "matters": matters, "remedy": remedy}

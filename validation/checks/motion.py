@@ -1,0 +1,292 @@
+"""KV310 to KV321: what the sweep of one joint says about its axis, its direction and its limits.
+
+A wrong axis or pivot drives the child into its parent at once and to both sides; a wrong limit lets it go for a
+while to one side; a wrong parent brings it together with other bodies.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.words import (
+    SLIMMER,
+    UNSEEN,
+    configuration,
+    in_document_order,
+    joint_value,
+    length,
+)
+
+if TYPE_CHECKING:
+    from kinematify.geometry.sweep import Meeting
+    from kinematify.validation.geometry.look import JointMotion
+    from kinematify.validation.stage import OpenCheck
+
+
+@check(
+    "KV310",
+    title="a joint does not drive its child into its parent",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.INTO_PARENT,
+    doubts=True,
+)
+def through_parent(result: OpenCheck, motion: JointMotion) -> None:
+    """Each joint is moved alone, over its range and beyond. A child that gets deeper into its parent than at rest
+    (geometry.tolerance) before geometry.early of the range is through, to both sides, says that axis, place or type is
+    wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong it is an
+    error, unless the joint has no limits, or only the collision geometry meets and not what is visible.
+
+    Why it matters: The joint is stuck in every engine, or the part passes through the wall that carries it.
+
+    Remedy: Correct axis and origin, the type, or the direction, as the message says.
+    """
+    travel = motion.sweep.travel
+    for sign, meeting in motion.blocked.items():
+        side, other = motion.side(sign), motion.side(-sign)
+        if not motion.early(side):
+            continue
+        where = (
+            f"Moving {motion.joint} alone, the child meets its parent at {_value(motion, meeting.first)} already "
+            f"(declared up to {_value(motion, side.declared)}): {_words(motion, meeting)}."
+        )
+        opposite = motion.own_first(other)
+        if opposite is not None and motion.early(other):
+            _meet(
+                result,
+                motion,
+                meeting,
+                f"{where} The other way it meets it at {_value(motion, opposite.first)}: blocked to both "
+                "sides at once, the axis or its place is wrong, or the type.",
+                "Move the joint's <origin> onto the hinge or guide and align <axis> with it; if the part slides, or "
+                "turns, write that type."
+                if travel.limited
+                else "Give the joint the limits that the contacts show; or correct its axis, place or type.",
+                severity=None if travel.limited else Severity.WARNING,  # without limits a file claims no free range
+            )
+            return
+        if motion.one_sided(sign):
+            free = _value(motion, travel.rest - sign * motion.free_way(other))
+            _meet(
+                result,
+                motion,
+                meeting,
+                f"{where} The other way, which is not permitted, it is free up to {free}: the joint moves into its "
+                "parent.",
+                "Reverse <axis>, or swap the limits together with their signs.",
+            )
+
+
+@check(
+    "KV311",
+    title="a joint does not drive its child into other bodies",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.OTHER_PARENT,
+)
+def into_others(result: OpenCheck, motion: JointMotion) -> None:
+    """While each joint moves alone over its range, bodies that are no neighbours do not meet. If another joint can
+    clear the way (a door before the drawer behind it), it is a note.
+
+    Why it matters: Parts that always meet hang on the wrong parent, or the range is too wide.
+
+    Remedy: Correct the parent, or end the range before the contact.
+    """
+    sweep = motion.sweep
+    found = [m for side in sweep.sides for m in side.meetings if m.pair not in sweep.own and m.inside]
+    if not found:
+        return
+    stuck = [meeting for meeting in found if not motion.clearable(meeting)]
+    worst = max(stuck or found, key=lambda meeting: meeting.depth)
+    more = f" ({len(found) - 1} more pairs meet.)" if len(found) > 1 else ""
+    begin = f"Moving {motion.joint} alone, {_words(motion, worst)}, from {_value(motion, worst.first)} on"
+    if stuck:
+        _meet(
+            result,
+            motion,
+            worst,
+            f"{begin}, wherever the other joints stand.{more}",
+            "If one of them carries the other, correct <parent>; otherwise end the range before, or correct the axis.",
+            severity=Severity.WARNING,
+        )
+    else:
+        _meet(
+            result,
+            motion,
+            worst,
+            f"{begin}, unless another joint has moved out of the way before.{more}",
+            "Nothing to do; move the other joint first.",
+            severity=Severity.NOTE,
+        )
+
+
+@check(
+    "KV312",
+    title="limits fit the free travel",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.END,
+)
+def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
+    """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
+    range): a warning, above geometry.wrong of depth an error, unless the joint has no limits, or only the collision
+    geometry meets. A rail may go through a solid carriage as it does at rest. A range below geometry.small_range of
+    the free travel is a note.
+
+    Why it matters: Controllers drive to the declared end; what they meet before it bends, breaks or explodes.
+
+    Remedy: Write the measured end as the limit.
+    """
+    settings, travel = motion.scene.settings, motion.sweep.travel
+    early = {sign: motion.early(motion.side(sign)) for sign in (-1.0, 1.0)}
+    told = any(early[sign] and (early[-sign] or motion.one_sided(sign)) for sign in motion.blocked)  # by KV310
+    for sign, meeting in motion.blocked.items():
+        side = motion.side(sign)
+        if told or abs(side.declared - meeting.first) < settings.late * travel.range:
+            continue
+        end = "upper" if sign > 0 else "lower"
+        _meet(
+            result,
+            motion,
+            meeting,
+            f"{motion.joint} is declared to go to {_value(motion, side.declared)}, but its child meets its parent at "
+            f"{_value(motion, meeting.first)}: {_words(motion, meeting)}.",
+            f'Write {end}="{meeting.first:.4g}"; if the part should go farther, its axis or its place is wrong.'
+            if travel.limited
+            else "Give the joint limits, or correct its axis.",
+            severity=None if travel.limited else Severity.WARNING,
+        )
+    low, high = motion.sweep.free
+    if travel.limited and 0.0 < travel.range < settings.small_range * (high - low):
+        result.find(
+            f"{motion.joint} is declared over {_value(motion, travel.range)} only; nothing is in its way over "
+            f"{_value(motion, high - low)}.",
+            "Check the unit of the limits; nothing to do if the stop is not modelled.",
+            severity=Severity.NOTE,
+            joint=motion.joint,
+            value=travel.range,
+            limit=high - low,
+            unit=travel.unit,
+        )
+
+
+@check(
+    "KV320",
+    title="parts stay with what carries them",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.DERAILED,
+    doubts=True,
+)
+def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
+    """Along the range, the gap between child and parent grows by less than geometry.lost of the model's size; beyond
+    geometry.far it is an error.
+
+    Why it matters: A hinge about the wrong line swings the part away from it, and a slide that is too long drops it.
+
+    Remedy: Align axis and origin with the hinge or guide, or reduce the limits.
+    """
+    scene = motion.scene
+    limit = scene.settings.lost * scene.size
+    gaps = [item for side in motion.sweep.sides for item in side.gaps]
+    for pair in sorted({pair for pair, _, _ in gaps}):
+        gap, value = max((gap, value) for other, gap, value in gaps if other == pair)
+        rest = motion.look.allowance.gap(pair)
+        if gap - rest <= limit:
+            continue
+        connection = scene.connection_of[pair]
+        parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
+        what = "turns away from its hinge" if motion.sweep.travel.turns else "leaves its guide"
+        result.find(
+            f"{child} is {length(gap)} away from {parent} at {_value(motion, value)} of {motion.joint} "
+            f"({length(rest)} at rest): it {what}.",
+            "Align <axis> and <origin> with the hinge or guide, check the type, or reduce the limits.",
+            severity=Severity.ERROR if gap - rest > scene.settings.far * scene.size else Severity.WARNING,
+            joint=motion.joint,
+            pair=in_document_order(scene, pair),
+            q=configuration(scene, {motion.sweep.leader: value}),
+            value=gap - rest,
+            limit=limit,
+            unit="m",
+        )
+
+
+@check(
+    "KV321",
+    title="a slide ends before its guide does",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.GUIDE,
+)
+def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
+    """A sliding part still stands beside its parent at the end of its range: the way is below geometry.guide of the
+    length along the axis that both share.
+
+    Why it matters: A drawer that is pulled out farther than it is long falls, but not in an engine.
+
+    Remedy: Reduce the limit to about four fifths of the guide.
+    """
+    travel, scene = motion.sweep.travel, motion.scene
+    if travel.turns or not travel.limited:
+        return
+    for pair in sorted(motion.sweep.own):
+        connection = scene.connection_of[pair]
+        for side in motion.sweep.sides:
+            way = abs(side.declared - travel.rest)
+            guide = motion.guide(connection, side)
+            # What stands on its parent, as a lid does, has no guide, and may be lifted off.
+            if guide <= scene.settings.hover * scene.size or way <= scene.settings.guide * guide:
+                continue
+            child, parent = scene.bodies[connection.child].name, scene.bodies[connection.parent].name
+            result.find(
+                f"{motion.joint} slides {child} by {length(way)}, but only {length(guide)} of it stand beside "
+                f"{parent} along the axis: at the end of its range it has left it.",
+                f'Write {"upper" if side.sign > 0 else "lower"}="{travel.rest + side.sign * 0.8 * guide:.4g}" '
+                "(four fifths of its guide), or correct <axis>.",
+                joint=motion.joint,
+                pair=in_document_order(scene, pair),
+                q=configuration(scene, {motion.sweep.leader: side.declared}),
+                value=way,
+                limit=scene.settings.guide * guide,
+                unit="m",
+            )
+
+
+def _value(motion: JointMotion, value: float) -> str:
+    return joint_value(value, turns=motion.sweep.travel.turns)
+
+
+def _words(motion: JointMotion, meeting: Meeting) -> str:
+    """What meets, how deep and where."""
+    first, second = in_document_order(motion.scene, meeting.pair)
+    deep = "go through each other by" if meeting.passed else "get into each other by"
+    return f"{first} and {second} {deep} {length(meeting.depth)} at {_value(motion, meeting.at)}"
+
+
+def _meet(
+    result: OpenCheck,
+    motion: JointMotion,
+    meeting: Meeting,
+    message: str,
+    remedy: str,
+    *,
+    severity: Severity | None = None,
+) -> None:
+    """Add a finding; an error if they are clearly too deep, and not in the collision geometry alone."""
+    seen = meeting.depth if severity is Severity.NOTE else motion.seen(meeting)
+    unseen = seen == 0.0
+    wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size
+    result.find(
+        f"{message} {UNSEEN}" if unseen else message,
+        SLIMMER if unseen else remedy,
+        severity=severity or (Severity.ERROR if wrong else Severity.WARNING),
+        blame=Blame.PHYSICS if unseen else None,
+        joint=motion.joint,
+        pair=in_document_order(motion.scene, meeting.pair),
+        q=configuration(motion.scene, {motion.sweep.leader: meeting.at}),
+        value=meeting.depth,
+        limit=motion.look.allowance.tolerance(meeting.pair),
+        unit="m",
+    )

@@ -1,0 +1,182 @@
+"""KV301 to KV304: what the model looks like at rest, and which overlaps are tolerated from then on."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.words import SLIMMER, UNSEEN, configuration, in_document_order, length
+
+if TYPE_CHECKING:
+    from kinematify.geometry.rest import AtRest, Reason
+    from kinematify.geometry.scene import Pair
+    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.stage import OpenCheck
+
+
+@check(
+    "KV301",
+    title="bodies without a joint between them are apart at rest",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+    feedback=FeedbackRow.ALLOWED,
+)
+def strangers_overlap(result: OpenCheck, look: GeometryLook) -> None:
+    """Of every pair of bodies that no joint joins (links held together by fixed joints are one body), the deepest
+    point of one in the other is measured in the exact meshes: above geometry.rest_overlap of the model's size it is a
+    warning, above geometry.wrong an error if the visible meshes overlap as much. A body inside another one counts as
+    overlap.
+
+    Why it matters: Engines push overlapping bodies apart in the first step, with whatever force it takes.
+
+    Remedy: Correct the mesh or its origin; check that both parts hang on the right parent.
+    """
+    limit = look.scene.settings.rest_overlap * look.scene.size
+    for rest in look.allowance.pairs.values():
+        if not rest.joined and rest.depth > limit:
+            _overlap(result, look, rest, limit, f"{_how(look, rest)} at rest, and no joint joins them.")
+
+
+@check(
+    "KV302",
+    title="parent and child overlap only at their joint",
+    severity=Severity.WARNING,
+    blame=Blame.ASSET,
+    feedback=FeedbackRow.ALLOWED,
+)
+def neighbours_overlap(result: OpenCheck, look: GeometryLook) -> None:
+    """The deepest point of a part in the one that carries it is less than geometry.rest_joined of the smaller part's
+    size. Small overlaps at a bearing are common and tolerated from then on.
+
+    Why it matters: A part that is buried in its parent cannot be judged along its motion, and engines that collide
+    neighbours push it out.
+
+    Remedy: Correct the mesh or its origin, or cut the hole that the part stands in.
+    """
+    for rest in look.allowance.pairs.values():
+        limit = look.scene.settings.rest_joined * min(solid.size for solid in look.overlap.solids(rest.pair))
+        if rest.joined and rest.depth > limit:
+            joint = look.scene.connection_of[rest.pair].joints[-1]
+            message = f"{_how(look, rest)} at rest; the joint {joint} joins them."
+            _overlap(result, look, rest, limit, message, joint=joint)
+
+
+def _how(look: GeometryLook, rest: AtRest) -> str:
+    first, second = in_document_order(look.scene, rest.pair)
+    if rest.contained:
+        return f"One of {first} and {second} is inside the other one, {length(rest.depth)} deep,"
+    return f"{first} and {second} overlap by {length(rest.depth)}"
+
+
+def _overlap(
+    result: OpenCheck, look: GeometryLook, rest: AtRest, limit: float, message: str, *, joint: str | None = None
+) -> None:
+    seen = rest.depth if look.visible is None else look.visible.allowance.at_rest(rest.pair)
+    unseen = seen <= limit
+    wrong = joint is None and min(rest.depth, seen) > look.scene.settings.wrong * look.scene.size
+    result.find(
+        f"{message} {UNSEEN}" if unseen else message,
+        SLIMMER
+        if unseen
+        else "Correct the mesh or its <origin>, or cut the parts so that they only touch; the overlap is tolerated "
+        "in all later checks.",
+        blame=Blame.PHYSICS if unseen else None,
+        severity=Severity.ERROR if wrong else Severity.WARNING,
+        joint=joint,
+        pair=in_document_order(look.scene, rest.pair),
+        q=configuration(look.scene, {}),
+        value=rest.depth,
+        limit=limit,
+        unit="m",
+    )
+
+
+@check(
+    "KV303",
+    title="parts touch what carries them",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.NOT_CARRIED,
+)
+def hovering(result: OpenCheck, look: GeometryLook) -> None:
+    """At rest, a moving part is less than geometry.hover of the model's size away from the body that its joint hangs
+    it on.
+
+    Why it matters: A part in the air often has the wrong parent or the wrong origin.
+
+    Remedy: Check parent and origin of the joint; accept it where the bearing is not modelled.
+    """
+    scene, allowance = look.scene, look.allowance
+    limit = scene.settings.hover * scene.size
+    for connection in scene.connections:
+        if allowance.hovers(connection.pair, limit):
+            gap = allowance.gap(connection.pair)
+            parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
+            result.find(
+                f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "
+                "hangs it: nothing is seen to carry it.",
+                "Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
+                joint=connection.joints[-1],
+                pair=in_document_order(scene, connection.pair),
+                q=configuration(scene, {}),
+                value=gap,
+                limit=limit,
+                unit="m",
+            )
+
+
+@check("KV304", title="what is tolerated, and why", severity=Severity.NOTE, blame=Blame.ASSET)
+def tolerated(result: OpenCheck, look: GeometryLook) -> None:
+    """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact
+    at rest, in contact in more than geometry.always of all configurations, fixed together), with the overlap that
+    each may reach, and the links that are judged by their visual geometry.
+
+    Why it matters: A check that ignores pairs silently can be made to pass by ignoring more of them.
+
+    Remedy: Nothing to do.
+    """
+    scene, allowance, reasons = look.scene, look.allowance, look.allowed
+    by_reason: dict[Reason, list[Pair]] = defaultdict(list)
+    for pair, reason in reasons.items():
+        by_reason[reason].append(pair)
+    for reason, pairs in by_reason.items():
+        pairs.sort(key=allowance.at_rest, reverse=True)
+        result.find(
+            f"Pairs that are {reason.value} ({len(pairs)}); this much overlap is tolerated, and more is reported: "
+            + _listed([_tolerated(look, pair) for pair in pairs], scene.settings.listed)
+            + ".",
+            "Nothing to do; the table says what later checks do not report.",
+        )
+    links = scene.model.link_by_name
+    solid = [[name for name in body.links if links[name].has_geometry] for body in scene.bodies]
+    fixed = [names for names in solid if len(names) > 1]
+    if fixed:
+        result.find(
+            "Links that fixed joints hold together are one body and not held against each other: "
+            + _listed([", ".join(names) for names in fixed], scene.settings.listed, sign="; ")
+            + ".",
+            "Nothing to do.",
+        )
+    if scene.stand_ins:
+        result.find(
+            f"{len(scene.stand_ins)} links have no collision geometry; their visual geometry is judged instead: "
+            + _listed(list(scene.stand_ins), scene.settings.listed)
+            + ".",
+            "Write <collision> elements; engines see nothing there.",
+        )
+    result.measured["bodies"] = len(scene.bodies)
+    result.measured["tolerated_pairs"] = len(reasons)
+    result.measured["deepest_at_rest"] = max((allowance.at_rest(pair) for pair in reasons), default=0.0)
+
+
+def _tolerated(look: GeometryLook, pair: Pair) -> str:
+    first, second = in_document_order(look.scene, pair)
+    return f"{first} - {second} ({length(look.allowance.at_rest(pair) + look.allowance.tolerance(pair))})"
+
+
+def _listed(names: list[str], most: int, sign: str = ", ") -> str:
+    """The first names, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return sign.join(names[:most]) + more

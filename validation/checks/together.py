@@ -1,0 +1,142 @@
+"""KV330 to KV332: several joints at once, and what engines see of the motion that collide convex hulls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.words import configuration, in_document_order, joint_value, length
+
+if TYPE_CHECKING:
+    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.stage import OpenCheck
+
+_HULL_SAMPLES = 24
+
+
+def _two_joints(look: GeometryLook) -> str | None:
+    return look.late or ("only one joint moves" if len(look.scene.travels) < 2 else None)
+
+
+@check(
+    "KV330",
+    title="two joints at once",
+    severity=Severity.NOTE,
+    blame=Blame.KINEMATICS,
+    needs=(_two_joints,),
+)
+def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
+    """Every two joints that can bring the same two bodies together are moved over a grid of their values.
+
+    Why it matters: Doors and drawers that stop one another are common; a planner must know.
+
+    Remedy: Nothing to do.
+    """
+    scene = look.scene
+    found, result.measured["pairs_left_out"] = look.pairs_of_joints
+    ranked = sorted(found, key=lambda item: -item.share)
+    for item in ranked[: scene.settings.listed]:
+        first, second = in_document_order(scene, item.pair)
+        travels = [scene.travels[leader] for leader in item.leaders]
+        where = " and ".join(
+            f"{travel.joint} at {joint_value(value, turns=travel.turns)}"
+            for travel, value in zip(travels, item.values, strict=True)
+        )
+        result.find(
+            f"{first} and {second} meet in {item.share:.0%} of the combinations of these two joints, though "
+            f"neither of them alone brings them together: for example {where}.",
+            "Nothing to do; a planner must keep them apart.",
+            joint=travels[0].joint,
+            pair=(first, second),
+            q=configuration(scene, dict(zip(item.leaders, item.values, strict=True))),
+            value=item.share,
+        )
+    if len(ranked) > scene.settings.listed:
+        more = len(ranked) - scene.settings.listed
+        result.find(f"{more} more pairs of bodies meet when two joints move.", "Nothing to do.")
+
+
+@check(
+    "KV331",
+    title="free configurations of all joints",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    needs=(lambda look: "time ran out" if look.random is None else None,),
+)
+def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
+    """Quasi-random configurations of all joints (geometry.random_rows Sobol points); the share that is free is
+    measured. A warning only if none is.
+
+    Why it matters: Sampling planners and random resets need free configurations.
+
+    Remedy: Check limits and parents if hardly any is free.
+    """
+    assert look.random is not None
+    meeting = look.random.meeting
+    hit = meeting.any(axis=1)
+    result.measured["free_share"] = float((~hit).mean())
+    if not hit.any():
+        return
+    share = meeting.mean(axis=0)
+    column = int(share.argmax())
+    first, second = in_document_order(look.scene, look.scene.pairs[column])
+    row = int(meeting[:, column].argmax())
+    none = bool(hit.all())
+    result.find(
+        f"{(~hit).sum()} of {hit.size} quasi-random configurations are free of self-collision; most often, in "
+        f"{share[column]:.0%}, {first} and {second} meet.",
+        "A model that can hardly move without self-collision has wrong limits or a wrong parent."
+        if none
+        else "Nothing to do; planners must check self-collision.",
+        severity=Severity.WARNING if none else Severity.NOTE,
+        pair=(first, second),
+        q=configuration(look.scene, dict(enumerate(look.random.rows[row].tolist()))),
+        value=float((~hit).mean()),
+    )
+
+
+def _two_bodies_that_collide(look: GeometryLook) -> str | None:
+    links = look.scene.model.link_by_name
+    seen = sum(any(links[name].collisions for name in body.links) for body in look.scene.bodies)
+    return "fewer than two bodies have collision geometry" if seen < 2 else None
+
+
+@check(
+    "KV332",
+    title="engines' hulls leave the motion free",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    feedback=FeedbackRow.COLLISION,
+    needs=(_two_bodies_that_collide,),
+)
+def hulls_block(result: OpenCheck, look: GeometryLook) -> None:
+    """Where the exact surfaces are clear, so are the convex hulls of the collision shapes, which engines collide
+    instead (neighbours only if the parent is the base).
+
+    Why it matters: A drawer in a hollow cabinet is stuck in an engine although nothing is wrong with its joint.
+
+    Remedy: Cut the collision meshes into convex pieces.
+    """
+    for done, sweep in enumerate(look.sweeps):
+        if not look.in_time():
+            result.skip(f"time ran out before {len(look.sweeps) - done} joints")
+            return
+        found = look.hulls.blocked(sweep, _HULL_SAMPLES)
+        if found is None:
+            continue
+        joint = sweep.travel.joint
+        first, second = in_document_order(look.scene, found.pair)
+        result.find(
+            f"The surfaces of {first} and {second} stay clear, but their convex hulls, which engines collide, "
+            f"are {length(found.depth)} deep in each other at {joint_value(found.at, turns=sweep.travel.turns)} of "
+            f"{joint}, and in the way over {found.share:.0%} of its free range.",
+            "Cut the collision meshes into convex pieces (kinematify export --to urdf, or CoACD); the joint "
+            "itself is right.",
+            joint=joint,
+            pair=(first, second),
+            q=configuration(look.scene, {sweep.leader: found.at}),
+            value=found.depth,
+            limit=found.tolerance,
+            unit="m",
+        )

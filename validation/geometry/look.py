@@ -1,0 +1,241 @@
+"""What the checks by geometry look at, measured when first asked for: overlaps at rest, the sweep of each joint.
+
+The FCL trees and signed distances of the bodies are built once and shared by all of them.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance, Reason
+from kinematify.geometry.scene import read_scene, relative, simplified, transformed, visible_shapes
+from kinematify.geometry.sweep import Sweeper
+from kinematify.geometry.together import joint_pairs, looked_at, random_rows
+from kinematify.validation.geometry.hulls import HullView
+from kinematify.validation.geometry.words import in_document_order
+from kinematify.validation.report import PairSummary, PairTable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kinematify.geometry.scene import Connection, Pair, Scene
+    from kinematify.geometry.sweep import JointSweep, Meeting, Side
+    from kinematify.geometry.together import Configurations, JointPair
+
+
+class GeometryLook:
+    """A model at rest and in motion, by exact geometry."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        seed: int = 0,
+        in_time: Callable[[], bool] = lambda: True,
+        compare_visible: bool = True,
+    ) -> None:
+        """Keep what is looked at.
+
+        Args:
+            scene: The bodies with their collision geometry.
+            seed: Of the quasi-random configurations.
+            in_time: False from when on no further joint may be begun.
+            compare_visible: Measure the visual geometry as well where it is another one.
+        """
+        self.scene = scene
+        self.overlap = Overlap(scene)
+        self.allowance = Allowance(scene, self.overlap)
+        self.sweeper = Sweeper(scene, self.overlap, self.allowance)
+        self.in_time = in_time
+        self._seed, self._compare_visible = seed, compare_visible
+        self._sweep_of: dict[int, JointSweep] = {}
+
+    @cached_property
+    def visible(self) -> GeometryLook | None:
+        """The same of the visual geometry; None where the collision geometry is a copy of it."""
+        if not self._compare_visible or not simplified(self.scene.model):
+            return None
+        scene = read_scene(self.scene.model, self.scene.settings, visible_shapes)
+        same = [body.group for body in scene.bodies] == [body.group for body in self.scene.bodies]
+        return GeometryLook(scene, compare_visible=False) if same else None
+
+    def sweep(self, leader: int) -> JointSweep:
+        """Sweep of one joint."""
+        if leader not in self._sweep_of:
+            self._sweep_of[leader] = self.sweeper.sweep(leader)
+        return self._sweep_of[leader]
+
+    @cached_property
+    def sweeps(self) -> list[JointSweep]:
+        """Sweeps of the joints, as many as there is time for."""
+        found = []
+        for leader in range(len(self.scene.travels)):
+            if not self.in_time():
+                break
+            found.append(self.sweep(leader))
+        return found
+
+    @cached_property
+    def late(self) -> str | None:
+        """Which joints were left out."""
+        left = [travel.joint for travel in self.scene.travels[len(self.sweeps) :]]
+        return f"time ran out before {len(left)} joints: {', '.join(left)}" if left else None
+
+    @cached_property
+    def motions(self) -> list[JointMotion]:
+        """The joints in motion."""
+        return [JointMotion(look=self, sweep=sweep) for sweep in self.sweeps]
+
+    @cached_property
+    def random(self) -> Configurations | None:
+        """Quasi-random configurations; None where no joint moves or time is up."""
+        if not self.scene.travels or not self.in_time():
+            return None
+        return looked_at(self.scene, self.overlap, self.allowance, random_rows(self.scene, self._seed))
+
+    @cached_property
+    def allowed(self) -> dict[Pair, Reason]:
+        """Pairs whose contact in motion does not count, with the reason."""
+        return allowed_pairs(self.scene, self.allowance, self.random)
+
+    @cached_property
+    def hulls(self) -> HullView:
+        """The bodies as engines see them that collide convex hulls."""
+        return HullView(self.scene, self.sweeper, self.allowance)
+
+    @cached_property
+    def pairs_of_joints(self) -> tuple[list[JointPair], int]:
+        """Pairs of joints that bring bodies together which neither of them alone does, and how many were left out."""
+        alone = [frozenset(m.pair for side in sweep.sides for m in side.meetings) for sweep in self.sweeps]
+        return joint_pairs(self.scene, self.overlap, self.allowance, alone, self.in_time)
+
+    def pair_table(self) -> PairTable:
+        """Return what is known of every pair that touches at rest or meets while one joint moves."""
+        meets: dict[Pair, list[tuple[str, float, float]]] = defaultdict(list)
+        for sweep in self.sweeps:
+            for meeting in (meeting for side in sweep.sides for meeting in side.meetings if meeting.inside):
+                meets[meeting.pair].append((sweep.travel.joint, meeting.first, meeting.depth))
+        return PairTable(
+            bodies=tuple(body.name for body in self.scene.bodies),
+            pairs=tuple(
+                PairSummary(
+                    pair=in_document_order(self.scene, pair),
+                    reason=self.allowed[pair].value if pair in self.allowed else None,
+                    at_rest=self.allowance.at_rest(pair),
+                    tolerated=self.allowance.at_rest(pair) + self.allowance.tolerance(pair),
+                    meets=tuple(meets.get(pair, ())),
+                )
+                for pair in sorted({*self.allowed, *meets})
+            ),
+        )
+
+
+def allowed_pairs(scene: Scene, allowance: Allowance, random: Configurations | None) -> dict[Pair, Reason]:
+    """Return pairs whose contact in motion does not count, with the reason."""
+    reasons = {
+        pair: Reason.ADJACENT if rest.joined else Reason.AT_REST
+        for pair, rest in allowance.pairs.items()
+        if rest.collide or rest.depth > 0.0
+    }
+    if random is not None:
+        share = random.touching.mean(axis=0)
+        for column in np.flatnonzero(share > scene.settings.always).tolist():
+            reasons.setdefault(scene.pairs[column], Reason.ALWAYS)
+    return reasons
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class JointMotion:
+    """One joint that moves alone, over its range and beyond."""
+
+    look: GeometryLook
+    sweep: JointSweep
+
+    @property
+    def scene(self) -> Scene:
+        """The bodies."""
+        return self.look.scene
+
+    @property
+    def joint(self) -> str:
+        """Its name."""
+        return self.sweep.travel.joint
+
+    @cached_property
+    def blocked(self) -> dict[float, Meeting]:
+        """For each side the first own meeting, if one gets too deep within the declared range."""
+        firsts = {side.sign: self.own_first(side) for side in self.sweep.sides}
+        return {sign: meeting for sign, meeting in firsts.items() if meeting is not None and meeting.inside}
+
+    def own_first(self, side: Side) -> Meeting | None:
+        """Where the child first meets its parent on a side, within the declared range or beyond."""
+        return next((meeting for meeting in side.meetings if meeting.pair in self.sweep.own), None)
+
+    def free_way(self, side: Side) -> float:
+        """How far the child goes to a side before it meets its parent [rad or m]."""
+        meeting = self.own_first(side)
+        return abs((side.reached if meeting is None else meeting.first) - self.sweep.travel.rest)
+
+    def early(self, side: Side) -> bool:
+        """Whether a side is blocked at once."""
+        limit = self.scene.settings.early * self.sweep.travel.range
+        return self.own_first(side) is not None and self.free_way(side) < limit
+
+    def one_sided(self, sign: float) -> bool:
+        """Whether only the blocked side is permitted to speak of, and the other one is free for half of the range."""
+        other, travel = self.side(-sign), self.sweep.travel
+        permitted = abs(other.declared - travel.rest)
+        return permitted < self.scene.settings.early * travel.range and self.free_way(other) >= 0.5 * travel.range
+
+    def side(self, sign: float) -> Side:
+        """The side of a sign."""
+        return self.sweep.sides[0 if sign < 0 else 1]
+
+    def seen(self, meeting: Meeting) -> float:
+        """How deep the visible geometry of the two gets into each other [m], 0 where it stays clear."""
+        if self.look.visible is None:
+            return meeting.depth
+        found = [seen for side in self.look.visible.sweep(self.sweep.leader).sides for seen in side.meetings]
+        return max((seen.depth for seen in found if seen.pair == meeting.pair and seen.inside), default=0.0)
+
+    def clearable(self, meeting: Meeting) -> bool:
+        """Whether some other joint at one of its ends keeps the two apart where they are deepest."""
+        scene = self.scene
+        rows = []
+        for leader in scene.between(meeting.pair) - {self.sweep.leader}:
+            for end in (scene.travels[leader].lower, scene.travels[leader].upper):
+                row = scene.mechanism.rest.copy()
+                row[self.sweep.leader], row[leader] = meeting.at, end
+                rows.append(row)
+        if not rows:
+            return False
+        overlap, allowance = self.look.overlap, self.look.allowance
+        T = relative(scene.poses(np.array(rows)), meeting.pair)
+        hit = overlap.collide(meeting.pair, T) | overlap.may_contain(meeting.pair, T)
+        if not hit.all():
+            return True
+        allowed = allowance.at_rest(meeting.pair) + allowance.tolerance(meeting.pair)
+        return not meeting.passed and bool((overlap.depth(meeting.pair, T) <= allowed).any())
+
+    def guide(self, connection: Connection, side: Side) -> float:
+        """Way after which the trailing end of the child has passed the leading end of the parent [m]."""
+        scene = self.scene
+        rows = np.tile(scene.mechanism.rest, (2, 1))
+        rows[1, self.sweep.leader] = side.declared
+        poses = scene.poses(rows)
+        motion = poses[1, connection.child, :3, 3] - poses[0, connection.child, :3, 3]
+        moved = float(np.linalg.norm(motion))
+        if moved == 0.0:
+            return 0.0
+        along = motion / moved
+        parent, child = (
+            transformed(scene.bodies[body].solid.points, poses[0, body]) @ along
+            for body in (connection.parent, connection.child)
+        )
+        return float(parent.max() - child.min())
