@@ -40,7 +40,7 @@ _LEAST_WAY = 1e-4  # a part whose hold moves by less cannot be seen to open [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Thing:
+class ArticulatedObject:
     """An object, its files in a folder that lives as long as it does."""
 
     source: str
@@ -127,7 +127,7 @@ class Target:
         return self.way / abs(self.range)
 
 
-def load_thing(model: str | Path | None, *, fine: bool = False) -> Thing:
+def load_articulated_object(model: str | Path | None, *, fine: bool = False) -> ArticulatedObject:
     """Read the object that a `model` keyword names.
 
     Args:
@@ -140,15 +140,15 @@ def load_thing(model: str | Path | None, *, fine: bool = False) -> Thing:
     source = f"{PREFIX}{DEFAULT}" if model is None else str(model)
     folder = Path(tempfile.mkdtemp(prefix="kinematify-env-"))
     try:
-        thing = _read(source, folder, fine=fine)
+        articulated_object = _read(source, folder, fine=fine)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
-    weakref.finalize(thing, shutil.rmtree, folder, ignore_errors=True)
-    return thing
+    weakref.finalize(articulated_object, shutil.rmtree, folder, ignore_errors=True)
+    return articulated_object
 
 
-def _read(source: str, folder: Path, *, fine: bool) -> Thing:
+def _read(source: str, folder: Path, *, fine: bool) -> ArticulatedObject:
     suggested = AUTO
     if source.startswith((PREFIX, FAMILY_PREFIX)):
         bundled = find_bundled(source)
@@ -166,7 +166,7 @@ def _read(source: str, folder: Path, *, fine: bool) -> Thing:
         )
     work = folder / "prepared"
     work.mkdir()
-    return Thing(
+    return ArticulatedObject(
         source=source,
         urdf=urdf,
         declared=declared,
@@ -195,13 +195,13 @@ def urdf_of(source: str) -> Path:
     return path.resolve()
 
 
-def find_target(thing: Thing, joint: str, hand: HandSettings) -> Target:
+def find_target(articulated_object: ArticulatedObject, joint: str, hand: HandSettings) -> Target:
     """Find where the part of a joint is held, and the way of that point.
 
     The best hold for a gripper is taken, whatever its part is called; where there is none, the outermost point.
 
     Args:
-        thing: The object.
+        articulated_object: The object.
         joint: A joint that leads, or ``auto``.
         hand: How wide a hold may be.
 
@@ -209,18 +209,18 @@ def find_target(thing: Thing, joint: str, hand: HandSettings) -> Target:
         InputError: There is no such joint, or it moves nothing.
     """
     if joint == AUTO:
-        joint = thing.suggested if thing.suggested != AUTO else thing.farthest
-    leader = thing.leader(joint)
-    opened = open_end(thing.travels[leader])
-    link = thing.declared.kinematics.joint_by_name[joint].child
-    point = _hold(thing, joint, opened, hand)
-    way = 0.0 if point is None else _length(_path(thing, joint, opened, point))
+        joint = articulated_object.suggested if articulated_object.suggested != AUTO else articulated_object.farthest
+    leader = articulated_object.leader(joint)
+    opened = open_end(articulated_object.travels[leader])
+    link = articulated_object.declared.kinematics.joint_by_name[joint].child
+    point = _hold(articulated_object, joint, opened, hand)
+    way = 0.0 if point is None else _length(_path(articulated_object, joint, opened, point))
     if point is None or way < _LEAST_WAY:
         raise InputError(
-            f"The joint {joint} of the model {thing.source} moves nothing that could be seen to open. Give another of "
-            f"its joints: {', '.join(thing.joints)}."
+            f"The joint {joint} of the model {articulated_object.source} moves nothing that could be seen to "
+            f"open. Give another of its joints: {', '.join(articulated_object.joints)}."
         )
-    travel = thing.travels[leader]
+    travel = articulated_object.travels[leader]
     return Target(
         joint=joint,
         leader=leader,
@@ -233,9 +233,11 @@ def find_target(thing: Thing, joint: str, hand: HandSettings) -> Target:
     )
 
 
-def held_links(thing: Thing, target: Target) -> tuple[str, ...]:
+def held_links(articulated_object: ArticulatedObject, target: Target) -> tuple[str, ...]:
     """Links of the rigid body that the joint moves."""
-    return next(group.links for group in rigid_groups(thing.declared.kinematics) if target.link in group.links)
+    return next(
+        group.links for group in rigid_groups(articulated_object.declared.kinematics) if target.link in group.links
+    )
 
 
 def open_end(travel: Travel) -> float:
@@ -245,24 +247,27 @@ def open_end(travel: Travel) -> float:
     return travel.upper if travel.upper - travel.rest >= travel.rest - travel.lower else travel.lower
 
 
-def _hold(thing: Thing, joint: str, opened: float, hand: HandSettings) -> FloatArray | None:
+def _hold(articulated_object: ArticulatedObject, joint: str, opened: float, hand: HandSettings) -> FloatArray | None:
     """Point in the frame of the joint's child link; None where the joint moves no geometry."""
     settings = load_settings().task.grasp
-    grasps = search_grasps(thing.scene, joint, hand.opening, settings=settings).grasps
-    least = max(_LEAST_WAY, _LEAST_SHARE * _longest_way(thing, joint))
+    grasps = search_grasps(articulated_object.scene, joint, hand.opening, settings=settings).grasps
+    least = max(_LEAST_WAY, _LEAST_SHARE * _longest_way(articulated_object, joint))
     for grasp in grasps:
         point = np.asarray(grasp.T_link_grasp[:3, 3])
-        if _length(_path(thing, joint, opened, point)) >= least:
+        if _length(_path(articulated_object, joint, opened, point)) >= least:
             return point
-    return _outermost(thing, joint, opened)
+    return _outermost(articulated_object, joint, opened)
 
 
-def _outermost(thing: Thing, joint: str, opened: float) -> FloatArray | None:
+def _outermost(articulated_object: ArticulatedObject, joint: str, opened: float) -> FloatArray | None:
     """Corner of what a joint moves that goes farthest, of those the one that lies farthest out in that direction."""
-    corners = _corners(thing, joint)
+    corners = _corners(articulated_object, joint)
     if not len(corners):
         return None
-    first, last = (_link_pose(thing, joint, value) for value in (thing.travels[thing.leader(joint)].rest, opened))
+    first, last = (
+        _link_pose(articulated_object, joint, value)
+        for value in (articulated_object.travels[articulated_object.leader(joint)].rest, opened)
+    )
     moves = transformed(corners, last) - transformed(corners, first)
     lengths = np.linalg.norm(moves, axis=1)
     far = np.flatnonzero(lengths >= 0.98 * lengths.max())
@@ -270,39 +275,41 @@ def _outermost(thing: Thing, joint: str, opened: float) -> FloatArray | None:
     return np.asarray(corners[far[int(ahead.argmax())]])
 
 
-def _corners(thing: Thing, joint: str) -> FloatArray:
+def _corners(articulated_object: ArticulatedObject, joint: str) -> FloatArray:
     """Corners of all bodies that a joint moves, frame of its child link at rest, shape (n, 3)."""
-    own, carried = moved_bodies(thing.scene, joint)
-    back = np.linalg.inv(_link_pose(thing, joint, thing.travels[thing.leader(joint)].rest))
+    own, carried = moved_bodies(articulated_object.scene, joint)
+    back = np.linalg.inv(
+        _link_pose(articulated_object, joint, articulated_object.travels[articulated_object.leader(joint)].rest)
+    )
     found = [
-        transformed(shape, back @ thing.scene.at_rest[body])
+        transformed(shape, back @ articulated_object.scene.at_rest[body])
         for body in [*own, *carried]
-        for shape in thing.scene.bodies[body].shapes
+        for shape in articulated_object.scene.bodies[body].shapes
     ]
     return np.concatenate(found) if found else np.empty((0, 3))
 
 
-def _longest_way(thing: Thing, joint: str) -> float:
+def _longest_way(articulated_object: ArticulatedObject, joint: str) -> float:
     """Longest way of a corner of what a joint moves [m]."""
-    corners = _corners(thing, joint)
+    corners = _corners(articulated_object, joint)
     if not len(corners):
         return 0.0
-    travel = thing.travels[thing.leader(joint)]
-    poses = [_link_pose(thing, joint, value) for value in np.linspace(travel.rest, open_end(travel), 5)]
+    travel = articulated_object.travels[articulated_object.leader(joint)]
+    poses = [_link_pose(articulated_object, joint, value) for value in np.linspace(travel.rest, open_end(travel), 5)]
     places = np.stack([transformed(corners, T) for T in poses])
     return float(np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0).max())
 
 
-def _link_pose(thing: Thing, joint: str, value: float) -> FloatArray:
+def _link_pose(articulated_object: ArticulatedObject, joint: str, value: float) -> FloatArray:
     """Child link of a joint while the others rest, frame of the root link, shape (4, 4)."""
-    values = {travel.joint: travel.rest for travel in thing.travels} | {joint: value}
-    kinematics = thing.declared.kinematics
+    values = {travel.joint: travel.rest for travel in articulated_object.travels} | {joint: value}
+    kinematics = articulated_object.declared.kinematics
     return forward_kinematics(kinematics, values)[kinematics.joint_by_name[joint].child]
 
 
-def _path(thing: Thing, joint: str, opened: float, point: FloatArray) -> FloatArray:
-    rest = thing.travels[thing.leader(joint)].rest
-    poses = [_link_pose(thing, joint, value) for value in np.linspace(rest, opened, _WAY_SAMPLES)]
+def _path(articulated_object: ArticulatedObject, joint: str, opened: float, point: FloatArray) -> FloatArray:
+    rest = articulated_object.travels[articulated_object.leader(joint)].rest
+    poses = [_link_pose(articulated_object, joint, value) for value in np.linspace(rest, opened, _WAY_SAMPLES)]
     return np.stack([T[:3, :3] @ point + T[:3, 3] for T in poses])
 
 

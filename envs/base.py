@@ -15,7 +15,7 @@ from kinematify.envs.goal import Goal
 from kinematify.envs.picture import Painter, Piece, View, Window, has_screen, require_screen
 from kinematify.envs.settings import load_settings
 from kinematify.envs.verdict import require_valid
-from kinematify.envs.worlds import ENGINES, shared_target, shared_thing
+from kinematify.envs.worlds import ENGINES, shared_articulated_object, shared_target
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.goal import Progress
     from kinematify.envs.reading import Reading
     from kinematify.envs.worlds import World
@@ -46,7 +46,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     }
     _with_robot: ClassVar[bool] = False
     _world: World
-    thing: Thing
+    articulated_object: ArticulatedObject
     target: Target
 
     def _begin(
@@ -72,9 +72,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
         self.open_fraction = open_fraction
-        self.thing = shared_thing(model, fine=self._with_robot)
-        self.validation = require_valid(self.thing, engine, allow_invalid=allow_invalid)
-        self.T_world_root = self.thing.T_world_root
+        self.articulated_object = shared_articulated_object(model, fine=self._with_robot)
+        self.validation = require_valid(self.articulated_object, engine, allow_invalid=allow_invalid)
+        self.T_world_root = self.articulated_object.T_world_root
         self._asked_joint = joint
         self._start_noise = np.array(self.settings.reset.start_open)
         self._draw = no_draw(*self._counts)
@@ -87,26 +87,30 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         """Return the joint that ``auto`` stands for."""
         if joint != AUTO:
             return joint
-        return self.thing.suggested if self.thing.suggested != AUTO else self.thing.farthest
+        return (
+            self.articulated_object.suggested
+            if self.articulated_object.suggested != AUTO
+            else self.articulated_object.farthest
+        )
 
     def _aim(self, joint: str) -> None:
         self.target = self._targeted(joint)
-        self.goal = Goal(self.thing, self.target, self.open_fraction, self.settings)
+        self.goal = Goal(self.articulated_object, self.target, self.open_fraction, self.settings)
         self.middle = self._rest_place()
-        self.escape_distance = self.settings.task.escape * self.thing.scene.size
+        self.escape_distance = self.settings.task.escape * self.articulated_object.scene.size
 
     def _targeted(self, joint: str) -> Target:
         """Return the joint with the point at which its part is held."""
-        return shared_target(self.thing, joint)
+        return shared_target(self.articulated_object, joint)
 
     @property
     def _counts(self) -> tuple[int, int]:
-        mechanism = self.thing.scene.mechanism
+        mechanism = self.articulated_object.scene.mechanism
         return len(mechanism.joints), len(mechanism.links)
 
     def _rest_place(self) -> FloatArray:
         """The hold at rest, world frame, the object at its usual place [m], shape (3,)."""
-        link_pose = self.T_world_root @ _pose_at_rest(self.thing, self.target)
+        link_pose = self.T_world_root @ _pose_at_rest(self.articulated_object, self.target)
         return np.asarray(link_pose[:3, :3] @ self.target.point + link_pose[:3, 3])
 
     # Start of an episode.
@@ -126,13 +130,13 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         if "qpos" in given or "open_fraction" in given:
             self._place(self._asked_start(given))
             return
-        allowed = self.settings.reset.depth * self.thing.scene.size
+        allowed = self.settings.reset.depth * self.articulated_object.scene.size
         for _ in range(self.settings.reset.tries):
-            leaders = self.thing.scene.mechanism.rest.copy()
+            leaders = self.articulated_object.scene.mechanism.rest.copy()
             leaders[self.target.leader] = self.target.value(float(rng.uniform(*self._start_noise)))
             if self._place(leaders) <= allowed:
                 return
-        self._place(self.thing.scene.mechanism.rest)
+        self._place(self.articulated_object.scene.mechanism.rest)
 
     @abstractmethod
     def _place(self, leaders: FloatArray) -> float:
@@ -151,10 +155,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _asked_start(self, given: Mapping[str, Any]) -> FloatArray:
         """Values of the leaders that reset options ask for, shape (J,)."""
-        leaders = self.thing.scene.mechanism.rest.copy()
+        leaders = self.articulated_object.scene.mechanism.rest.copy()
         for name, value in dict(given.get("qpos", {})).items():
-            leader = self.thing.leader(str(name))
-            travel = self.thing.travels[leader]
+            leader = self.articulated_object.leader(str(name))
+            travel = self.articulated_object.travels[leader]
             if travel.limited and not travel.lower - 1e-9 <= float(value) <= travel.upper + 1e-9:
                 raise InputError(
                     f"reset options put {name} at {value}, but its range is {travel.lower:g} to {travel.upper:g} "
@@ -234,7 +238,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             )
             return None
         poses, tint = self._world.link_poses(), dict(
-            zip(self.thing.scene.mechanism.links, self._draw.color, strict=True)
+            zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True)
         )  # fmt: skip
         if self.render_mode == "human":
             self._window = self._window or Window(self._pieces(), self._view(), self.settings.picture)
@@ -249,9 +253,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         return None if self._painter is None else self._painter.kind
 
     def _pieces(self) -> Sequence[Piece]:
-        kinematics = self.thing.declared.kinematics
-        held = held_links(self.thing, self.target)
-        colors = {name: _HELD if name in held else _OTHERS for name in self.thing.scene.mechanism.links}
+        kinematics = self.articulated_object.declared.kinematics
+        held = held_links(self.articulated_object, self.target)
+        colors = {name: _HELD if name in held else _OTHERS for name in self.articulated_object.scene.mechanism.links}
         colors[kinematics.root] = _BODY
         return [
             Piece(link=link.name, vertices=mesh.vertices, faces=mesh.faces, color=np.array(colors[link.name]))
@@ -262,9 +266,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _view(self) -> View:
         """All of the object, at rest and open, from the side to which it opens."""
-        scene, T = self.thing.scene, self.T_world_root
+        scene, T = self.articulated_object.scene, self.T_world_root
         rows = np.stack([scene.mechanism.rest] * 2)
-        rows[1, self.target.leader] = open_end(self.thing.travels[self.target.leader])
+        rows[1, self.target.leader] = open_end(self.articulated_object.travels[self.target.leader])
         corners = [
             transformed(shape, T @ pose)
             for row in scene.poses(rows)
@@ -304,7 +308,7 @@ def one_of(name: str, value: object, choices: Sequence[object]) -> None:
         raise InputError(f"{name} is {value!r}, but must be one of {', '.join(map(repr, choices))}.")
 
 
-def _pose_at_rest(thing: Thing, target: Target) -> FloatArray:
+def _pose_at_rest(articulated_object: ArticulatedObject, target: Target) -> FloatArray:
     """Link that is moved, frame of the root link, shape (4, 4)."""
-    values = {travel.joint: travel.rest for travel in thing.travels}
-    return forward_kinematics(thing.declared.kinematics, values)[target.link]
+    values = {travel.joint: travel.rest for travel in articulated_object.travels}
+    return forward_kinematics(articulated_object.declared.kinematics, values)[target.link]

@@ -78,13 +78,13 @@ def find_bundled(model: str) -> BundledObject:
     raise InputError(f"There is no object {model}. {hint}There are {', '.join(names)}.")
 
 
-def write_bundled(thing: BundledObject, folder: Path) -> Path:
+def write_bundled(bundled: BundledObject, folder: Path) -> Path:
     """Write the object with its exact joints into a folder that does not exist yet, and return its URDF.
 
     Raises:
         OSError: It cannot be written.
     """
     folder.mkdir(parents=True)
-    blueprint = from_category(thing.family, thing.settings).build()
+    blueprint = from_category(bundled.family, bundled.settings).build()
     write_urdf(true_model(blueprint, load_config("default")), folder)
     return folder / "model.urdf"

@@ -156,25 +156,25 @@ class DrawerPullEnv(OpeningEnv):
         self.observation_space: Space = self._space()
 
     def _choose(self, joint: str) -> str:
-        if joint == AUTO and self.thing.suggested == AUTO and self.thing.drawers:
-            return self.thing.drawers[0]
+        if joint == AUTO and self.articulated_object.suggested == AUTO and self.articulated_object.drawers:
+            return self.articulated_object.drawers[0]
         return super()._choose(joint)
 
     def _targeted(self, joint: str) -> Target:
         """Plan with the robot; the hold is where the plan grips."""
-        found = shared_target(self.thing, joint)
-        self.robot: EnvRobot = env_robot(self.thing, *self._robot_words)
-        self.plan: RobotPlan = robot_plan(self.thing, joint, self.robot)
+        found = shared_target(self.articulated_object, joint)
+        self.robot: EnvRobot = env_robot(self.articulated_object, *self._robot_words)
+        self.plan: RobotPlan = robot_plan(self.articulated_object, joint, self.robot)
         self.T_world_root = self.plan.T_world_object
         return _held_at(found, self.plan)
 
     def _make_world(self) -> None:
         kind = MujocoArm if self.engine == "mujoco" else _pybullet_arm()
-        self._world = kind(self.thing, self.target, self.robot, self.plan, self.settings)
+        self._world = kind(self.articulated_object, self.target, self.robot, self.plan, self.settings)
 
     def _place(self, leaders: FloatArray) -> float:
         for name, value in self.plan.first.items():
-            leaders[self.thing.leader(name)] = value
+            leaders[self.articulated_object.leader(name)] = value
         noise = self.settings.robot.start_noise
         arm = self.robot.arm
         drawn = self.plan.reach[0] + self.np_random.uniform(-noise, noise, len(self.plan.reach[0]))

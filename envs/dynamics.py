@@ -12,7 +12,7 @@ from kinematify.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.settings import HandSettings, ObjectSettings, RandomizeSettings
     from kinematify.robot.arrays import FloatArray
 
@@ -40,14 +40,14 @@ class JointDynamics:
     """[N m or N], shape (J,)."""
 
 
-def joint_dynamics(thing: Thing, loads: Loads, settings: ObjectSettings) -> JointDynamics:
+def joint_dynamics(articulated_object: ArticulatedObject, loads: Loads, settings: ObjectSettings) -> JointDynamics:
     """What the file declares; where it declares nothing, values in proportion to what the joint moves.
 
     Friction then also holds what its own weight would move from where it was given into its range.
     """
-    mechanism, declared = thing.scene.mechanism, thing.declared.joint_by_name
+    mechanism, declared = articulated_object.scene.mechanism, articulated_object.declared.joint_by_name
     damping, friction = settings.damping_rate * loads.inertia, settings.friction_acceleration * loads.inertia
-    travels = {travel.joint: travel for travel in thing.travels}
+    travels = {travel.joint: travel for travel in articulated_object.travels}
     for k, name in enumerate(mechanism.joints):
         joint, travel, torque = declared[name], travels.get(name), float(loads.gravity[k])
         slack = 0.01 * travel.range if travel is not None else 0.0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
@@ -37,17 +37,19 @@ class Progress:
 class Goal:
     """The joint that is opened, as the share of a way."""
 
-    def __init__(self, thing: Thing, target: Target, open_fraction: float, settings: EnvSettings) -> None:
+    def __init__(
+        self, articulated_object: ArticulatedObject, target: Target, open_fraction: float, settings: EnvSettings
+    ) -> None:
         """Keep what the formulas need.
 
         Args:
-            thing: The object.
+            articulated_object: The object.
             target: Its joint.
             open_fraction: Share of the way that counts as open.
             settings: Of task and reward.
         """
         self.target, self.open_fraction, self.task, self.reward = target, open_fraction, settings.task, settings.reward
-        travels = thing.travels
+        travels = articulated_object.travels
         self.slots = settings.object.slots * -(-len(travels) // settings.object.slots)
         self._order = np.array([target.leader, *(k for k in range(len(travels)) if k != target.leader)], dtype=np.int64)
         lower = np.array([travels[k].lower for k in self._order])

@@ -30,7 +30,7 @@ from kinematify.envs.settings import load_settings
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.reading import Reading
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
@@ -55,27 +55,29 @@ class ArmFacts:
 
 
 @lru_cache(maxsize=8)
-def arm_facts(thing: Thing, target: Target, robot: EnvRobot, plan: RobotPlan) -> ArmFacts:
+def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvRobot, plan: RobotPlan) -> ArmFacts:
     """Compile the world, once per process."""
     settings = load_settings()
     spec = world_spec(settings)
     spec.option.cone, spec.option.impratio = mujoco.mjtCone.mjCONE_ELLIPTIC, 10.0
-    source = object_source(thing, settings)
-    add_object(spec, thing, target, source, plan.T_world_object)
-    _add_robot(spec, thing, robot, plan, settings)
+    source = object_source(articulated_object, settings)
+    add_object(spec, articulated_object, target, source, plan.T_world_object)
+    _add_robot(spec, articulated_object, robot, plan, settings)
     floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0])
     floor.contype, floor.conaffinity = 0, _ROBOT_BIT
     _add_drives(spec, robot, settings)
-    _add_touch(spec, robot, held_links(thing, target))
+    _add_touch(spec, robot, held_links(articulated_object, target))
     model = spec.compile()
-    dynamics = MujocoObject(model, thing, target, source).set_up(settings)
+    dynamics = MujocoObject(model, articulated_object, target, source).set_up(settings)
     _set_servos(model, robot, plan, settings)
     return ArmFacts(model=model, source=source, dynamics=dynamics)
 
 
-def _add_robot(spec: mujoco.MjSpec, thing: Thing, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings) -> None:
+def _add_robot(
+    spec: mujoco.MjSpec, articulated_object: ArticulatedObject, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings
+) -> None:
     """Attach the robot; it meets itself, the object and the floor, with rubber on all of its surfaces."""
-    tolerance = load_limits().engines.contact_depth * thing.scene.size
+    tolerance = load_limits().engines.contact_depth * articulated_object.scene.size
     part = settled_source(robot.prepared, robot.mechanism, 1.0, settings).source.spec.copy()
     for geom in part.geoms:
         geom.contype, geom.conaffinity = _ROBOT_BIT, _OBJECT_BIT | _ROBOT_BIT
@@ -153,14 +155,21 @@ def _largest_inertia(model: mujoco.MjModel, addresses: FloatArray, plan: RobotPl
 class MujocoArm:
     """One world; see `kinematify.envs.worlds.ArmWorld`."""
 
-    def __init__(self, thing: Thing, target: Target, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings) -> None:
+    def __init__(
+        self,
+        articulated_object: ArticulatedObject,
+        target: Target,
+        robot: EnvRobot,
+        plan: RobotPlan,
+        settings: EnvSettings,
+    ) -> None:
         """Copy the compiled world, so that it can be redrawn."""
-        facts = arm_facts(thing, target, robot, plan)
+        facts = arm_facts(articulated_object, target, robot, plan)
         self.model = copy(facts.model)
         self.data = mujoco.MjData(self.model)
-        self.object = MujocoObject(self.model, thing, target, facts.source)
+        self.object = MujocoObject(self.model, articulated_object, target, facts.source)
         self.object.keep()
-        self._thing, self._robot, self._substeps = thing, robot, settings.time.substeps
+        self._articulated_object, self._robot, self._substeps = articulated_object, robot, settings.time.substeps
         names = robot.robot
         joints = [self.model.joint(ROBOT + name).id for name in (*names.arm_joints, *names.finger_joints)]
         self._dof = len(names.arm_joints)
@@ -224,8 +233,8 @@ class MujocoArm:
 
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the links of object and robot."""
-        thing = link_poses(self.data, self.object.body, self._thing.scene.mechanism.links, "")
-        return {**thing, **link_poses(self.data, self._bodies, self._links, ROBOT)}
+        articulated_object = link_poses(self.data, self.object.body, self._articulated_object.scene.mechanism.links, "")
+        return {**articulated_object, **link_poses(self.data, self._bodies, self._links, ROBOT)}
 
     def close(self) -> None:
         """Nothing is held that Python does not free."""

@@ -27,7 +27,7 @@ from kinematify.envs.settings import load_settings
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
@@ -57,18 +57,18 @@ class HandFacts:
 
 
 @lru_cache(maxsize=16)
-def hand_facts(thing: Thing, target: Target, control: str) -> HandFacts:
+def hand_facts(articulated_object: ArticulatedObject, target: Target, control: str) -> HandFacts:
     """Compile the world of a hand, once per process."""
     settings = load_settings()
-    source = object_source(thing, settings)
+    source = object_source(articulated_object, settings)
     spec = world_spec(settings)
-    add_object(spec, thing, target, source, thing.T_world_root)
+    add_object(spec, articulated_object, target, source, articulated_object.T_world_root)
     for axis, letter in enumerate("xyz"):
         hand = spec.add_actuator(name=f"kinematify hand {letter}", trntype=mujoco.mjtTrn.mjTRN_SITE, target=HOLD)
         hand.refsite = WORLD
         hand.gear = np.eye(6)[axis]
     model = spec.compile()
-    placed = MujocoObject(model, thing, target, source)
+    placed = MujocoObject(model, articulated_object, target, source)
     dynamics = placed.set_up(settings)
     force, inertia = placed.force(dynamics, settings), placed.inertia()
     stiffness = force / (settings.hand.lag * target.way)
@@ -98,14 +98,16 @@ def _set_hand(model: mujoco.MjModel, control: str, force: float, stiffness: floa
 class MujocoHand:
     """One world; see `kinematify.envs.worlds.World`."""
 
-    def __init__(self, thing: Thing, target: Target, control: str, settings: EnvSettings) -> None:
+    def __init__(
+        self, articulated_object: ArticulatedObject, target: Target, control: str, settings: EnvSettings
+    ) -> None:
         """Copy the compiled world, so that it can be redrawn."""
-        self.facts = hand_facts(thing, target, control)
+        self.facts = hand_facts(articulated_object, target, control)
         self.model = copy(self.facts.model)
         self.data = mujoco.MjData(self.model)
-        self.object = MujocoObject(self.model, thing, target, self.facts.source)
+        self.object = MujocoObject(self.model, articulated_object, target, self.facts.source)
         self.object.keep()
-        self._thing, self._control, self._settings = thing, control, settings
+        self._articulated_object, self._control, self._settings = articulated_object, control, settings
         self._substeps = settings.time.substeps
         self._stride = self.facts.speed * settings.time.control_step
         self._lead = self.facts.force / self.facts.stiffness
@@ -166,7 +168,7 @@ class MujocoHand:
 
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the object's links."""
-        return link_poses(self.data, self.object.body, self._thing.scene.mechanism.links, "")
+        return link_poses(self.data, self.object.body, self._articulated_object.scene.mechanism.links, "")
 
     def close(self) -> None:
         """Nothing is held that Python does not free."""

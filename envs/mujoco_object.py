@@ -17,7 +17,7 @@ from kinematify.validation.engines.mujoco_model import compiled, parse, with_all
 from kinematify.validation.engines.touching import touching
 
 if TYPE_CHECKING:
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray, IntArray
@@ -46,9 +46,11 @@ class ObjectSource:
     touching: Touching
 
 
-def object_source(thing: Thing, settings: EnvSettings) -> ObjectSource:
+def object_source(articulated_object: ArticulatedObject, settings: EnvSettings) -> ObjectSource:
     """Parse the object and settle its contacts (`settled_source`)."""
-    return settled_source(thing.prepared, thing.scene.mechanism, thing.scene.size, settings)
+    return settled_source(
+        articulated_object.prepared, articulated_object.scene.mechanism, articulated_object.scene.size, settings
+    )
 
 
 def settled_source(prepared: Prepared, mechanism: Mechanism, size: float, settings: EnvSettings) -> ObjectSource:
@@ -93,16 +95,20 @@ def world_spec(settings: EnvSettings) -> mujoco.MjSpec:
 
 
 def add_object(
-    spec: mujoco.MjSpec, thing: Thing, target: Target, found: ObjectSource, T_world_root: FloatArray
+    spec: mujoco.MjSpec,
+    articulated_object: ArticulatedObject,
+    target: Target,
+    found: ObjectSource,
+    T_world_root: FloatArray,
 ) -> None:
     """Attach the object, mark the hold and the joint that is opened, and add their sensors."""
     part = found.source.spec.copy()
     part.compiler.balanceinertia = True
     spec.attach(part, prefix=PREFIX, frame=spec.worldbody.add_frame(pos=T_world_root[:3, 3]))
-    names = dict(zip(thing.scene.mechanism.links, found.source.names, strict=True))
+    names = dict(zip(articulated_object.scene.mechanism.links, found.source.names, strict=True))
     body = spec.body(PREFIX + names[target.link])
     body.add_site(name=HOLD, pos=target.point)
-    axis = thing.declared.kinematics.joint_by_name[target.joint].axis
+    axis = articulated_object.declared.kinematics.joint_by_name[target.joint].axis
     body.add_site(name=AXIS, quat=_quaternion_to(axis))
     for kind, site in (
         (mujoco.mjtSensor.mjSENS_FRAMEPOS, HOLD),
@@ -122,10 +128,12 @@ def _quaternion_to(axis: FloatArray) -> FloatArray:
 class MujocoObject:
     """Where the object stands in a compiled world, and its dynamics; redrawn in place."""
 
-    def __init__(self, model: mujoco.MjModel, thing: Thing, target: Target, found: ObjectSource) -> None:
+    def __init__(
+        self, model: mujoco.MjModel, articulated_object: ArticulatedObject, target: Target, found: ObjectSource
+    ) -> None:
         """Look up names; `model` is changed by `set_up` and `apply`."""
-        self.model, self.thing, self.target = model, thing, target
-        mechanism = thing.scene.mechanism
+        self.model, self.articulated_object, self.target = model, articulated_object, target
+        mechanism = articulated_object.scene.mechanism
         self.joints: IntArray = np.array([model.joint(PREFIX + name).id for name in mechanism.joints], dtype=np.int64)
         self.qpos: IntArray = np.asarray(model.jnt_qposadr[self.joints], dtype=np.int64)
         self.dof: IntArray = np.asarray(model.jnt_dofadr[self.joints], dtype=np.int64)
@@ -133,15 +141,15 @@ class MujocoObject:
             [int(model.body(PREFIX + name).id) for name in found.source.names], dtype=np.int64
         )
         names = list(mechanism.joints)
-        self._leaders = np.array([names.index(joint) for joint in thing.joints], dtype=np.int64)
+        self._leaders = np.array([names.index(joint) for joint in articulated_object.joints], dtype=np.int64)
         self.leader_qpos, self.leader_dof = self.qpos[self._leaders], self.dof[self._leaders]
         self._root = int(self.body[mechanism.links.index(mechanism.description.root)])
         self._geoms = np.flatnonzero(np.isin(model.geom_bodyid, self.body))
 
     def set_up(self, settings: EnvSettings) -> JointDynamics:
         """Give the joints their damping and friction, and keep them as what factors refer to."""
-        inertia, gravity = self._loads(self.thing.scene.mechanism.rest)
-        found = joint_dynamics(self.thing, Loads(inertia=inertia, gravity=gravity), settings.object)
+        inertia, gravity = self._loads(self.articulated_object.scene.mechanism.rest)
+        found = joint_dynamics(self.articulated_object, Loads(inertia=inertia, gravity=gravity), settings.object)
         self.model.dof_damping[self.dof], self.model.dof_frictionloss[self.dof] = found.damping, found.friction
         # As it is, MuJoCo's friction creeps: a light handle would sink by 7 deg in a second.
         # And its ends of ranges give: a hand that presses a lid shut would push it in by 20 deg.
@@ -162,7 +170,7 @@ class MujocoObject:
 
     def force(self, dynamics: JointDynamics, settings: EnvSettings) -> float:
         """Full force of a hand [N] (`full_force`)."""
-        rows = np.tile(self.thing.scene.mechanism.rest, (_WAY_SAMPLES, 1))
+        rows = np.tile(self.articulated_object.scene.mechanism.rest, (_WAY_SAMPLES, 1))
         rows[:, self.target.leader] = np.linspace(self.target.closed, self.target.opened, _WAY_SAMPLES)
         loads = [self._loads(row) for row in rows]
         k = int(self._leaders[self.target.leader])
@@ -177,7 +185,7 @@ class MujocoObject:
 
     def inertia(self) -> float:
         """Largest inertia that the joint moves, at both ends [kg m^2 or kg]."""
-        rows = np.tile(self.thing.scene.mechanism.rest, (2, 1))
+        rows = np.tile(self.articulated_object.scene.mechanism.rest, (2, 1))
         rows[1, self.target.leader] = self.target.opened
         k = int(self._leaders[self.target.leader])
         return max(float(self._loads(row)[0][k]) for row in rows)
@@ -185,7 +193,7 @@ class MujocoObject:
     def _loads(self, leaders: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Inertia and holding torque of every joint at a configuration of the leaders, shape (J,) each."""
         model, data = self.model, mujoco.MjData(self.model)
-        data.qpos[self.qpos] = self.thing.scene.mechanism.all_values(leaders[None])[0]
+        data.qpos[self.qpos] = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
         mujoco.mj_forward(model, data)
         matrix = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, matrix)
@@ -211,7 +219,7 @@ class MujocoObject:
 
     def place(self, data: mujoco.MjData, leaders: FloatArray) -> None:
         """Set the joints, followers included, and stop them."""
-        data.qpos[self.qpos] = self.thing.scene.mechanism.all_values(leaders[None])[0]
+        data.qpos[self.qpos] = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
         data.qvel[self.dof] = 0.0
 
     def reading(self, data: mujoco.MjData) -> Reading:

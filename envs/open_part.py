@@ -154,7 +154,7 @@ class OpenPartEnv(OpeningEnv):
 
     def _make_world(self) -> None:
         kind = MujocoHand if self.engine == "mujoco" else _pybullet_hand()
-        self._world = kind(self.thing, self.target, self.control, self.settings)
+        self._world = kind(self.articulated_object, self.target, self.control, self.settings)
 
     def _place(self, leaders: FloatArray) -> float:
         return self._world.place(leaders)

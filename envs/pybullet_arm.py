@@ -17,7 +17,7 @@ from kinematify.robot.robot import rest_configuration
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw
     from kinematify.envs.reading import Reading
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
@@ -33,15 +33,22 @@ _GAIN = 0.3  # share of an error of position that a motor makes good in a step
 class PybulletArm:
     """One world; see `kinematify.envs.worlds.ArmWorld`."""
 
-    def __init__(self, thing: Thing, target: Target, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings) -> None:
+    def __init__(
+        self,
+        articulated_object: ArticulatedObject,
+        target: Target,
+        robot: EnvRobot,
+        plan: RobotPlan,
+        settings: EnvSettings,
+    ) -> None:
         """Connect to a world of its own; `close` frees it."""
-        facts = arm_facts(thing, target, robot, plan)
-        self.object = PybulletObject(thing, target, facts.dynamics, plan.T_world_object, settings)
+        facts = arm_facts(articulated_object, target, robot, plan)
+        self.object = PybulletObject(articulated_object, target, facts.dynamics, plan.T_world_object, settings)
         self.client = self.object.client
         self._close = weakref.finalize(self, partial(disconnected, self.client))
-        self._thing, self._robot, self._substeps = thing, robot, settings.time.substeps
+        self._articulated_object, self._robot, self._substeps = articulated_object, robot, settings.time.substeps
         self._load(plan, settings)
-        self._held = [self.object.link_index(name) for name in held_links(thing, target)]
+        self._held = [self.object.link_index(name) for name in held_links(articulated_object, target)]
         forces = np.full(len(robot.robot.finger_joints), settings.robot.grip_force)
         self._forces = np.concatenate([robot.strongest, forces]).tolist()
         self._wanted = np.zeros(len(self._forces))
@@ -74,7 +81,7 @@ class PybulletArm:
         """The robot meets the floor, the object stands on it."""
         shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=self.client)
         floor = bullet.createMultiBody(0.0, shape, physicsClientId=self.client)
-        for name in self._thing.scene.mechanism.links:
+        for name in self._articulated_object.scene.mechanism.links:
             bullet.setCollisionFilterPair(
                 floor, self.object.body, _BASE, self.object.link_index(name), 0, physicsClientId=self.client
             )

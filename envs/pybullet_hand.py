@@ -15,7 +15,7 @@ from kinematify.envs.pybullet_object import PybulletObject, disconnected
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw
     from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
@@ -25,10 +25,14 @@ if TYPE_CHECKING:
 class PybulletHand:
     """One world; see `kinematify.envs.worlds.World`."""
 
-    def __init__(self, thing: Thing, target: Target, control: str, settings: EnvSettings) -> None:
+    def __init__(
+        self, articulated_object: ArticulatedObject, target: Target, control: str, settings: EnvSettings
+    ) -> None:
         """Connect to a world of its own; `close` frees it."""
-        self.facts = hand_facts(thing, target, control)
-        self.object = PybulletObject(thing, target, self.facts.dynamics, thing.T_world_root, settings)
+        self.facts = hand_facts(articulated_object, target, control)
+        self.object = PybulletObject(
+            articulated_object, target, self.facts.dynamics, articulated_object.T_world_root, settings
+        )
         self.client = self.object.client
         self._close = weakref.finalize(self, partial(disconnected, self.client))
         self._control, self._substeps = control, settings.time.substeps

@@ -22,7 +22,7 @@ from kinematify.validation.engines.touching import deepest, touching
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
@@ -35,12 +35,19 @@ class PybulletObject:
     """One object in a world of its own."""
 
     def __init__(
-        self, thing: Thing, target: Target, dynamics: JointDynamics, T_world_root: FloatArray, settings: EnvSettings
+        self,
+        articulated_object: ArticulatedObject,
+        target: Target,
+        dynamics: JointDynamics,
+        T_world_root: FloatArray,
+        settings: EnvSettings,
     ) -> None:
         """Load the prepared file; pairs that always touch do not collide, as in MuJoCo."""
-        self.thing, self.target, self._dynamics = thing, target, dynamics
-        mechanism = thing.scene.mechanism
-        self._loaded = load(thing.prepared.urdf, mechanism, thing.prepared, step=settings.time.step)
+        self.articulated_object, self.target, self._dynamics = articulated_object, target, dynamics
+        mechanism = articulated_object.scene.mechanism
+        self._loaded = load(
+            articulated_object.prepared.urdf, mechanism, articulated_object.prepared, step=settings.time.step
+        )
         self.client, self.body = self._loaded.client, self._loaded.body
         bullet.setPhysicsEngineParameter(
             numSolverIterations=settings.time.solver_iterations, deterministicOverlappingPairs=1,
@@ -48,12 +55,12 @@ class PybulletObject:
         )  # fmt: skip
         self._let_touch(settings)
         names = list(mechanism.joints)
-        self._leaders = [names.index(joint) for joint in thing.joints]
+        self._leaders = [names.index(joint) for joint in articulated_object.joints]
         self._indices = self._loaded.indices
         self._leader_indices = [self._indices[k] for k in self._leaders]
         self._followers = [k for k in range(len(names)) if k not in self._leaders]
         self._link = int(self._loaded.link[mechanism.links.index(target.link)])
-        self._axis = thing.declared.kinematics.joint_by_name[target.joint].axis
+        self._axis = articulated_object.declared.kinematics.joint_by_name[target.joint].axis
         self._T_base = pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
         self._links = {index: self._info(index) for index in self._loaded.link.tolist()}
         self._T_usual = self._T_root = T_world_root
@@ -62,17 +69,17 @@ class PybulletObject:
 
     def _let_touch(self, settings: EnvSettings) -> None:
         """Switch off pairs that touch at rest, or only lightly as they move: Bullet's hulls are 1 mm thicker."""
-        thing, loaded = self.thing, self._loaded
-        mechanism, limits = thing.scene.mechanism, load_settings().engines
+        articulated_object, loaded = self.articulated_object, self._loaded
+        mechanism, limits = articulated_object.scene.mechanism, load_settings().engines
         rows = mechanism.sweep(settings.object.sweep_samples)
         found: list[tuple[int, int, int, float]] = []
         for number, values in enumerate(mechanism.all_values(rows)):
             loaded.place(values)
             found += loaded.contacts(number)
         table = np.array(found, dtype=np.float64).reshape(-1, 4)
-        tolerance = limits.contact_depth * thing.scene.size + 2.0 * float(loaded.margin.max(initial=0.0))
+        tolerance = limits.contact_depth * articulated_object.scene.size + 2.0 * float(loaded.margin.max(initial=0.0))
         contacts = deepest(table[:, 0].astype(np.int64), table[:, 1:3].astype(np.int64), table[:, 3])
-        met = touching(contacts, mechanism, thing.prepared, rows=len(rows), tolerance=tolerance)
+        met = touching(contacts, mechanism, articulated_object.prepared, rows=len(rows), tolerance=tolerance)
         free = set(met.meet[met.at_rest[met.meet] <= tolerance].tolist())
         for k, pair in enumerate(met.bodies.tolist()):
             if k not in free:
@@ -81,7 +88,7 @@ class PybulletObject:
 
     def link_index(self, name: str) -> int:
         """PyBullet's index of a link."""
-        return int(self._loaded.link[self.thing.scene.mechanism.links.index(name)])
+        return int(self._loaded.link[self.articulated_object.scene.mechanism.links.index(name)])
 
     def _info(self, index: int) -> tuple[float, list[float], float]:
         """Mass [kg], principal moments [kg m^2] and friction of a link."""
@@ -122,10 +129,14 @@ class PybulletObject:
     def place(self, leaders: FloatArray) -> None:
         """Set the joints, followers included, and stop them."""
         if self._saved is None:
-            self._loaded.place(self.thing.scene.mechanism.all_values(self.thing.scene.mechanism.rest[None])[0])
+            self._loaded.place(
+                self.articulated_object.scene.mechanism.all_values(self.articulated_object.scene.mechanism.rest[None])[
+                    0
+                ]
+            )
             self._saved = bullet.saveState(physicsClientId=self.client)
         bullet.restoreState(self._saved, physicsClientId=self.client)
-        self._loaded.place(self.thing.scene.mechanism.all_values(leaders[None])[0])
+        self._loaded.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])
         self.look()
         bullet.performCollisionDetection(physicsClientId=self.client)
 
@@ -134,7 +145,7 @@ class PybulletObject:
         if not self._followers:
             return
         states = bullet.getJointStates(self.body, self._leader_indices, physicsClientId=self.client)
-        values = self.thing.scene.mechanism.all_values(np.array([[state[0] for state in states]]))[0]
+        values = self.articulated_object.scene.mechanism.all_values(np.array([[state[0] for state in states]]))[0]
         for k in self._followers:
             bullet.setJointMotorControl2(
                 self.body, self._indices[k], bullet.POSITION_CONTROL, targetPosition=float(values[k]),
@@ -193,8 +204,8 @@ class PybulletObject:
 
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the links, shape (4, 4) each."""
-        values = dict(zip(self.thing.joints, self._reading.values.tolist(), strict=True))
-        poses = forward_kinematics(self.thing.declared.kinematics, values)
+        values = dict(zip(self.articulated_object.joints, self._reading.values.tolist(), strict=True))
+        poses = forward_kinematics(self.articulated_object.declared.kinematics, values)
         return {name: self._T_root @ T for name, T in poses.items()}
 
 

@@ -24,7 +24,7 @@ from kinematify.robot.mechanism import Mechanism
 from kinematify.simulation.prepare import prepare
 
 if TYPE_CHECKING:
-    from kinematify.envs.articulated_object import Thing
+    from kinematify.envs.articulated_object import ArticulatedObject
     from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.prepared import Prepared
@@ -84,7 +84,7 @@ class RobotPlan:
 
 
 @lru_cache(maxsize=8)
-def env_robot(thing: Thing, robot: str | None, tool: str | None) -> EnvRobot:
+def env_robot(articulated_object: ArticulatedObject, robot: str | None, tool: str | None) -> EnvRobot:
     """Read a robot, the built-in arm if None; its files lie beside those of the object.
 
     Raises:
@@ -94,7 +94,7 @@ def env_robot(thing: Thing, robot: str | None, tool: str | None) -> EnvRobot:
         raise InputError(
             f"robot={robot!r} needs tool= with the link that carries the fingers, such as tool='gripper_link'."
         )
-    folder = thing.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
+    folder = articulated_object.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
     (folder / "prepared").mkdir(parents=True, exist_ok=True)
     found = builtin_robot(folder) if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
     settings = load_settings()
@@ -104,17 +104,19 @@ def env_robot(thing: Thing, robot: str | None, tool: str | None) -> EnvRobot:
 
 
 @lru_cache(maxsize=16)
-def robot_plan(thing: Thing, joint: str, robot: EnvRobot) -> RobotPlan:
+def robot_plan(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot) -> RobotPlan:
     """Plan, or take the plan of an earlier run.
 
     Raises:
         InputError: The robot cannot open the joint; the message says why.
     """
     urdf = robot.robot.urdf.read_bytes()
-    digest = hashlib.sha256(f"{content_digest(thing)} {joint} {robot.robot.tool}".encode() + urdf).hexdigest()
+    digest = hashlib.sha256(
+        f"{content_digest(articulated_object)} {joint} {robot.robot.tool}".encode() + urdf
+    ).hexdigest()
     known = kept("plans", digest)
     if known is None:
-        known = _planned(thing, joint, robot)
+        known = _planned(articulated_object, joint, robot)
         keep("plans", digest, known)
     facts: dict[str, Any] = {
         name: np.array(value) if isinstance(value, list) else value for name, value in known.items()
@@ -122,15 +124,16 @@ def robot_plan(thing: Thing, joint: str, robot: EnvRobot) -> RobotPlan:
     return RobotPlan(**facts)
 
 
-def _planned(thing: Thing, joint: str, robot: EnvRobot) -> dict[str, object]:
+def _planned(articulated_object: ArticulatedObject, joint: str, robot: EnvRobot) -> dict[str, object]:
     settings = load_settings().task
     seconds = {"seconds": load_env_settings().robot.plan_seconds}
     settings = settings.model_copy(update={"plan": settings.plan.model_copy(update=seconds)})
-    plan = plan_pull(robot.arm, thing.scene, joint, settings)
+    plan = plan_pull(robot.arm, articulated_object.scene, joint, settings)
     if plan.place is None or plan.reach is None or plan.pull is None or plan.opened is None:
         raise InputError(
-            f"The robot cannot open {joint} of the model {thing.source}: {plan.words} (kinematify validate --task pull "
-            "tells more). Give another joint, or make kinematify/OpenPart-v0, which needs no robot."
+            f"The robot cannot open {joint} of the model {articulated_object.source}: {plan.words} (kinematify "
+            "validate --task pull tells more). Give another joint, or make kinematify/OpenPart-v0, which needs no "
+            "robot."
         )
     grasp = plan.place.grasp
     return {

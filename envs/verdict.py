@@ -16,7 +16,7 @@ from kinematify.errors import EnvironmentFault, InputError
 from kinematify.geometry.cut_cache import cache_folder
 
 if TYPE_CHECKING:
-    from kinematify.envs.articulated_object import Thing
+    from kinematify.envs.articulated_object import ArticulatedObject
 
 _CHECKS = "KV1*,KV2*,KV30*,KV31*,KV40*,KV50*"
 """File, declared physics, overlap at rest and along the motion, loading and moving in an engine."""
@@ -24,11 +24,11 @@ _SHOWN = 3
 _KEPT = 500
 
 
-def require_valid(thing: Thing, engine: str, *, allow_invalid: bool) -> str:
+def require_valid(articulated_object: ArticulatedObject, engine: str, *, allow_invalid: bool) -> str:
     """Return the verdict on a model: ``pass``, ``warn``, ``fail``, or ``bundled`` for objects of the package.
 
     Args:
-        thing: The model.
+        articulated_object: The model.
         engine: That it will run in.
         allow_invalid: Take it even if it fails.
 
@@ -36,22 +36,23 @@ def require_valid(thing: Thing, engine: str, *, allow_invalid: bool) -> str:
         InputError: It fails; the message names the worst findings.
         EnvironmentFault: The validation itself failed.
     """
-    if thing.source.startswith((PREFIX, FAMILY_PREFIX)):
+    if articulated_object.source.startswith((PREFIX, FAMILY_PREFIX)):
         return "bundled"
-    verdict, errors = _verdict(thing, engine)
+    verdict, errors = _verdict(articulated_object, engine)
     if verdict == "fail" and not allow_invalid:
         more = f" and {len(errors) - _SHOWN} more" if len(errors) > _SHOWN else ""
         raise InputError(
-            f"The model {thing.source} does not pass kinematify validate: {' '.join(errors[:_SHOWN])}{more} Mend it "
+            f"The model {articulated_object.source} does not pass kinematify validate: "
+            f"{' '.join(errors[:_SHOWN])}{more} Mend it "
             "(kinematify validate shows all findings with remedies), or pass allow_invalid=True to train on it anyway."
         )
     return verdict
 
 
-def content_digest(thing: Thing) -> str:
+def content_digest(articulated_object: ArticulatedObject) -> str:
     """Digest of the URDF and of all meshes that it names."""
-    digest = hashlib.sha256(f"{__version__} {thing.urdf}".encode() + thing.urdf.read_bytes())
-    for link in thing.declared.links:
+    digest = hashlib.sha256(f"{__version__} {articulated_object.urdf}".encode() + articulated_object.urdf.read_bytes())
+    for link in articulated_object.declared.links:
         for shape in (*link.visuals, *link.collisions):
             digest.update(shape.mesh.vertices.tobytes())
             digest.update(shape.mesh.faces.tobytes())
@@ -79,12 +80,12 @@ def keep(folder: str, digest: str, facts: dict[str, object]) -> None:
             item.unlink(missing_ok=True)
 
 
-def _verdict(thing: Thing, engine: str) -> tuple[str, list[str]]:
+def _verdict(articulated_object: ArticulatedObject, engine: str) -> tuple[str, list[str]]:
     """Verdict and the messages of its errors."""
-    digest = hashlib.sha256(f"{content_digest(thing)} {engine}".encode()).hexdigest()
+    digest = hashlib.sha256(f"{content_digest(articulated_object)} {engine}".encode()).hexdigest()
     known = kept("verdicts", digest)
     if known is None:
-        known = _validated(thing.urdf, engine)
+        known = _validated(articulated_object.urdf, engine)
         keep("verdicts", digest, known)
     errors = known["errors"]
     assert isinstance(errors, list)

@@ -6,13 +6,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from kinematify.envs.articulated_object import find_target, load_thing
+from kinematify.envs.articulated_object import find_target, load_articulated_object
 from kinematify.envs.settings import load_settings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.envs.articulated_object import Target, Thing
+    from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw
     from kinematify.envs.mujoco_hand import HandFacts
     from kinematify.envs.reading import Reading
@@ -88,7 +88,7 @@ class ArmWorld(World, Protocol):
         """Force of each finger on the part [N], shape (fingers,)."""
 
 
-def shared_thing(model: str | Path | None, *, fine: bool = False) -> Thing:
+def shared_articulated_object(model: str | Path | None, *, fine: bool = False) -> ArticulatedObject:
     """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
     path = Path(model) if isinstance(model, Path) or (isinstance(model, str) and Path(model).exists()) else None
     file = path / "model.urdf" if path is not None and path.is_dir() else path
@@ -97,12 +97,12 @@ def shared_thing(model: str | Path | None, *, fine: bool = False) -> Thing:
 
 
 @lru_cache(maxsize=8)
-def _loaded(model: str | None, stamp: tuple[int, int] | None, fine: bool) -> Thing:
+def _loaded(model: str | None, stamp: tuple[int, int] | None, fine: bool) -> ArticulatedObject:
     del stamp
-    return load_thing(model, fine=fine)
+    return load_articulated_object(model, fine=fine)
 
 
 @lru_cache(maxsize=32)
-def shared_target(thing: Thing, joint: str) -> Target:
+def shared_target(articulated_object: ArticulatedObject, joint: str) -> Target:
     """Return the joint of a `joint` keyword, its hold searched once per process."""
-    return find_target(thing, joint, load_settings().hand)
+    return find_target(articulated_object, joint, load_settings().hand)

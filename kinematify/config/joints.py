@@ -184,7 +184,7 @@ class JournalConfig(StageConfig):
         return math.radians(self.normal_deg)
 
 
-class PlayConfig(StageConfig):
+class ClearanceConfig(StageConfig):
     """How far the surface of a contact can turn or slide before it is stopped."""
 
     least_samples: int
@@ -218,7 +218,7 @@ class LimitsConfig(StageConfig):
 
     panel_deg: float
     """Largest opening of a panel [deg]."""
-    held_deg: float
+    blocked_deg: float
     """A panel that turns less far is shut in by something, or its mesh overlaps its frame [deg]."""
     square_deg: float
     """A panel within this angle of square to its body is closed [deg]."""
@@ -292,7 +292,7 @@ class RockersConfig(StageConfig):
     """Share of each half that is even."""
 
 
-class FootingConfig(StageConfig):
+class FrontCuesConfig(StageConfig):
     """Pedals and wheels at the foot of a body."""
 
     small: float
@@ -333,7 +333,7 @@ class RailsConfig(StageConfig):
     """The same for the rail's score over that of the best bearing line."""
     lead_full: float
     """Full where the lead is at least this."""
-    held_deg: float
+    pin_deg: float
     """Free turn about a line along the rail beyond which the rail is a pin [deg]."""
     least_travel: float
     """Free travel along the rail below which a part that turns freely is not on it, in useful lengths."""
@@ -393,8 +393,8 @@ class JointsConfig(StageConfig):
     rails: RailsConfig
     limits: LimitsConfig
     journal: JournalConfig
-    play: PlayConfig
+    clearance: ClearanceConfig
     guide: GuideConfig
     rockers: RockersConfig
-    footing: FootingConfig
+    front_cues: FrontCuesConfig
     compound: CompoundConfig

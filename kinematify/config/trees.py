@@ -112,7 +112,7 @@ class TopologyConfig(StageConfig):
     """``d_max``: centroids farther apart are joined only when nothing nearer is left, in diagonals."""
     proximity_weight: float
     """Share of contact strength in an edge's weight; breaks ties between equal joints."""
-    held_quality: float
+    journal_quality: float
     """Least quality of an edge whose one part holds the other all around a line."""
     skip_penalty: float
     """Factor on the quality of an edge between two leaves on one pin with a third one between them."""

@@ -43,7 +43,7 @@ class Motion:
 def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) -> list[Motion]:
     """Every motion that lays one cloud upon another one, the closest first.
 
-    The principal axes are laid upon each other in all orders and senses; matching nearest points finishes each that is
+    The principal axes are laid upon each other in all orders and signs; matching nearest points finishes each that is
     close. Shapes with symmetries of their own have several answers.
 
     Args:
@@ -79,12 +79,12 @@ def _starts(first: FloatArray, second: FloatArray) -> list[Motion]:
 
 def _matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: Motion) -> tuple[Motion, float]:
     """Match nearest points until they stay, mirrored or not as at the start; and their mean distance [m]."""
-    sense = np.sign(np.linalg.det(motion.turn))
+    sign = np.sign(np.linalg.det(motion.turn))
     for _ in range(_ROUNDS):
         nearest = second[tree.query(motion.points(first))[1]]
         one, other = first.mean(axis=0), nearest.mean(axis=0)
         left, _, right = np.linalg.svd((nearest - other).T @ (first - one))
-        flip = np.array([1.0, 1.0, sense * np.sign(np.linalg.det(left @ right))])
+        flip = np.array([1.0, 1.0, sign * np.sign(np.linalg.det(left @ right))])
         turn = (left * flip) @ right
         motion = Motion(turn=turn, shift=other - turn @ one)
     return motion, float(tree.query(motion.points(first))[0].mean())

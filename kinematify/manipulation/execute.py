@@ -46,7 +46,7 @@ class Frame:
     """[s]."""
     robot: dict[str, float]
     """Values of all joints of the robot [rad or m]."""
-    thing: dict[str, float]
+    object: dict[str, float]
     """Values of all joints of the object [rad or m]."""
 
 
@@ -83,19 +83,19 @@ class Loaded:
 
     motion: Motion
     robot: DeclaredModel
-    thing: DeclaredModel
+    object: DeclaredModel
     robot_prepared: Prepared
-    thing_prepared: Prepared
+    object_prepared: Prepared
 
     @property
     def held(self) -> str:
         """Child link of the joint that is opened."""
-        return self.thing.kinematics.joint_by_name[self.motion.joint].child
+        return self.object.kinematics.joint_by_name[self.motion.joint].child
 
     @property
     def held_links(self) -> frozenset[str]:
         """Links of the body that the hand holds."""
-        return _body(self.thing.kinematics, self.motion.grasp.held) | _body(self.thing.kinematics, self.held)
+        return _body(self.object.kinematics, self.motion.grasp.held) | _body(self.object.kinematics, self.held)
 
     @property
     def hand_links(self) -> frozenset[str]:
@@ -139,7 +139,9 @@ def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
         model = read_model(urdf)
         models.append(model)
         records.append(prepare(model, folder, settings))
-    return Loaded(motion=motion, robot=models[0], thing=models[1], robot_prepared=records[0], thing_prepared=records[1])
+    return Loaded(
+        motion=motion, robot=models[0], object=models[1], robot_prepared=records[0], object_prepared=records[1]
+    )
 
 
 @dataclass(kw_only=True)

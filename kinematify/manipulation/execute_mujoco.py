@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     BoolArray = NDArray[np.bool_]
 
-_ROBOT, _THING = "robot_", "object_"
+_ROBOT, _OBJECT = "robot_", "object_"
 _HELD, _OTHERS, _GRIP = 1, 2, 4  # bits: the held part, all that is not held, and what lies between the pads
 _WELD, _LATCH = "kinematify weld", "kinematify latch"
 
@@ -81,7 +81,7 @@ class _World:
         """Track the reference; returns the value of the object's joint after every step, shape (steps,)."""
         model, data, settings = self.model, self.data, self.settings
         every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
-        joint = model.joint(_THING + self.loaded.motion.joint).qposadr[0]
+        joint = model.joint(_OBJECT + self.loaded.motion.joint).qposadr[0]
         lead = 1.0 / (np.pi * settings.servo_frequency)  # damping over stiffness: commands run ahead of the lag
         told = reference.arm + lead * reference.speed
         values = np.full(reference.steps, np.nan)
@@ -113,14 +113,14 @@ class _World:
         spec.option.impratio = 10.0
         # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
         spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
-        robot, thing = (
+        robot, object_spec = (
             self._parsed(self.loaded.robot, self.loaded.robot_prepared),
-            self._parsed(self.loaded.thing, self.loaded.thing_prepared),
+            self._parsed(self.loaded.object, self.loaded.object_prepared),
         )
-        self._set_contacts(robot, thing)
+        self._set_contacts(robot, object_spec)
         for body in robot.bodies:
             body.gravcomp = 1.0
-        for part, prefix, T in ((robot, _ROBOT, motion.T_world_base), (thing, _THING, motion.T_world_object)):
+        for part, prefix, T in ((robot, _ROBOT, motion.T_world_base), (object_spec, _OBJECT, motion.T_world_object)):
             frame = spec.worldbody.add_frame(pos=T[:3, 3], quat=_quaternion(T[:3, :3]))
             spec.attach(part, prefix=prefix, frame=frame)
         floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
@@ -134,7 +134,7 @@ class _World:
         spec.compiler.balanceinertia = True
         return spec
 
-    def _set_contacts(self, robot: mujoco.MjSpec, thing: mujoco.MjSpec) -> None:
+    def _set_contacts(self, robot: mujoco.MjSpec, object_spec: mujoco.MjSpec) -> None:
         """The robot meets the object and the floor; neither meets itself, which the planner has looked at."""
         for geom in robot.geoms:
             geom.contype, geom.conaffinity = 0, _HELD | _OTHERS
@@ -142,22 +142,24 @@ class _World:
             geom.solref[:2], geom.solimp[:2], geom.priority = [2.0 * self.settings.time_step, 1.0], [0.95, 0.99], 1
             if geom.parent.name in self.loaded.hand_links:
                 geom.conaffinity = _OTHERS | _GRIP
-        for geom in thing.geoms:
+        for geom in object_spec.geoms:
             held = geom.parent.name in self.loaded.held_links
             geom.contype, geom.conaffinity = _HELD if held else _OTHERS, 0
         if self.hold is Hold.CONTACT:
             vertices, faces = grip_piece(
-                self.loaded.thing, self.loaded.held, self._leaders(), self.loaded.motion.grasp, self.settings
+                self.loaded.object, self.loaded.held, self._leaders(), self.loaded.motion.grasp, self.settings
             )
-            mesh = thing.add_mesh(name="kinematify grip", uservert=vertices.ravel(), userface=faces.ravel())
-            grip = thing.body(self.loaded.held).add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, mass=0.0)
+            mesh = object_spec.add_mesh(name="kinematify grip", uservert=vertices.ravel(), userface=faces.ravel())
+            grip = object_spec.body(self.loaded.held).add_geom(
+                type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh.name, mass=0.0
+            )
             grip.contype, grip.conaffinity = _GRIP, 0
 
     def _leaders(self) -> dict[str, float]:
         """Leading joints of the object at the start [rad or m]."""
-        rest = rest_configuration(self.loaded.thing.kinematics)
+        rest = rest_configuration(self.loaded.object.kinematics)
         start = {**self.loaded.motion.start, self.loaded.motion.joint: float(self.loaded.motion.opened[0])}
-        return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.thing.moving}
+        return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.object.moving}
 
     def _add_drives(self, spec: mujoco.MjSpec) -> None:
         robot = self.loaded.motion.robot
@@ -170,7 +172,7 @@ class _World:
     def _add_bonds(self, spec: mujoco.MjSpec) -> None:
         """Weld the hand to the part, and hold every joint that is not driven where it starts."""
         weld = spec.add_equality(name=_WELD, type=mujoco.mjtEq.mjEQ_WELD, objtype=mujoco.mjtObj.mjOBJ_BODY)
-        weld.name1, weld.name2, weld.active = _ROBOT + self.loaded.motion.robot.tool, _THING + self.loaded.held, False
+        weld.name1, weld.name2, weld.active = _ROBOT + self.loaded.motion.robot.tool, _OBJECT + self.loaded.held, False
         driven = {*self.loaded.motion.robot.arm_joints, *self.loaded.motion.robot.finger_joints}
         for prefix, model, values in self._sides():
             for joint in model.joints:
@@ -181,7 +183,7 @@ class _World:
                 latch = spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT)
                 latch.name1 = prefix + joint.name
                 latch.data[0] = values[joint.name]
-                if prefix == _THING and joint.name in self._freed:
+                if prefix == _OBJECT and joint.name in self._freed:
                     latch.name = f"{_LATCH} {joint.name}"
 
     def _sides(self) -> Sequence[tuple[str, DeclaredModel, dict[str, float]]]:
@@ -191,10 +193,10 @@ class _World:
         gap = loaded.fingers(motion.grasp.spread)
         hand = dict(zip(motion.robot.finger_joints, gap.tolist(), strict=True))
         robot = {**rest_configuration(loaded.robot.kinematics), **arm, **hand}
-        thing = {**rest_configuration(loaded.thing.kinematics), **motion.start, motion.joint: float(motion.opened[0])}
+        values = {**rest_configuration(loaded.object.kinematics), **motion.start, motion.joint: float(motion.opened[0])}
         return (
             (_ROBOT, loaded.robot, {**joint_values(loaded.robot.kinematics, robot), **hand}),
-            (_THING, loaded.thing, joint_values(loaded.thing.kinematics, thing)),
+            (_OBJECT, loaded.object, joint_values(loaded.object.kinematics, values)),
         )
 
     def _start(self, model: mujoco.MjModel) -> FloatArray:
@@ -215,7 +217,7 @@ class _World:
             finger = int(model.joint(_ROBOT + name).dofadr[0])
             model.dof_armature[finger] = settings.finger_inertia
             inertia[finger] = settings.finger_inertia
-        joint = model.joint(_THING + self.loaded.motion.joint)
+        joint = model.joint(_OBJECT + self.loaded.motion.joint)
         dof = int(joint.dofadr[0])
         model.dof_damping[dof] = max(model.dof_damping[dof], settings.joint_damping * inertia[dof])
         rate = 2.0 * np.pi * settings.servo_frequency
@@ -277,7 +279,7 @@ class _World:
         if self.hold is not Hold.WELD:
             return
         weld = model.equality(_WELD).id
-        tool, held = (data.body(name) for name in (_ROBOT + self.loaded.motion.robot.tool, _THING + self.loaded.held))
+        tool, held = (data.body(name) for name in (_ROBOT + self.loaded.motion.robot.tool, _OBJECT + self.loaded.held))
         first, second = tool.xmat.reshape(3, 3), held.xmat.reshape(3, 3)
         # The anchor, which is the tool's origin, in the frame of the part and in that of the tool.
         model.eq_data[weld, :3] = second.T @ (tool.xpos - held.xpos)
@@ -296,13 +298,13 @@ class _World:
         if depths[deepest] > log.depth:
             bodies = (self.model.body(self.model.geom_bodyid[geom]).name for geom in geoms[deepest])
             link, other = sorted(bodies, key=lambda name: not name.startswith(_ROBOT))
-            other = "the floor" if other == "world" else other.removeprefix(_THING)
+            other = "the floor" if other == "world" else other.removeprefix(_OBJECT)
             log.touch(link.removeprefix(_ROBOT), other, float(depths[deepest]))
 
     @cached_property
     def _gripped(self) -> BoolArray:
         """Which shapes belong to the hand or to what it holds, shape (geoms,)."""
-        names = {_ROBOT + link for link in self.loaded.hand_links} | {_THING + link for link in self.loaded.held_links}
+        names = {_ROBOT + link for link in self.loaded.hand_links} | {_OBJECT + link for link in self.loaded.held_links}
         return np.array([self.model.body(body).name in names for body in self.model.geom_bodyid])
 
     def _frame(self, time: float) -> Frame:
@@ -310,7 +312,7 @@ class _World:
         for prefix, model, _ in self._sides():
             names = [joint.name for joint in model.joints if joint.joint.kind is not JointType.FIXED]
             states.append({name: float(self.data.joint(prefix + name).qpos[0]) for name in names})
-        return Frame(time=time, robot=states[0], thing=states[1])
+        return Frame(time=time, robot=states[0], object=states[1])
 
 
 def _quaternion(rotation: FloatArray) -> FloatArray:

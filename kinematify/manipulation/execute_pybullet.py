@@ -116,8 +116,8 @@ def _world(loaded: Loaded, settings: ExecutionSettings) -> Iterator[_World]:
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
         motion = loaded.motion
         robot = _Side.load(client, loaded.robot, loaded.robot_prepared, motion.T_world_base)
-        thing = _Side.load(client, loaded.thing, loaded.thing_prepared, motion.T_world_object)
-        yield _World(client, loaded, settings, robot, thing)
+        placed = _Side.load(client, loaded.object, loaded.object_prepared, motion.T_world_object)
+        yield _World(client, loaded, settings, robot, placed)
     finally:
         bullet.disconnect(client)
 
@@ -128,14 +128,14 @@ class _World:
     loaded: Loaded
     settings: ExecutionSettings
     robot: _Side
-    thing: _Side
+    object: _Side
 
     def run(self, reference: Reference, log: Log) -> FloatArray:
         """Track the reference; returns the value of the object's joint after every step, shape (steps,)."""
         motion, settings = self.loaded.motion, self.settings
         self._start(reference)
         force = self.loaded.strongest(settings)
-        joint = self.thing.joints[motion.joint]
+        joint = self.object.joints[motion.joint]
         values = np.full(reference.steps, np.nan)
         arm = [self.robot.joints[name] for name in motion.robot.arm_joints]
         for step in range(reference.steps):
@@ -147,7 +147,7 @@ class _World:
                 positionGains=[0.3] * len(arm), velocityGains=[1.0] * len(arm), physicsClientId=self.client,
             )  # fmt: skip
             bullet.stepSimulation(self.client)
-            values[step] = bullet.getJointState(self.thing.body, joint, self.client)[0]
+            values[step] = bullet.getJointState(self.object.body, joint, self.client)[0]
             states = bullet.getJointStates(self.robot.body, arm, self.client)
             lag = np.abs(np.array([state[0] for state in states]) - reference.arm[step])
             log.tracking = max(log.tracking, float(lag.max()))
@@ -159,16 +159,16 @@ class _World:
         fingers = dict(zip(motion.robot.finger_joints, self.loaded.fingers(motion.grasp.spread).tolist(), strict=True))
         arm = dict(zip(motion.robot.arm_joints, reference.arm[0].tolist(), strict=True))
         self.robot.place({**arm, **fingers})
-        self.thing.place({**motion.start, motion.joint: float(motion.opened[0])})
-        for name, joint in self.loaded.thing.kinematics.joint_by_name.items():
+        self.object.place({**motion.start, motion.joint: float(motion.opened[0])})
+        for name, joint in self.loaded.object.kinematics.joint_by_name.items():
             if joint.kind is not JointType.FIXED:
                 bullet.changeDynamics(
-                    self.thing.body, self.thing.joints[name], jointDamping=0.0, physicsClientId=self.client
+                    self.object.body, self.object.joints[name], jointDamping=0.0, physicsClientId=self.client
                 )
         for hand in self.loaded.hand_links:
             for held in self.loaded.held_links:
                 bullet.setCollisionFilterPair(
-                    self.robot.body, self.thing.body, self.robot.links[hand], self.thing.links[held], 0,
+                    self.robot.body, self.object.body, self.robot.links[hand], self.object.links[held], 0,
                     physicsClientId=self.client,
                 )  # fmt: skip
 
@@ -177,25 +177,25 @@ class _World:
         motion, client = self.loaded.motion, self.client
         for name in (motion.joint, *motion.freed):
             bullet.setJointMotorControl2(
-                self.thing.body, self.thing.joints[name], bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
+                self.object.body, self.object.joints[name], bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=client
             )
         T_world_tool = self.robot.frame(motion.robot.tool)
         local = [
             np.linalg.inv(side.center(link)) @ T_world_tool
-            for side, link in ((self.robot, motion.robot.tool), (self.thing, self.loaded.held))
+            for side, link in ((self.robot, motion.robot.tool), (self.object, self.loaded.held))
         ]
         weld = bullet.createConstraint(
-            self.robot.body, self.robot.links[motion.robot.tool], self.thing.body, self.thing.links[self.loaded.held],
+            self.robot.body, self.robot.links[motion.robot.tool], self.object.body, self.object.links[self.loaded.held],
             bullet.JOINT_FIXED, [0.0, 0.0, 0.0], local[0][:3, 3].tolist(), local[1][:3, 3].tolist(),
             _quaternion(local[0][:3, :3]), _quaternion(local[1][:3, :3]), physicsClientId=client,
         )  # fmt: skip
         bullet.changeConstraint(weld, maxForce=self.settings.weld_force, physicsClientId=client)
 
     def _note_contacts(self, log: Log) -> None:
-        for point in bullet.getContactPoints(self.robot.body, self.thing.body, physicsClientId=self.client):
+        for point in bullet.getContactPoints(self.robot.body, self.object.body, physicsClientId=self.client):
             depth = -point[8] - _MARGIN
             if depth > log.depth:
-                log.touch(self.robot.link_names[point[3]], self.thing.link_names[point[4]], depth)
+                log.touch(self.robot.link_names[point[3]], self.object.link_names[point[4]], depth)
 
 
 def _transform(position: tuple[float, ...], orientation: tuple[float, ...]) -> FloatArray:

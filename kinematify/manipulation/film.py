@@ -98,34 +98,34 @@ class _Stage:
         """Of the robot, the hand first, and of the object, the held part first."""
         loaded = self.loaded
         robot = _bodies(loaded.robot.kinematics, lambda link: _HAND if link in loaded.hand_links else _ARM)
-        root = loaded.thing.kinematics.root
-        thing = _bodies(
-            loaded.thing.kinematics,
+        root = loaded.object.kinematics.root
+        model = _bodies(
+            loaded.object.kinematics,
             lambda link: _HELD if link in loaded.held_links else _CARCASS if link == root else _OTHERS,
         )
         hand_first = sorted(robot, key=lambda mesh: mesh.link not in loaded.hand_links)
-        return tuple(hand_first), tuple(sorted(thing, key=lambda mesh: mesh.link not in loaded.held_links))
+        return tuple(hand_first), tuple(sorted(model, key=lambda mesh: mesh.link not in loaded.held_links))
 
     @cached_property
     def watched(self) -> int:
         """How many of the meshes of `scene` are the held part and the hand, which stand first."""
-        robot, thing = self.meshes
+        robot, model = self.meshes
         hand = sum(mesh.link in self.loaded.hand_links for mesh in robot)
-        return hand + sum(mesh.link in self.loaded.held_links for mesh in thing)
+        return hand + sum(mesh.link in self.loaded.held_links for mesh in model)
 
     def scene(self, frame: Frame) -> PictureScene:
         """Both models in one moment, what is watched first."""
         motion = self.loaded.motion
-        robot, thing = (
+        robot, model = (
             self._posed(description, meshes, values, T)
             for description, meshes, values, T in (
                 (self.loaded.robot.kinematics, self.meshes[0], frame.robot, motion.T_world_base),
-                (self.loaded.thing.kinematics, self.meshes[1], frame.thing, motion.T_world_object),
+                (self.loaded.object.kinematics, self.meshes[1], frame.object, motion.T_world_object),
             )
         )
         hand = sum(mesh.link in self.loaded.hand_links for mesh in self.meshes[0])
         held = self.watched - hand
-        return PictureScene(meshes=(*robot[:hand], *thing[:held], *robot[hand:], *thing[held:], *self.column))
+        return PictureScene(meshes=(*robot[:hand], *model[:held], *robot[hand:], *model[held:], *self.column))
 
     @cached_property
     def column(self) -> tuple[PosedMesh, ...]:

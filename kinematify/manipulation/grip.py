@@ -26,12 +26,12 @@ _THIN = 1e-3  # sheets are made so thick [m]
 
 
 def grip_piece(
-    thing: DeclaredModel, link: str, values: Mapping[str, float], grasp: Grasp, settings: ExecutionSettings
+    model: DeclaredModel, link: str, values: Mapping[str, float], grasp: Grasp, settings: ExecutionSettings
 ) -> tuple[FloatArray, IntArray]:
     """Cut out what lies between the pads and return its convex hull.
 
     Args:
-        thing: The object.
+        model: The object.
         link: Link in whose frame the grasp is stated.
         values: Leading joints of the object [rad or m].
         grasp: How it is held.
@@ -44,7 +44,7 @@ def grip_piece(
     high = np.array([0.5 * settings.pad_width, 0.5 * grasp.spread, 0.5 * settings.pad_length])
     low = -high
     back = np.asarray(np.linalg.inv(grasp.T_link_grasp), dtype=np.float64)
-    points = _clipped(_triangles(thing, link, grasp.held, values) @ back[:3, :3].T + back[:3, 3], low, high)
+    points = _clipped(_triangles(model, link, grasp.held, values) @ back[:3, :3].T + back[:3, 3], low, high)
     if not len(points):
         size = np.array([high[0], 0.5 * grasp.width, high[2]])
         points = size * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -52,13 +52,13 @@ def grip_piece(
     return transformed(vertices, grasp.T_link_grasp), faces
 
 
-def _triangles(thing: DeclaredModel, link: str, held: str, values: Mapping[str, float]) -> FloatArray:
+def _triangles(model: DeclaredModel, link: str, held: str, values: Mapping[str, float]) -> FloatArray:
     """Corners of all faces of the held body, frame of the link, shape (F, 3, 3)."""
-    poses = forward_kinematics(thing.kinematics, values)
-    group = next(group for group in rigid_groups(thing.kinematics) if held in group.links)
+    poses = forward_kinematics(model.kinematics, values)
+    group = next(group for group in rigid_groups(model.kinematics) if held in group.links)
     found = [np.empty((0, 3, 3))]
     for name in group.links:
-        declared = thing.link_by_name[name]
+        declared = model.link_by_name[name]
         T = np.linalg.inv(poses[link]) @ poses[name]
         for shape in declared.collisions or declared.visuals:
             found.append(transformed(shape.mesh.vertices, T)[shape.mesh.faces])

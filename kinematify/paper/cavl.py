@@ -107,8 +107,8 @@ def cavl_scene(
     contacts = {edge.a: edge.samples_a, edge.b: edge.samples_b}
     pairs = [(child, parent, 1.0), (parent, child, -1.0)]
     sides = [
-        _side(samples[own], contacts[own], field=fields(other), direction=way, diagonal=diagonal, config=config)
-        for own, other, way in (pairs if config.symmetric else pairs[:1])
+        _side(samples[own], contacts[own], field=fields(other), direction=direction, diagonal=diagonal, config=config)
+        for own, other, direction in (pairs if config.symmetric else pairs[:1])
     ]
     first, second = (_contact_or_all(contacts[own], samples[own], fields, other) for own, other, _ in pairs)
     region = ContactRegion(first=first, second=second, width=config.contact_width * diagonal)

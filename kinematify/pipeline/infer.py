@@ -20,7 +20,7 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.choice.compound import compounds, described
 from kinematify.joints.choice.decide import estimate_joints
 from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.joints.measure.edge_tests import held_pairs, leaf_pairs, passing_pairs
+from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, passing_pairs
 from kinematify.joints.measure.quality import edge_quality
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.model.build import build_model
@@ -201,14 +201,22 @@ def gather_evidence(
     bounds = {"angle": topology.stack_deg, "distance": topology.stack_distance * assembly.diagonal}
     carriers = coaxial_carriers(evidence, **bounds)
     contested = [pair for pair in on_cycles(graph.by_pair, graph.n_parts) if pair in lines]
-    doubtful = [pair for pair in contested if evidence[pair].quality < topology.held_quality or _are_twins(graph, pair)]
+    doubtful = [
+        pair for pair in contested if evidence[pair].quality < topology.journal_quality or _are_twins(graph, pair)
+    ]
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
-    held = held_pairs(cache, doubtful, config.joints)
+    journals = journal_pairs(cache, doubtful, config.joints)
     passing = passing_pairs(cache, {pair: lines[pair] for pair in carriers}, config.joints)
     triples = sorted({tuple(sorted((a, b, c))) for (a, b), found in carriers.items() for c in found})
-    leafed, skipping = leaf_pairs(cache, triples, lines, passing, config.joints)
+    adjacent, skipping = leaf_pairs(cache, triples, lines, passing, config.joints)
     return {
-        pair: replace(item, held=pair in held, passing=pair in passing, leafed=pair in leafed, skips=pair in skipping)
+        pair: replace(
+            item,
+            has_journal=pair in journals,
+            passing=pair in passing,
+            is_adjacent_leaf=pair in adjacent,
+            skips_leaf=pair in skipping,
+        )
         for pair, item in evidence.items()
     }
 

@@ -30,13 +30,13 @@ class EdgeEvidence:
     """A point on its line in the world frame [m], shape (3,); None where there is none. Read-only."""
     turns: bool = True
     """True for a revolute joint, False for a prismatic one."""
-    held: bool = False
+    has_journal: bool = False
     """One part holds the other all around a line, beyond doubt; asked only where the tree depends on it."""
     passing: bool = False
     """One part turns past the other about the line, all around; asked of coaxial parts only."""
-    leafed: bool = False
+    is_adjacent_leaf: bool = False
     """Both are leaves on one pin, next to each other, and cannot pass each other."""
-    skips: bool = False
+    skips_leaf: bool = False
     """Both are leaves on one pin, and a third one lies between them."""
 
     def __post_init__(self) -> None:

@@ -33,11 +33,11 @@ def effective_quality(
         config: `proximity_weight` of the tie-break, `cluster_penalty` and `decisive_ratio` of the soft penalty.
     """
     quality = {pair: _quality_with_tie_break(graph, evidence, pair, config.proximity_weight) for pair in graph.by_pair}
-    held = {pair for pair, item in evidence.items() if item.held}
-    quality |= {pair: max(quality[pair], config.held_quality) for pair in held}
-    quality |= {pair: quality[pair] * config.skip_penalty for pair, item in evidence.items() if item.skips}
+    journals = {pair for pair, item in evidence.items() if item.has_journal}
+    quality |= {pair: max(quality[pair], config.journal_quality) for pair in journals}
+    quality |= {pair: quality[pair] * config.skip_penalty for pair, item in evidence.items() if item.skips_leaf}
     label = graph.cluster_of
-    kept = held | {pair for pair, item in evidence.items() if item.leafed}
+    kept = journals | {pair for pair, item in evidence.items() if item.is_adjacent_leaf}
     inside = [(a, b) for a, b in quality if label[a] >= 0 and label[a] == label[b] and (a, b) not in kept]
     weakened = {**quality, **{pair: quality[pair] * config.cluster_penalty for pair in inside}}
     result = dict(weakened)

@@ -252,7 +252,7 @@ class TreeReward:
 
     def _elsewhere(self, base: int, a: int, b: int, value: float) -> bool:
         """Whether two parts, one of which touches the base link, show no joint between them."""
-        return base not in (a, b) and value < self.config.held_quality and bool(self.touches[base, [a, b]].any())
+        return base not in (a, b) and value < self.config.journal_quality and bool(self.touches[base, [a, b]].any())
 
     def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
         """Value of every term in [0, 1]; the paper's R_sym is halved here and its weight doubled in `total`.
@@ -279,7 +279,7 @@ class TreeReward:
         }
         if not self.is_paper:
             found["stack"] = side_by_side(tree, self.stacks)
-            found["direct"] = on_the_base(tree, self.touches, self.edge_weights >= self.config.held_quality)
+            found["direct"] = on_the_base(tree, self.touches, self.edge_weights >= self.config.journal_quality)
         return found if self.simulated is None else {**found, "sim": self._survived(tree)}
 
     def _survived(self, tree: TreeLayout) -> float:

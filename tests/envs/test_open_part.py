@@ -171,7 +171,7 @@ def test_reset_options() -> None:
     observation, info = env.reset(seed=0, options={"joint": "door_1_joint", "qpos": {"drawer_1_joint": 0.1}})
     assert info["joint"] == "door_1_joint"
     assert info["open_fraction"] == pytest.approx(0.0)
-    assert observation[1] == pytest.approx(0.1 / env.thing.travels[1].upper)
+    assert observation[1] == pytest.approx(0.1 / env.articulated_object.travels[1].upper)
     _, info = env.reset(seed=0)
     assert info["joint"] == "drawer_1_joint"
     for options, words in (

@@ -15,19 +15,19 @@ Y = np.array([0.0, 1.0, 0.0])
 
 
 def lid_range(angle: float, axis: np.ndarray) -> tuple[float, float]:
-    """Range of the screen of a laptop that stands open by `angle` [rad], in the sense of `axis`."""
+    """Range of the screen of a laptop that stands open by `angle` [rad], in the direction of `axis`."""
     solids = {"base": box((0, -0.15, 0), (0.2, 0.15, 0.02)), "screen": box((0, -0.15, 0.0202), (0.2, 0.15, 0.03))}
     joint = turning("base", "screen", -Y, (0, 0, 0.0201), (0, 2.4))
     scene = scene_of(moved(known_object("laptop", solids, joint), {"screen": angle}), "screen")
     found = find_range(scene, JointType.REVOLUTE, axis, np.array([0.0, 0.0, 0.0201]), CONFIG.joints)
-    # Back into the sense of the true joint, whose positive direction opens.
+    # Back into the direction of the true joint, whose positive direction opens.
     return (found.lower, found.upper) if found.sign * float(axis @ -Y) > 0 else (-found.upper, -found.lower)
 
 
 @pytest.mark.parametrize("angle", [0.8, np.pi / 2, 1.9, 2.3])
-@pytest.mark.parametrize("sense", [-1.0, 1.0])
-def test_a_lid_that_stands_open_closes_by_as_much(angle: float, sense: float) -> None:
-    lower, upper = lid_range(angle, sense * Y)
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_lid_that_stands_open_closes_by_as_much(angle: float, sign: float) -> None:
+    lower, upper = lid_range(angle, sign * Y)
     assert lower == pytest.approx(-angle, abs=0.1)
     assert 0.0 <= upper < np.pi - angle
 

@@ -13,7 +13,7 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.hypotheses.bearing_line import BearingLine
-from kinematify.joints.measure.edge_tests import held_pairs, leaf_pairs, middle_leaf, passing_pairs
+from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, middle_leaf, passing_pairs
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.pipeline.infer import infer
 from tests.joint_scenes import evidence
@@ -84,7 +84,7 @@ def test_doors_side_by_side_do_not_hold_each_other() -> None:
     _, graph, _ = evidence(known)
     cache = PartCache(known.assembly, graph, samples=500, seed=0)
     assert (1, 2) in graph.by_pair
-    assert held_pairs(cache, graph.by_pair, CONFIG.joints) == frozenset()
+    assert journal_pairs(cache, graph.by_pair, CONFIG.joints) == frozenset()
 
 
 def leaves(*angles: float) -> KnownObject:

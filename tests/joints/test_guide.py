@@ -72,8 +72,8 @@ def test_a_telescope_leaves_its_tube_evenly_and_keeps_some_of_it() -> None:
 
 def test_a_carriage_goes_to_the_ends_of_its_rail() -> None:
     scene = carriage()
-    for way in (X, -X):
-        assert guided_travel(scene, way, CONFIG.joints) == pytest.approx(0.27, abs=0.03)
+    for direction in (X, -X):
+        assert guided_travel(scene, direction, CONFIG.joints) == pytest.approx(0.27, abs=0.03)
 
 
 def test_parts_that_do_not_touch_have_no_guide() -> None:

@@ -88,8 +88,8 @@ def test_a_block_on_two_ropes_slides_and_a_short_one_on_a_pin_turns(ropes: tuple
     assert (decide_kind(scene, alone, turns, slid, CONFIG.joints).cues["keyed"] == 1.0) is slides
 
 
-@pytest.mark.parametrize(("score", "rounded"), [(0.005, False), (0.05, True)])
-def test_a_finger_whose_rail_has_faded_is_hinged_only_if_its_contact_is_round(score: float, rounded: bool) -> None:
+@pytest.mark.parametrize(("score", "is_round"), [(0.005, False), (0.05, True)])
+def test_a_finger_whose_rail_has_faded_is_hinged_only_if_its_contact_is_round(score: float, is_round: bool) -> None:
     known = parallel_gripper()
     tree, graph, bearings = evidence(known)
     cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
@@ -99,7 +99,7 @@ def test_a_finger_whose_rail_has_faded_is_hinged_only_if_its_contact_is_round(sc
     assert found.rail is not None
     faded = replace(found, lines=(replace(found.lines[0], score=score),), rail=replace(found.rail, score=1e-4))
     scene = joint_scene(cache, tree, frames, edge, faded, config=CONFIG.joints)
-    assert scene.rounded is rounded
+    assert scene.is_round is is_round
 
 
 @pytest.mark.parametrize(("lead", "slides"), [(2.0, False), (4.6, True)])
@@ -112,14 +112,14 @@ def test_a_rail_that_leads_the_best_line_fourfold_guides(lead: float, slides: bo
     assert found.rail is not None
     rough = replace(found, lines=(replace(found.lines[0], score=found.rail.score / lead),))
     scene = joint_scene(cache, tree, part_frames(cache, tree, CONFIG.joints), edge, rough, config=CONFIG.joints)
-    assert (scene.railed == 1.0) == slides
+    assert (scene.prismatic_score == 1.0) == slides
 
 
 @pytest.mark.parametrize(("turn", "travel", "guides"), [(3.0, 0.25, False), (3.0, 1.0, True), (0.1, 0.25, True)])
 def test_a_rail_along_which_little_moves_guides_only_what_cannot_turn(turn: float, travel: float, guides: bool) -> None:
     known = BUILDERS["square_lift"]()
     scene = replace(scene_of(known, known.joints[0].child), mechanism=1.0)
-    assert scene.railed == 1.0
+    assert scene.prismatic_score == 1.0
     turns, slides = rank_turns(scene, CONFIG.joints), rank_slides(scene, np.empty((0, 3)), CONFIG.joints)
     turns = replace(turns, free_parent=np.full_like(turns.free_parent, turn))
     slides = replace(slides, cues={**slides.cues, "travel_parent": np.full(len(slides.axes), travel)})

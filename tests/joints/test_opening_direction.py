@@ -7,7 +7,7 @@ import pytest
 
 from kinematify.generate.procedural.pieces.bearings import fork
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.measure.opening_direction import clockwise_sense, swing_sense
+from kinematify.joints.measure.opening_direction import clockwise_sign, swing_sign
 from tests.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 
@@ -46,7 +46,7 @@ def test_mirrored_limbs_swing_outwards(side: float) -> None:
         joints.append(turning("trunk", name, X, (0, y, 0.5), (-0.5, 0.5)))
     name, y = ("left", 0.15) if side > 0 else ("right", -0.15)
     scene = scene_of(known_object("legs", solids, *joints), name)
-    outwards = swing_sense(scene, X, np.array([0.0, y, 0.5]))
+    outwards = swing_sign(scene, X, np.array([0.0, y, 0.5]))
     # About +x a leg that hangs swings towards +y.
     assert outwards == side
 
@@ -65,5 +65,5 @@ def test_a_knob_on_the_foot_of_a_machine_turns_up_clockwise() -> None:
         joints.append(turning(above, f"link_{k}", Z, (0, 0.061 + 0.05 * k, 0.5), (-1, 1)))
     scene = scene_of(known_object("lamp", solids, *joints), "knob")
     assert scene.serial
-    assert clockwise_sense(scene, -Z) > 0.0
-    assert clockwise_sense(scene, Z) < 0.0
+    assert clockwise_sign(scene, -Z) > 0.0
+    assert clockwise_sign(scene, Z) < 0.0

@@ -88,7 +88,7 @@ def weak_evidence(*axes_and_scores: tuple[tuple[float, float, float], float]) ->
     assert scene.bearing is not None
     best = scene.bearing.lines[0]
     lines = tuple(replace(best, axis=np.asarray(axis), score=score) for axis, score in axes_and_scores)
-    weak = replace(scene, gated=False, bearing=replace(scene.bearing, lines=lines))
+    weak = replace(scene, has_bearing=False, bearing=replace(scene.bearing, lines=lines))
     return rank_turns(weak, CONFIG.joints)
 
 
@@ -119,7 +119,7 @@ def test_no_cue_exceeds_the_cap() -> None:
     assert set(ranked.cues) == set(weights)
     total = sum(np.clip(weights[name] * value, -cap, cap) for name, value in ranked.cues.items())
     bonus = CONFIG.joints.panels.bearing_bonus * np.array([source == "bearing" for source in ranked.lines.sources])
-    np.testing.assert_allclose(ranked.scores, total + bonus * scene.gated, atol=1e-9)
+    np.testing.assert_allclose(ranked.scores, total + bonus * scene.has_bearing, atol=1e-9)
 
 
 def test_thick_high_doors_side_by_side_are_hinged_at_their_outer_edges() -> None:

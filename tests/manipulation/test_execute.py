@@ -136,7 +136,7 @@ def test_pads_press_on_what_lies_between_them(drawer: tuple[Loaded, Path]) -> No
     """A bar that is 12 mm thick; the piece is cut to the size of the pads."""
     loaded = drawer[0]
     grasp = loaded.motion.grasp
-    vertices, faces = grip_piece(loaded.thing, loaded.held, {"slide": 0.0}, grasp, EXECUTION)
+    vertices, faces = grip_piece(loaded.object, loaded.held, {"slide": 0.0}, grasp, EXECUTION)
     local = (vertices - grasp.T_link_grasp[:3, 3]) @ grasp.T_link_grasp[:3, :3]
     assert np.ptp(local[:, 1]) == pytest.approx(grasp.width, abs=1e-4)
     assert np.ptp(local[:, 0]) == pytest.approx(EXECUTION.pad_width, abs=1e-4)

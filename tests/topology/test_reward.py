@@ -132,9 +132,9 @@ def test_an_edge_that_a_pin_holds_is_not_weakened() -> None:
     """The leaves of a folding door: congruent, both beside the frame, and one on the other by its barrels."""
     graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0}, [(1, 2)])
     fits = {(0, 1): 0.6, (0, 2): 0.4, (1, 2): 0.3}
-    evidence = {key: EdgeEvidence(quality=value, axis=None, held=key == (1, 2)) for key, value in fits.items()}
+    evidence = {key: EdgeEvidence(quality=value, axis=None, has_journal=key == (1, 2)) for key, value in fits.items()}
     weights = effective_quality(graph, evidence, CONFIG)
-    assert weights[1, 2] == pytest.approx(CONFIG.held_quality)
+    assert weights[1, 2] == pytest.approx(CONFIG.journal_quality)
     assert maximum_spanning_edges(weights, 3) == ((0, 1), (1, 2))
 
 

@@ -30,7 +30,7 @@ Pair = tuple[int, int]
 
 @dataclass(frozen=True, kw_only=True)
 class DeclaredTree:
-    """Which body carries which, as the file says; body i is part i of the assembly (`joints.rooted.RootedTree`)."""
+    """Which body carries which, as the file says; body i is part i of the assembly (a `RootedTree`)."""
 
     parents: tuple[int, ...]
     """Parent of every body; -1 for the root."""

@@ -224,7 +224,7 @@ def _supported(case: _Case) -> bool:
 def _contradicted(case: _Case) -> bool:
     """Both bodies are beyond doubt round about another line."""
     own = max(case.measures.own_bearing, 1e-4)
-    return case.measures.weighed.scene.gated and case.measures.bearing > case.settings.bearing_lead * own
+    return case.measures.weighed.scene.has_bearing and case.measures.bearing > case.settings.bearing_lead * own
 
 
 def _blocked(case: _Case) -> float:
@@ -266,7 +266,7 @@ def _type_open(case: _Case) -> bool:
     if not case.linkage or not case.measures.slides:
         return True
     better = case.measures.line.deficit > case.settings.better_slide
-    return better or case.measures.weighed.scene.gated or _blocked(case) > case.settings.blocked
+    return better or case.measures.weighed.scene.has_bearing or _blocked(case) > case.settings.blocked
 
 
 def _opening(case: _Case) -> Doubt | None:

@@ -132,8 +132,8 @@ class _Setting:
     @cached_property
     def worlds(self) -> list[Loaded]:
         """What the engines load, for each plan that leads anywhere."""
-        thing = self.request.work / OBJECT_FILE
-        found = [motion_of(plan, self.arm.robot, thing) for plan in self.plans]
+        model = self.request.work / OBJECT_FILE
+        found = [motion_of(plan, self.arm.robot, model) for plan in self.plans]
         motions = [motion for motion in found if motion is not None]
         if not motions:
             return []
@@ -178,19 +178,19 @@ class _Setting:
         return film
 
 
-def motion_of(plan: PullPlan, robot: TaskRobot, thing: Path) -> Motion | None:
+def motion_of(plan: PullPlan, robot: TaskRobot, model: Path) -> Motion | None:
     """Return what the engines are to track; None where the plan leads nowhere.
 
     Args:
         plan: The plan.
         robot: Its robot.
-        thing: URDF of the object at its real size.
+        model: URDF of the object at its real size.
     """
     if plan.pull is None or plan.reach is None or plan.opened is None or plan.place is None or len(plan.pull) < 2:
         return None
     return Motion(
         robot=robot,
-        object_urdf=thing,
+        object_urdf=model,
         T_world_base=plan.place.T_world_base,
         T_world_object=plan.T_world_object,
         joint=plan.joint,

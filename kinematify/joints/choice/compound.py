@@ -164,26 +164,26 @@ def _closes(assembly: Assembly, joint: JointEstimate, config: CompoundConfig) ->
     cap, body = assembly.parts[joint.child], assembly.parts[joint.parent]
     across = across_axis(joint.axis)
     aside = float(np.linalg.norm(across @ (body.centroid - joint.pivot)))
-    for way in (joint.axis, -joint.axis):
-        end = float(((body.vertices - joint.pivot) @ way).max())
-        height = (cap.vertices - joint.pivot) @ way
+    for direction in (joint.axis, -joint.axis):
+        end = float(((body.vertices - joint.pivot) @ direction).max())
+        height = (cap.vertices - joint.pivot) @ direction
         rim = cap.vertices[height < end]
-        neck = body.vertices[(body.vertices - joint.pivot) @ way > height.min()]
+        neck = body.vertices[(body.vertices - joint.pivot) @ direction > height.min()]
         if len(rim) == 0 or len(neck) == 0 or height.max() <= end:
             continue
         inner, outer = (np.linalg.norm((points - joint.pivot) @ across.T, axis=1).max() for points in (neck, rim))
-        if outer > inner and aside < config.coaxial * inner and _on_the_line(cap, joint, way, end):
+        if outer > inner and aside < config.coaxial * inner and _on_the_line(cap, joint, direction, end):
             return True
     return False
 
 
-def _on_the_line(part: Part, joint: JointEstimate, way: FloatArray, beyond: float) -> bool:
-    """True if the joint's line meets a part farther along `way` than `beyond` [m]."""
+def _on_the_line(part: Part, joint: JointEstimate, direction: FloatArray, beyond: float) -> bool:
+    """True if the joint's line meets a part farther along `direction` than `beyond` [m]."""
     corners = part.vertices[part.faces] - joint.pivot
     flat = corners @ across_axis(joint.axis).T
     turns = np.stack([_cross(flat[:, k], flat[:, (k + 1) % 3]) for k in range(3)])
     met = (turns >= 0).all(axis=0) | (turns <= 0).all(axis=0)
-    return bool(met.any() and ((corners[met] @ way).max(axis=1) > beyond).any())
+    return bool(met.any() and ((corners[met] @ direction).max(axis=1) > beyond).any())
 
 
 def _cross(one: FloatArray, other: FloatArray) -> FloatArray:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from kinematify.joints.hypotheses.line import Line
     from kinematify.joints.hypotheses.panels import RankedTurns
     from kinematify.joints.hypotheses.slides import RankedSlides
-    from kinematify.joints.measure.rooted import RootedTree
     from kinematify.joints.measure.scene import JointScene
+    from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray
 
 
@@ -85,7 +85,7 @@ def _estimate(
         evidence={
             **decision.cues,
             "odds_prismatic": decision.odds,
-            "bearing_gate": float(scene.gated),
+            "bearing_gate": float(scene.has_bearing),
             "smallness": scene.smallness,
             "mechanism": scene.mechanism,
             "free_forward": found.free_forward,
@@ -177,7 +177,7 @@ def _gripping(scene: JointScene, tree: RootedTree, twin: BoxFrame) -> bool:
     chain_end = (tree.depths[scene.child] >= 2 and scene.smallness < 1.0) or facing  # buttons of a door are no fingers
     stands_out = scene.inside < 0.8
     apart = float(np.linalg.norm(twin.centre - scene.centre)) < 2.0 * float(scene.parent_frame.extents.max())
-    return bool(chain_end and stands_out and apart and not scene.gated and not scene.rounded)
+    return bool(chain_end and stands_out and apart and not scene.has_bearing and not scene.is_round)
 
 
 def _overlapping(scene: JointScene, twin: BoxFrame) -> bool:
@@ -222,7 +222,7 @@ def _confidence(weighed: WeighedJoints, config: ConfidenceConfig) -> float:
     margin = float(scores[0] - scores[other].max()) if other.any() else np.inf
     direction = 1.0 / (1.0 + np.exp(-2.0 * margin - 0.5))
     kind = 1.0 / (1.0 + np.exp(-config.kind_slope * abs(decision.odds)))
-    unborne = decision.kind is JointType.REVOLUTE and scene.mechanism > 0.5 and not scene.gated
+    unborne = decision.kind is JointType.REVOLUTE and scene.mechanism > 0.5 and not scene.has_bearing
     return float(direction * kind * (config.without_bearing if unborne else 1.0))
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematify.joints.candidate import JointType
 from kinematify.joints.hypotheses.frames import UP
-from kinematify.joints.measure.clearance import contact_play
+from kinematify.joints.measure.clearance import contact_clearance
 from kinematify.joints.measure.scene import eccentricity, is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides, sweep_turns
 
@@ -66,7 +66,7 @@ def decide_kind(
         **_room_cues(scene, turns, slides, config),
         **_shape_cues(scene, turns),
         **_twin_cues(scene, siblings),
-        **_play_cues(scene, turns, slides, config),
+        **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
     cues["panel"] *= 1.0 - max(
@@ -81,7 +81,7 @@ def decide_kind(
     hinged = float(scene.journal is not None and abs(float(scene.journal.axis @ slides.axes[0])) < 0.5)
     for pulled in ("drawer", "box_pulled", "box_inside", "tray", "round_lid"):
         cues[pulled] *= 1.0 - hinged  # hinges hold it, whatever it looks like
-    whirls = float(scene.gated and turns.free_parent[0].min() >= np.radians(89.0))
+    whirls = float(scene.has_bearing and turns.free_parent[0].min() >= np.radians(89.0))
     for box in ("drawer", "box_inside"):
         cues[box] *= 1.0 - whirls  # no drawer turns on a shaft
     if scene.journal is not None and abs(float(scene.journal.axis @ UP)) < config.upright_cosine:
@@ -89,8 +89,8 @@ def decide_kind(
     cues["row"] *= 1.0 - _shafted(scene) * (1.0 - cues["keyed"])  # knobs stand in rows, too
     cues["retained"] *= 1.0 - cues["capped"]
     cues["round_lid"] *= 1.0 - cues["retained"]  # what holds it down is turned first
-    for held in ("keyed", "button", "flat_cap", "drawer", "box_inside", "row"):
-        cues[held] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
+    for boxed in ("keyed", "button", "flat_cap", "drawer", "box_inside", "row"):
+        cues[boxed] *= 1.0 - cues["rocker"]  # its pins are seldom seen, and its pocket is that of a button
     for round_thing in ("bearing", "mechanism", "round_small", "wheel"):
         cues[round_thing] *= 1.0 - max(cues["keyed"], cues["telescope"])  # what is round but keyed is guided
     plunger = scene.smallness * _plunger(scene, slides, config)
@@ -114,47 +114,57 @@ def _held_rail(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     rail = scene.bearing.rail.axis
     along = bool(scene.bearing.lines) and abs(float(scene.bearing.lines[0].axis @ rail)) > 0.95
     turn = float(np.degrees(turns.free_parent[0].max()))
-    if along and turn > config.rails.held_deg:
+    if along and turn > config.rails.pin_deg:
         return 0.0
     travel = float(slides.cues["travel_parent"][np.abs(slides.axes @ rail) > 0.99].max(initial=0.0))
     loose = turn > config.panels.full_turn_deg and travel < config.rails.least_travel
-    return 0.0 if loose else scene.railed
+    return 0.0 if loose else scene.prismatic_score
 
 
-def _play_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
+def _clearance_cues(
+    scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig
+) -> dict[str, float]:
     """What the contact itself lets go: a key, skirt or groove stops turning, a bead, barrel or fork stops sliding."""
     few = _near_best(scene, turns, config)
-    play = contact_play(scene, turns.lines.axes[few], turns.lines.pivots[few], slides.axes[0], config)
-    if play is None:
+    clearance = contact_clearance(scene, turns.lines.axes[few], turns.lines.pivots[few], slides.axes[0], config)
+    if clearance is None:
         return {"keyed": 0.0, "retained": 0.0}
-    least = config.play.least * scene.frame.diagonal
+    least = config.clearance.least * scene.frame.diagonal
     # Round buttons are stopped early both ways; what else is stopped both ways rather overlaps its parent.
-    guided = scene.gated or np.isinf(play.slide)
+    guided = scene.has_bearing or np.isinf(clearance.slide)
     if scene.serial:
         # Links of machines overlap where they meet; guided are rods in bores that cannot turn as a whole either, and
         # what is extruded along its slide, nowhere round, and stopped within its clearance.
-        held = float(turns.free_parent[0].max()) < np.radians(config.rails.held_deg)
-        guided = held if scene.gated else _extruded(scene, slides.axes[0], config) and play.turn < 2.0 * least
+        blocked = float(turns.free_parent[0].max()) < np.radians(config.rails.pin_deg)
+        guided = (
+            blocked if scene.has_bearing else _extruded(scene, slides.axes[0], config) and clearance.turn < 2.0 * least
+        )
     return {
-        "keyed": float(_two_bores(scene, turns, config) or (guided and play.slides_only(least, config.play.ratio))),
-        "retained": float(play.turns_only(least, config.play.ratio))
-        * (1.0 - scene.smallness * (not scene.gated))
+        "keyed": float(
+            _two_bores(scene, turns, config) or (guided and clearance.slides_only(least, config.clearance.ratio))
+        ),
+        "retained": float(clearance.turns_only(least, config.clearance.ratio))
+        * (1.0 - scene.smallness * (not scene.has_bearing))
         * (not scene.serial),
     }
 
 
-def _extruded(scene: JointScene, way: FloatArray, config: JointsConfig) -> bool:
+def _extruded(scene: JointScene, direction: FloatArray, config: JointsConfig) -> bool:
     """Whether the contact's rail runs along a direction and leads its best line by as much as that of any slide."""
     rail = None if scene.bearing is None else scene.bearing.rail
-    return rail is not None and abs(float(rail.axis @ way)) > 0.99 and scene.lead > config.rails.lead_full
+    return rail is not None and abs(float(rail.axis @ direction)) > 0.99 and scene.rail_lead > config.rails.lead_full
 
 
 def _two_bores(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> bool:
     """Whether the child runs on two equal bars side by side: it would turn about either, if it were not for the other.
 
-    Play does not see that: bars are thin, and stop few samples.
+    Clearance does not see that: bars are thin, and stop few samples.
     """
-    if not scene.gated or scene.bearing is None or float(turns.free_parent[0].max()) > np.radians(config.kind.bars_deg):
+    if (
+        not scene.has_bearing
+        or scene.bearing is None
+        or float(turns.free_parent[0].max()) > np.radians(config.kind.bars_deg)
+    ):
         return False
     first, *others = scene.bearing.lines
     for line in others:
@@ -192,7 +202,7 @@ def _shaft(scene: JointScene) -> tuple[FloatArray, FloatArray, float] | None:
     """Axis, a point and the radius of what is round about the best line within the contact; None where nothing is."""
     if scene.journal is not None:
         return scene.journal.axis, scene.journal.pivot, scene.journal.radius
-    if not scene.gated or scene.bearing is None or len(scene.contact.points) == 0:
+    if not scene.has_bearing or scene.bearing is None or len(scene.contact.points) == 0:
         return None
     line = scene.bearing.lines[0]
     offset = scene.contact.points - line.pivot
@@ -205,13 +215,13 @@ def _shaft(scene: JointScene) -> tuple[FloatArray, FloatArray, float] | None:
 
 def _near_best(scene: JointScene, turns: RankedTurns, config: JointsConfig) -> IntArray:
     """The best line, and where it is no bearing the next ones along the same edge, which may fit the hinge better."""
-    if scene.gated:
+    if scene.has_bearing:
         return np.zeros(1, dtype=np.int64)
-    axes, pivots = turns.lines.axes[: config.play.candidates], turns.lines.pivots[: config.play.candidates]
+    axes, pivots = turns.lines.axes[: config.clearance.candidates], turns.lines.pivots[: config.clearance.candidates]
     offset = pivots - pivots[0]
     apart = np.linalg.norm(np.cross(offset, axes[0]), axis=1)
-    same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.play.edge * scene.frame.diagonal)
-    return np.flatnonzero(same)[: config.play.lines]
+    same = (np.abs(axes @ axes[0]) > np.cos(np.radians(5.0))) & (apart < config.clearance.edge * scene.frame.diagonal)
+    return np.flatnonzero(same)[: config.clearance.lines]
 
 
 def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> dict[str, float]:
@@ -231,10 +241,13 @@ def _room_cues(scene: JointScene, turns: RankedTurns, slides: RankedSlides, conf
     blocked = float(np.clip(1.0 - turn_room, 0.0, 1.0)) * float(travel.max() > 0.3)
     return {
         "drawer": furniture * box * level * scene.inside * max(one_way, channel),
-        "box_pulled": furniture * deep * level * float(not scene.plate and not scene.gated and travel.max() > 0.5),
+        "box_pulled": furniture
+        * deep
+        * level
+        * float(not scene.plate and not scene.has_bearing and travel.max() > 0.5),
         "box_inside": furniture * box * scene.inside,
         "blocked_turn": large * blocked,
-        "guided": float(scene.gated) * _guided(scene, slides),
+        "guided": float(scene.has_bearing) * _guided(scene, slides),
         "carriage": furniture * _carriage(scene, slides, config),
         "telescope": large * _telescope(scene, slides, config),
     }
@@ -257,7 +270,7 @@ def _telescope(scene: JointScene, slides: RankedSlides, config: JointsConfig) ->
     Bearings of what turns are about as long as wide, and hinges carry their part on one side.
     """
     axis, free = slides.axes[0], slides.free_parent[0]
-    if not scene.gated or scene.bearing is None or len(scene.contact.points) == 0:
+    if not scene.has_bearing or scene.bearing is None or len(scene.contact.points) == 0:
         return 0.0
     line = scene.bearing.lines[0]
     if abs(float(axis @ line.axis)) < 0.99 or eccentricity(scene, line.axis, line.pivot) > config.limits.even:
@@ -298,9 +311,9 @@ def _guided(scene: JointScene, slides: RankedSlides) -> float:
     along = scene.bearing is not None and abs(float(axis @ scene.bearing.lines[0].axis)) > 0.99
     if not along or free.max() * scene.diagonal < 0.5 * length:
         return 0.0
-    way = axis if free[0] >= free[1] else -axis
+    direction = axis if free[0] >= free[1] else -axis
     before = scene.cache.distances(scene.parent, scene.contact.points)
-    after = scene.cache.distances(scene.parent, scene.contact.points + 0.5 * length * way)
+    after = scene.cache.distances(scene.parent, scene.contact.points + 0.5 * length * direction)
     return float(np.mean(after < before + 0.002 * scene.diagonal) > 0.6)
 
 
@@ -326,15 +339,15 @@ def _shape_cues(scene: JointScene, turns: RankedTurns) -> dict[str, float]:
         * float(scene.panel and not tray and not (top and scene.disc > 0.5)),
         "tray": float(tray and scene.journal is None),
         "turntable": float(scene.panel and scene.flat and scene.disc > 0.5 and not top),
-        "bearing": large * float(scene.gated and not top),
+        "bearing": large * float(scene.has_bearing and not top),
         "mechanism": scene.mechanism * large,
-        "button": scene.smallness * float(not scene.gated) * (1.0 - scene.compact) * (1.0 - edge),
+        "button": scene.smallness * float(not scene.has_bearing) * (1.0 - scene.compact) * (1.0 - edge),
         "edge_contact": edge,
         "wheel": float(scene.rolls),
-        "rocker": float(scene.fold is not None and not scene.gated),
-        "pedal": float(scene.trodden.any()),
+        "rocker": float(scene.fold is not None and not scene.has_bearing),
+        "pedal": float(scene.pedal_direction.any()),
         "round_small": scene.smallness * scene.disc * float(squat > 0.3),
-        "flat_cap": scene.smallness * float(squat < 0.3 and not scene.gated),
+        "flat_cap": scene.smallness * float(squat < 0.3 and not scene.has_bearing),
         "round_lid": large * (1.0 - scene.mechanism) * float(top and scene.flat and scene.disc > 0.5),
         "capped": large * float(is_cap(scene)),
         "latch": scene.smallness * float(_bridges_a_seam(scene)),
@@ -372,7 +385,7 @@ def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: 
     slide = _slide_room(scene, slides.free_parent * scene.diagonal)
     turn = float(turns.free_parent[: config.kind.stuck_candidates].max())
     limit = np.radians(config.kind.stuck_deg)
-    if scene.gated or turn > little * limit or slide > little * config.kind.stuck_slide:
+    if scene.has_bearing or turn > little * limit or slide > little * config.kind.stuck_slide:
         return False
     strict = config.sweep.model_copy(update={"grace": 0.0})
     points = moving_points(scene.cache, scene.child, strict)

@@ -15,7 +15,7 @@ from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.joint_range import Range
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.closing import closing_turns
-from kinematify.joints.measure.opening_direction import clockwise_sense, neutral_sense, swing_sense, turn_sense
+from kinematify.joints.measure.opening_direction import clockwise_sign, neutral_sign, swing_sign, turn_sign
 from kinematify.joints.measure.scene import eccentricity
 from kinematify.joints.measure.sweep import moving_points, sweep_turns
 from kinematify.joints.measure.travel import slide_range
@@ -48,7 +48,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     if free.min() >= np.pi and _turns_freely(scene, axis, pivot, config):
         return Range(
             kind=JointType.CONTINUOUS,
-            sign=clockwise_sense(scene, axis),
+            sign=clockwise_sign(scene, axis),
             lower=-np.inf,
             upper=np.inf,
             free_forward=np.pi,
@@ -56,21 +56,21 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
         )
     if scene.fold is not None and abs(float(axis @ scene.fold.axis)) > np.cos(np.radians(config.limits.square_deg)):
         return _rocker_range(scene, axis, free, config)
-    if scene.trodden.any() and abs(float(axis @ UP)) < 0.1:
+    if scene.pedal_direction.any() and abs(float(axis @ UP)) < 0.1:
         return _pedal_range(scene, axis, pivot, free, config)
     furniture = scene.mechanism <= 0.5
     if furniture and scene.panel:
         return _panel_range(scene, axis, pivot, free, config)
     if (
         not scene.serial
-        and scene.gated
+        and scene.has_bearing
         and free.min() > np.radians(config.limits.unstopped_deg)
         and _is_lever(scene, axis, config)
     ):
         return _lever_range(scene, axis, free, config)
-    sign = turn_sense(scene, axis, pivot, free, config)
+    sign = turn_sign(scene, axis, pivot, free, config)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
-    if scene.gated or not furniture:
+    if scene.has_bearing or not furniture:
         lower, upper = -float(backward), _from_stop(scene, float(forward), float(backward), config)
     else:
         lower = -float(backward) if backward < np.radians(config.limits.least_deg) else 0.0
@@ -98,7 +98,7 @@ def _from_stop(scene: JointScene, forward: float, backward: float, config: Joint
     if backward < np.radians(limits.stopped_deg):
         return float(min(forward, np.radians(limits.panel_deg)))
     unstopped = forward >= np.pi and backward < np.radians(limits.panel_deg)
-    pinned = scene.gated and not scene.parent_moves
+    pinned = scene.has_bearing and not scene.parent_moves
     return float(np.radians(limits.panel_deg)) - backward if unstopped and pinned else forward
 
 
@@ -126,7 +126,7 @@ def _rocker_range(scene: JointScene, axis: FloatArray, free: FloatArray, config:
     turns = np.zeros(2) if fold is None else fold.turns_level(face) * np.copysign(1.0, float(fold.axis @ axis))
     reach = np.array([max(float(turns.max()), 0.0), max(-float(turns.min()), 0.0)])
     reach = np.minimum(reach, np.maximum(free, np.radians(config.limits.least_deg)))
-    sign = neutral_sense(scene, axis) if np.ptp(reach) < 0.1 * reach.max() else float(np.sign(reach[0] - reach[1]))
+    sign = neutral_sign(scene, axis) if np.ptp(reach) < 0.1 * reach.max() else float(np.sign(reach[0] - reach[1]))
     forward, backward = (reach[0], reach[1]) if sign > 0 else (reach[1], reach[0])
     return _range(sign, -float(backward), float(forward), free, config)
 
@@ -148,12 +148,12 @@ def _panel_range(
 ) -> Range:
     """A door or lid: it opens away from where it lies on its body, to a right angle beyond that place."""
     limits = config.limits
-    if free.max() < np.radians(limits.held_deg):
+    if free.max() < np.radians(limits.blocked_deg):
         # Something lies on it or stands before it, which is moved away first (a lid on a seat).
         free = _free_turn(scene, axis, pivot, (scene.parent,), config)
     closing = closing_turns(scene, axis, pivot, free, config)
     if len(closing) == 2:
-        sign = turn_sense(scene, axis, pivot, free, config)
+        sign = turn_sign(scene, axis, pivot, free, config)
         either = np.minimum(free, np.radians(limits.panel_deg))
         forward, backward = (either[0], either[1]) if sign > 0 else (either[1], either[0])
         return _range(sign, -float(backward), float(forward), free, config)
@@ -161,9 +161,9 @@ def _panel_range(
         sign, ajar = -float(np.sign(closing[0])), abs(closing[0])
         forward = float(free[0] if sign > 0 else free[1])
         return _range(sign, -ajar, min(forward, max(np.radians(limits.panel_deg) - ajar, 0.0)), free, config)
-    sign = turn_sense(scene, axis, pivot, free, config)
+    sign = turn_sign(scene, axis, pivot, free, config)
     forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
-    if max(forward, backward) < np.radians(limits.held_deg):
+    if max(forward, backward) < np.radians(limits.blocked_deg):
         forward = np.pi  # its mesh overlaps the frame: no door is made to stay shut
     lower = -backward if backward < np.radians(limits.least_deg) else 0.0
     return _range(sign, lower, min(forward, np.radians(limits.panel_deg)), free, config)
@@ -176,9 +176,9 @@ def _turns_freely(scene: JointScene, axis: FloatArray, pivot: FloatArray, config
     """A knob, wheel or turntable: a bearing through the part, or a round part, whose mass is even about the axis."""
     disc = scene.disc > 0.5 and abs(float(axis @ scene.frame.axes[scene.frame.thin])) > 0.99
     link = scene.serial and scene.smallness < 1.0 and not scene.rolls
-    if not (scene.gated or disc) or link:
+    if not (scene.has_bearing or disc) or link:
         return False
-    anchor = scene.contact.centroid if scene.gated else pivot
+    anchor = scene.contact.centroid if scene.has_bearing else pivot
     return eccentricity(scene, axis, anchor) < config.limits.even
 
 
@@ -195,6 +195,6 @@ def _lever_range(scene: JointScene, axis: FloatArray, free: FloatArray, config: 
     if abs(falling) > 0.5 * float(np.linalg.norm(np.cross(axis, arm))):
         sign = 1.0 if falling < 0.0 else -1.0
         return _range(sign, 0.0, min(float(free[0 if sign > 0 else 1]), reach), free, config)
-    sign = swing_sense(scene, axis, scene.contact.centroid)
+    sign = swing_sign(scene, axis, scene.contact.centroid)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
     return _range(sign, -min(float(backward), 2 * reach), min(float(forward), 2 * reach), free, config)

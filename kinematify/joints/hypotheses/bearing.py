@@ -145,8 +145,8 @@ def _rank(
     rough = []
     for line in proposals:
         # Lines along a main direction have little left to be refined, and the final rounds let them turn.
-        held = _along(line, directions, _EXACTLY) is not None
-        refined = refine_line(few, line, tolerances[-4:] if held else tolerances, config, turning=not held)
+        known = _along(line, directions, _EXACTLY) is not None
+        refined = refine_line(few, line, tolerances[-4:] if known else tolerances, config, turning=not known)
         rough.append(scored_line(few, refined, centroid, diagonal, config))
     final = []
     for start in best_distinct(rough, diagonal, config):

@@ -110,7 +110,7 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
         (np.clip(weights[name] * value, -config.panels.cap, config.panels.cap) for name, value in cues.items()),
         start=np.zeros(len(lines.axes)),
     )
-    telling = "bearing" if scene.gated else "fold"
+    telling = "bearing" if scene.has_bearing else "fold"
     scores = scores + config.panels.bearing_bonus * np.array([source == telling for source in lines.sources])
     ranked = RankedTurns(
         lines=lines,
@@ -139,10 +139,10 @@ def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line]
     """Bearing lines, lines through the contact, nine lines per direction of the slab's box, and those given."""
     found: list[tuple[FloatArray, FloatArray, int, str]] = []
     if scene.bearing is not None:
-        found += [(line.axis, line.pivot, OTHER, "bearing") for line in scene.bearing.lines[:1] if scene.gated]
+        found += [(line.axis, line.pivot, OTHER, "bearing") for line in scene.bearing.lines[:1] if scene.has_bearing]
         found += [
             (line.axis, line.pivot, OTHER, "weak_bearing")
-            for line in scene.bearing.lines[int(scene.gated) : config.panels.bearings]
+            for line in scene.bearing.lines[int(scene.has_bearing) : config.panels.bearings]
         ]
     found += _contact_lines(scene, config)
     if scene.fold is not None:
@@ -423,9 +423,9 @@ def _gravity_cues(scene: JointScene, lines: Lines, with_parent: Sweep, outward: 
 
 def _heel(scene: JointScene, lines: Lines, arms: FloatArray) -> FloatArray:
     """Level lines across a pedal, from -1 at its tip to 1 at its end inside the body, shape (c,)."""
-    half = 0.5 * float(np.abs(scene.frame.axes @ scene.trodden) @ scene.frame.extents)
-    across = (np.abs(lines.axes @ UP) < 0.1) & (np.abs(lines.axes @ scene.trodden) < 0.5)
-    return np.where(across, np.clip(-arms @ scene.trodden / max(half, 1e-12), -1.0, 1.0), 0.0)
+    half = 0.5 * float(np.abs(scene.frame.axes @ scene.pedal_direction) @ scene.frame.extents)
+    across = (np.abs(lines.axes @ UP) < 0.1) & (np.abs(lines.axes @ scene.pedal_direction) < 0.5)
+    return np.where(across, np.clip(-arms @ scene.pedal_direction / max(half, 1e-12), -1.0, 1.0), 0.0)
 
 
 def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:

@@ -101,7 +101,7 @@ def _directions(scene: JointScene, twins: FloatArray, config: JointsConfig) -> t
     found: list[tuple[FloatArray, str]] = []
     if scene.bearing is not None and scene.bearing.rail is not None and scene.mechanism > 0:
         found.append((scene.bearing.rail.axis, "rail"))
-    if scene.bearing is not None and scene.bearing.lines and scene.gated:
+    if scene.bearing is not None and scene.bearing.lines and scene.has_bearing:
         found.append((scene.bearing.lines[0].axis, "bearing"))
     found += [(axis, "twin") for axis in twins]
     found += [(axis, "box") for axis in scene.frame.axes]
@@ -183,11 +183,11 @@ def _shape_cues(
     free = with_parent.free(config.sweep.share)
     rising = np.where(axes[:, 2] >= 0, free[:, 0], free[:, 1]) > 0.1 * scene.diagonal
     bearing = np.zeros(len(axes))
-    if scene.bearing is not None and scene.gated:
+    if scene.bearing is not None and scene.has_bearing:
         bearing = np.abs(axes @ scene.bearing.lines[0].axis)
     rail = np.zeros(len(axes))
     if scene.bearing is not None and scene.bearing.rail is not None:
-        rail = scene.mechanism * scene.railed * np.abs(axes @ scene.bearing.rail.axis)
+        rail = scene.mechanism * scene.prismatic_score * np.abs(axes @ scene.bearing.rail.axis)
     return {
         "thin_large": large * thin,
         "horizontal": large * (1.0 - np.abs(axes @ UP)),

@@ -32,7 +32,7 @@ def closing_turns(
         config: Bounds.
     """
     limits = config.limits
-    if _held_elsewhere(scene, axis, pivot, config):
+    if _touches_elsewhere(scene, axis, pivot, config):
         return ()
     now = _closeness(scene, axis, pivot, 0.0)
     turns, square = _square_turns(scene, axis, config)
@@ -51,7 +51,7 @@ def _can_turn(ratio: float, turn: float, free: FloatArray, config: JointsConfig)
     Where it then lies on its body all over, that it met something on the way is an overlap of the meshes at its hinge.
     """
     limits = config.limits
-    overlap = np.radians(limits.lying_deg if ratio < limits.lying else limits.held_deg)
+    overlap = np.radians(limits.lying_deg if ratio < limits.lying else limits.blocked_deg)
     return bool(abs(turn) < free[0 if turn > 0 else 1] + overlap)
 
 
@@ -76,7 +76,7 @@ def _stands_on_top(scene: JointScene, axis: FloatArray) -> bool:
     return bool(scene.upright and abs(float(axis @ UP)) < 0.1 and scene.centre[2] > top)
 
 
-def _held_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
+def _touches_elsewhere(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
     """The panel touches its body away from the hinge, as a closed one does on its frame."""
     if len(scene.contact.points) == 0:
         return False

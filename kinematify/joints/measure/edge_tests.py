@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Pair = tuple[int, int]
 
 
-def held_pairs(cache: PartCache, pairs: Iterable[Pair], config: JointsConfig) -> frozenset[Pair]:
+def journal_pairs(cache: PartCache, pairs: Iterable[Pair], config: JointsConfig) -> frozenset[Pair]:
     """Those contacts in which a pin, barrel or shaft of one part sits in the other.
 
     Leaves that lie edge to edge, fingers and drawers touch as well as a hinge does, but nothing of one goes round the
@@ -34,10 +34,10 @@ def held_pairs(cache: PartCache, pairs: Iterable[Pair], config: JointsConfig) ->
         pairs: Contacts (a, b) with a < b that are asked about.
         config: Band of a contact and tolerances of journals.
     """
-    return frozenset(pair for pair in pairs if _is_held(cache, pair, config))
+    return frozenset(pair for pair in pairs if _has_journal(cache, pair, config))
 
 
-def _is_held(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
+def _has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
     """Whether a journal is found, looking from the smaller part."""
     small, large = _by_size(cache, pair)
     reach = cache.graph.by_pair[pair].gap + config.contact_band * cache.diagonal
@@ -113,7 +113,7 @@ def leaf_pairs(
     Returns:
         Pairs (a, b), a < b: next to each other, and skipping one.
     """
-    leafed: set[Pair] = set()
+    adjacent: set[Pair] = set()
     skipping: set[Pair] = set()
     for triple in triples:
         pairs = [(min(pair), max(pair)) for pair in combinations(triple, 2)]
@@ -126,6 +126,6 @@ def leaf_pairs(
         middle = middle_leaf({part: own.mean(axis=0) for part, own in points.items()}, line, reach, config)
         beside = {pair for pair in pairs if middle in pair}
         if middle is not None and not beside & passing:
-            leafed |= beside
+            adjacent |= beside
             skipping |= set(pairs) - beside
-    return frozenset(leafed), frozenset(skipping)
+    return frozenset(adjacent), frozenset(skipping)

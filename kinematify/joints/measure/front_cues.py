@@ -15,12 +15,12 @@ from kinematify.joints.hypotheses.frames import UP
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.config import FootingConfig
+    from kinematify.config import FrontCuesConfig
     from kinematify.joints.hypotheses.frames import BoxFrame
     from kinematify.robot.arrays import FloatArray
 
 
-def foot_side(part: BoxFrame, body: FloatArray, config: FootingConfig) -> FloatArray:
+def foot_side(part: BoxFrame, body: FloatArray, config: FrontCuesConfig) -> FloatArray:
     """Unit level direction from the middle of a body to a small part at one side of its foot, else zero, shape (3,).
 
     Args:
@@ -39,7 +39,7 @@ def foot_side(part: BoxFrame, body: FloatArray, config: FootingConfig) -> FloatA
 
 
 def front_of(
-    body: FloatArray, frames: Sequence[BoxFrame], rolling: Sequence[bool], config: FootingConfig
+    body: FloatArray, frames: Sequence[BoxFrame], rolling: Sequence[bool], config: FrontCuesConfig
 ) -> FloatArray:
     """The level direction in which the front of a body looks, zero where nothing at its foot says so, shape (3,).
 

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-def guided_travel(scene: JointScene, way: FloatArray, config: JointsConfig) -> float | None:
-    """How far the child slides along `way` before its guide lets it go [m]; None where no guide is seen.
+def guided_travel(scene: JointScene, direction: FloatArray, config: JointsConfig) -> float | None:
+    """How far the child slides along `direction` before its guide lets it go [m]; None where no guide is seen.
 
     The guide is the surface of the contact that runs along the way. A carriage keeps all of its own surface on a long
     rail, a rod fills a short collar all the time, and both may go until that ends; of a telescope each half leaves the
@@ -21,24 +21,26 @@ def guided_travel(scene: JointScene, way: FloatArray, config: JointsConfig) -> f
 
     Args:
         scene: The pair.
-        way: Unit direction of travel, shape (3,).
+        direction: Unit direction of travel, shape (3,).
         config: `guide`, and `limits.drawer` as the share of the way out that a telescope goes.
     """
     travels = np.linspace(0.0, scene.diagonal, config.guide.steps + 1)
-    held = guided_share(scene, way, travels, config)
-    if held is None or held[0] < config.guide.kept:
+    shares = guided_share(scene, direction, travels, config)
+    if shares is None or shares[0] < config.guide.kept:
         return None
-    leaves = _first_below(travels, held, config.guide.kept)
-    gone = _first_below(travels, held, config.guide.gone)
+    leaves = _first_below(travels, shares, config.guide.kept)
+    gone = _first_below(travels, shares, config.guide.gone)
     return max(leaves, config.limits.drawer * gone)
 
 
-def guided_share(scene: JointScene, way: FloatArray, travels: FloatArray, config: JointsConfig) -> FloatArray | None:
+def guided_share(
+    scene: JointScene, direction: FloatArray, travels: FloatArray, config: JointsConfig
+) -> FloatArray | None:
     """Share of the guide that still lies on the other part after each travel.
 
     Args:
         scene: The pair.
-        way: Unit direction, shape (3,).
+        direction: Unit direction, shape (3,).
         travels: [m], shape (n,).
         config: `guide` and the band of a contact.
 
@@ -52,12 +54,12 @@ def guided_share(scene: JointScene, way: FloatArray, travels: FloatArray, config
     reach = edge.gap + min(config.contact_band * scene.diagonal, config.guide.band * scene.frame.diagonal)
     contact = scene.contact
     sides = (
-        (scene.parent, contact.points, contact.normals, way),
-        (scene.child, contact.parent_points, contact.parent_normals, -way),
+        (scene.parent, contact.points, contact.normals, direction),
+        (scene.child, contact.parent_points, contact.parent_normals, -direction),
     )
     shares = []
     for other, points, normals, motion in sides:
-        along = points[np.abs(normals @ way) < np.sin(np.radians(config.guide.along_deg))]
+        along = points[np.abs(normals @ direction) < np.sin(np.radians(config.guide.along_deg))]
         guiding = along[scene.cache.distances(other, along) <= reach] if len(along) else along
         if len(guiding) < config.guide.least_samples:
             return None
@@ -67,11 +69,11 @@ def guided_share(scene: JointScene, way: FloatArray, travels: FloatArray, config
     return np.asarray(np.maximum(*shares))
 
 
-def _first_below(travels: FloatArray, held: FloatArray, level: float) -> float:
+def _first_below(travels: FloatArray, shares: FloatArray, level: float) -> float:
     """Travel at which the share falls below a level, between the steps by proportion; the last one if never."""
-    below = np.flatnonzero(held < level)
+    below = np.flatnonzero(shares < level)
     if len(below) == 0:
         return float(travels[-1])
     k = int(below[0])
-    part = (held[k - 1] - level) / max(held[k - 1] - held[k], 1e-12)
+    part = (shares[k - 1] - level) / max(shares[k - 1] - shares[k], 1e-12)
     return float(travels[k - 1] + part * (travels[k] - travels[k - 1]))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-def turn_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig) -> float:
+def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig) -> float:
     """The freer direction opens; where both are alike, the one that leads out of the body or up."""
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
@@ -24,11 +24,11 @@ def turn_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Flo
     velocity = np.cross(axis, scene.centre - pivot)
     away = scene.outward if scene.outward.any() and not scene.serial else UP  # links of arms have no outer side
     if abs(float(velocity @ away)) < 0.05 * scene.frame.diagonal:
-        return swing_sense(scene, axis, pivot)
+        return swing_sign(scene, axis, pivot)
     return 1.0 if float(velocity @ away) > 0.0 else -1.0
 
 
-def swing_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
+def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
     """Where neither way leads out of the parent or up: away from the middle of the object, else all to one side of it.
 
     Knees and fingers that go both ways alike have no opening direction that could be seen; but those of two legs and
@@ -42,7 +42,7 @@ def swing_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float
     velocity = np.cross(axis, limb - pivot)
     speed = float(np.linalg.norm(velocity))
     if speed < 0.05 * scene.frame.diagonal:
-        return neutral_sense(scene, axis)
+        return neutral_sign(scene, axis)
     middle = np.average(centroids, axis=0, weights=areas)
     apart = float((limb - middle) @ velocity) / speed
     if abs(apart) > 0.05 * scene.diagonal:
@@ -50,7 +50,7 @@ def swing_sense(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float
     side = (centroids.mean(axis=0) - middle) * (1.0, 1.0, 0.0)  # up and down has been asked
     towards = float(velocity @ side) / speed
     if abs(towards) < 1e-5 * scene.diagonal:  # rounding would decide
-        return neutral_sense(scene, axis)
+        return neutral_sign(scene, axis)
     return 1.0 if towards > 0.0 else -1.0
 
 
@@ -62,12 +62,12 @@ def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
     normal = scene.frame.axes[scene.frame.thin]
     off = float((pivot - scene.centre) @ normal)
     aside = abs(off) > config.limits.hinge_off * float(scene.frame.extents[scene.frame.thin])
-    if not (scene.gated and scene.panel and scene.upright and aside):
+    if not (scene.has_bearing and scene.panel and scene.upright and aside):
         return 0.0
     return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
 
 
-def neutral_sense(scene: JointScene, axis: FloatArray) -> float:
+def neutral_sign(scene: JointScene, axis: FloatArray) -> float:
     """Where neither way opens: the axis points from the parent to the child, else up, as knobs and arms have it."""
     apart = float((scene.centre - scene.parent_frame.centre) @ axis)
     if abs(apart) < 0.02 * scene.parent_frame.diagonal:
@@ -75,15 +75,15 @@ def neutral_sense(scene: JointScene, axis: FloatArray) -> float:
     return 1.0 if apart >= 0.0 else -1.0
 
 
-def clockwise_sense(scene: JointScene, axis: FloatArray) -> float:
+def clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
     """Knobs turn up clockwise as seen by who turns them (IEC 60447): the axis points into the part that carries them.
 
     Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
     """
     knob = scene.smallness > 0.0 or not (scene.plate and scene.flat)
     if not knob or (scene.serial and scene.parent_moves):
-        return neutral_sense(scene, axis)
-    return -(_open_side(scene, axis) or neutral_sense(scene, axis))
+        return neutral_sign(scene, axis)
+    return -(_open_side(scene, axis) or neutral_sign(scene, axis))
 
 
 def _open_side(scene: JointScene, axis: FloatArray) -> float:

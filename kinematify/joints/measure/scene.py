@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from kinematify.joints.hypotheses.frames import BoxFrame
     from kinematify.joints.measure.journal import Journal
     from kinematify.joints.measure.rockers import Fold
-    from kinematify.joints.measure.rooted import RootedTree
     from kinematify.joints.measure.workspace import ContactView, PartCache
+    from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray
 
 
@@ -74,13 +74,13 @@ class JointScene:
     """The line about which the parent holds the child all around; not looked for in trees of joints in series."""
     serial: bool
     """The tree has several joints in series, as arms, legs and hands have."""
-    gated: bool
+    has_bearing: bool
     """The best line of the bearing passes the gate."""
-    railed: float
+    prismatic_score: float
     """1 where both sides of the contact are extruded far more clearly than they are round, as on a linear guide."""
-    lead: float
+    rail_lead: float
     """Score of the contact's rail over that of its best line; 0 without a rail."""
-    rounded: bool
+    is_round: bool
     """The contact is about as round as it is extruded, or more."""
     compact: float
     """1 where the contact is a small patch of the child, as in a machine's joint; 0 where it is spread out."""
@@ -102,7 +102,7 @@ class JointScene:
     """Where the front of the child is folded as a rocker's; not looked for in large lids, which may have a ridge."""
     front: FloatArray
     """Of lids, level direction in which the front of the parent looks as its foot tells, else zero, shape (3,)."""
-    trodden: FloatArray
+    pedal_direction: FloatArray
     """Level direction from the parent to the child where that is a pedal, else zero, shape (3,)."""
 
     @property
@@ -124,14 +124,14 @@ def _rail_lead(bearing: EdgeBearing | None) -> float:
     return bearing.rail.score / max(best, 1e-3)
 
 
-def _rounded(bearing: EdgeBearing | None, config: RailsConfig) -> bool:
+def _is_round(bearing: EdgeBearing | None, config: RailsConfig) -> bool:
     """Whether the contact is about as round as it is extruded, or more; where it is neither, that says nothing."""
     if bearing is None or not bearing.lines or bearing.lines[0].score < config.rounded_least:
         return False
     return 0.0 < _rail_lead(bearing) < config.rounded_lead
 
 
-def _railed(bearing: EdgeBearing | None, config: RailsConfig) -> float:
+def _prismatic_score(bearing: EdgeBearing | None, config: RailsConfig) -> float:
     lead = _rail_lead(bearing)
     if lead == 0.0 or bearing is None or bearing.rail is None:
         return 0.0
@@ -203,10 +203,10 @@ def joint_scene(
         bearing=bearing,
         journal=journal,
         serial=serial,
-        gated=journal is not None or (bearing is not None and passes_gate(bearing, contact, config)),
-        railed=_railed(bearing, config.rails),
-        lead=_rail_lead(bearing),
-        rounded=_rounded(bearing, config.rails),
+        has_bearing=journal is not None or (bearing is not None and passes_gate(bearing, contact, config)),
+        prismatic_score=_prismatic_score(bearing, config.rails),
+        rail_lead=_rail_lead(bearing),
+        is_round=_is_round(bearing, config.rails),
         compact=compact,
         mechanism=1.0 if serial else compact,
         on_top=on_top,
@@ -217,7 +217,7 @@ def joint_scene(
         rolls=rolls(cache, child, frame),
         fold=find_fold(cache.samples(child), frame, config.rockers) if folds else None,
         front=_front(cache, tree, parent, frames, config) if panel and up > config.flat_cosine else np.zeros(3),
-        trodden=_trodden(cache, parent, child, frame, config),
+        pedal_direction=_pedal_direction(cache, parent, child, frame, config),
     )
 
 
@@ -262,10 +262,10 @@ def is_cap(scene: JointScene) -> bool:
         return False
     frame = scene.frame
     up = int(np.argmax(np.abs(frame.axes @ UP)))
-    sense = np.sign(frame.axes[up] @ UP)
+    sign = np.sign(frame.axes[up] @ UP)
     points = frame.local(scene.cache.samples(scene.child).points)
-    height = sense * points[:, up]
-    below = height < (sense * scene.body_box[:, up]).max() - 0.25 * np.ptp(height)
+    height = sign * points[:, up]
+    below = height < (sign * scene.body_box[:, up]).max() - 0.25 * np.ptp(height)
     if below.mean() > 0.5:
         return False  # a tray or drawer, which lies in its body
     shares = []
@@ -345,7 +345,7 @@ def rolls(cache: PartCache, part: int, frame: BoxFrame) -> bool:
 def _stands(cache: PartCache, part: int, config: JointsConfig) -> bool:
     """Whether a part reaches the floor, or nearly so, as a bin on wheels."""
     rise = cache.assembly.parts[part].bounds[0, 2] - cache.assembly.bounds[0, 2]
-    return bool(rise < config.footing.low * np.ptp(cache.assembly.bounds[:, 2]))
+    return bool(rise < config.front_cues.low * np.ptp(cache.assembly.bounds[:, 2]))
 
 
 def _front(
@@ -355,13 +355,13 @@ def _front(
         return np.zeros(3)
     carried = tree.children[body]
     rolling = [rolls(cache, part, frames[part]) for part in carried]
-    return front_of(cache.assembly.parts[body].bounds, [frames[part] for part in carried], rolling, config.footing)
+    return front_of(cache.assembly.parts[body].bounds, [frames[part] for part in carried], rolling, config.front_cues)
 
 
-def _trodden(cache: PartCache, body: int, part: int, frame: BoxFrame, config: JointsConfig) -> FloatArray:
+def _pedal_direction(cache: PartCache, body: int, part: int, frame: BoxFrame, config: JointsConfig) -> FloatArray:
     if not is_level_plate(frame) or not _stands(cache, body, config):
         return np.zeros(3)
-    return foot_side(frame, cache.assembly.parts[body].bounds, config.footing)
+    return foot_side(frame, cache.assembly.parts[body].bounds, config.front_cues)
 
 
 def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.joint_range import Range
 from kinematify.joints.hypotheses.frames import UP
-from kinematify.joints.measure.clearance import slide_play
+from kinematify.joints.measure.clearance import slide_clearance
 from kinematify.joints.measure.guide import guided_travel
 from kinematify.joints.measure.scene import is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides
@@ -38,8 +38,8 @@ def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Ra
     runs = _in_linkage(scene) or _is_runner(scene, axis, free, length, config)
     guided = free.copy()
     if runs:
-        for side, way in enumerate((axis, -axis)):
-            guided[side] = _guided(scene, way, float(free[side]), length, config)
+        for side, direction in enumerate((axis, -axis)):
+            guided[side] = _guided(scene, direction, float(free[side]), length, config)
     sign = _slide_sign(scene, axis, guided if _in_linkage(scene) else free, config)
     ahead, behind = (0, 1) if sign > 0 else (1, 0)
     forward, backward = float(free[ahead]), float(free[behind])
@@ -58,64 +58,66 @@ def slide_range(scene: JointScene, axis: FloatArray, config: JointsConfig) -> Ra
 
 
 def _ends(
-    scene: JointScene, way: FloatArray, free: tuple[float, float], length: float, config: JointsConfig
+    scene: JointScene, direction: FloatArray, free: tuple[float, float], length: float, config: JointsConfig
 ) -> tuple[float, float]:
-    """Lower and upper limit [m] of a button, drawer or lid that opens along `way`; `free` is forward and backward."""
+    """Limits [m] of a button, drawer or lid that opens along a direction; `free` is forward and backward."""
     forward, backward = free
-    if (scene.smallness > 0.5 and not _is_small_lid(scene)) or (scene.gated and _outwards(scene, way) < 0.0):
-        return 0.0, _press(scene, way, forward, length, config)
-    ajar = min(backward, _standing_out(scene, way))
+    if (scene.smallness > 0.5 and not _is_small_lid(scene)) or (
+        scene.has_bearing and _outwards(scene, direction) < 0.0
+    ):
+        return 0.0, _press(scene, direction, forward, length, config)
+    ajar = min(backward, _standing_out(scene, direction))
     ajar = ajar if ajar > config.limits.ajar * length else 0.0
     forward = max(forward, length) if is_cap(scene) else forward  # the shrunk skirt of a cap sweeps into the rim
-    return -ajar, min(forward, max(config.limits.drawer * length - ajar, _slotted(scene, way, forward, config)))
+    return -ajar, min(forward, max(config.limits.drawer * length - ajar, _slotted(scene, direction, forward, config)))
 
 
-def _guided(scene: JointScene, way: FloatArray, free: float, length: float, config: JointsConfig) -> float:
-    """Travel along `way` [m] up to the next stop, or until the guide lets the part go.
+def _guided(scene: JointScene, direction: FloatArray, free: float, length: float, config: JointsConfig) -> float:
+    """Travel along `direction` [m] up to the next stop, or until the guide lets the part go.
 
     Where no guide is seen, by as much of its own length as drawers travel.
     """
-    guided = guided_travel(scene, way, config)
+    guided = guided_travel(scene, direction, config)
     return min(free, config.limits.drawer * length if guided is None else guided)
 
 
-def _slotted(scene: JointScene, way: FloatArray, free: float, config: JointsConfig) -> float:
-    """Travel along `way` [m] of a part that a stop awaits in its guide, as a lever at the end of its slot; else 0."""
+def _slotted(scene: JointScene, direction: FloatArray, free: float, config: JointsConfig) -> float:
+    """Travel along a direction [m] of a part that a stop awaits in its guide, as a lever in its slot; else 0."""
     if free > 0.99 * scene.diagonal:
         return 0.0
-    return guided_travel(scene, way, config) or 0.0
+    return guided_travel(scene, direction, config) or 0.0
 
 
 def _is_runner(scene: JointScene, axis: FloatArray, free: FloatArray, length: float, config: JointsConfig) -> bool:
     """A small part that can slide farther than it is long without leaving its guide: a collar on a rod, no button."""
     if scene.smallness < 1.0 or is_cap(scene) or _is_small_lid(scene):
         return False
-    ways = (guided_travel(scene, sense * axis, config) or 0.0 for sense in (1.0, -1.0))
+    ways = (guided_travel(scene, sign * axis, config) or 0.0 for sign in (1.0, -1.0))
     return bool(max(min(*pair) for pair in zip(free, ways, strict=True)) > config.guide.runner * length)
 
 
-def _standing_out(scene: JointScene, way: FloatArray) -> float:
+def _standing_out(scene: JointScene, direction: FloatArray) -> float:
     """How far the front of a drawer stands before the body, its own handle left out [m]; 0 if it does not.
 
     What leaves upwards is a lid: it lies where it is put, and would fall in if it could go lower.
     """
-    if float(way @ UP) > 0.9:
+    if float(direction @ UP) > 0.9:
         return 0.0
-    own = scene.cache.samples(scene.child).points @ way
-    body = scene.cache.samples(scene.parent).points @ way
+    own = scene.cache.samples(scene.child).points @ direction
+    body = scene.cache.samples(scene.parent).points @ direction
     return max(float(np.quantile(own, 0.98) - body.max()), 0.0)
 
 
-def _press(scene: JointScene, way: FloatArray, free: float, length: float, config: JointsConfig) -> float:
-    """Travel of a button pressed along `way` [m]: what stands out of the surface around it, or until it is stopped."""
+def _press(scene: JointScene, direction: FloatArray, free: float, length: float, config: JointsConfig) -> float:
+    """Travel of a button pressed along a direction [m]: what stands out of its surroundings, or until it is stopped."""
     own = scene.cache.samples(scene.child).points
     body = scene.cache.samples(scene.parent).points
     centre = 0.5 * (own.min(axis=0) + own.max(axis=0))
-    wide = 2.0 * float(np.linalg.norm(np.cross(own - centre, way), axis=1).max())
-    around = body[np.linalg.norm(np.cross(body - centre, way), axis=1) < wide]
+    wide = 2.0 * float(np.linalg.norm(np.cross(own - centre, direction), axis=1).max())
+    around = body[np.linalg.norm(np.cross(body - centre, direction), axis=1) < wide]
     visible = length
     if len(around) > 10:
-        visible = min(length, max(float((around @ way).min() - (own @ way).min()), 0.0))
+        visible = min(length, max(float((around @ direction).min() - (own @ direction).min()), 0.0))
     # A stem behind the cap is no travel: what is flush is pressed by a share of its length or width.
     whole = min(length, wide)
     reach = config.limits.button * (visible if visible > 0.1 * whole else whole)
@@ -133,11 +135,11 @@ def _slide_sign(scene: JointScene, axis: FloatArray, free: FloatArray, config: J
         return outwards
     longer = 1.0 if free[0] > free[1] else -1.0
     one_way = abs(float(free[0] - free[1])) > config.limits.one_way * scene.diagonal
-    if scene.smallness >= 1.0 and not (scene.gated or _in_linkage(scene)) and one_way:
+    if scene.smallness >= 1.0 and not (scene.has_bearing or _in_linkage(scene)) and one_way:
         return -longer  # there is a floor below a button and nothing before it; round ones are told below from collars
-    if scene.gated and not _in_linkage(scene) and not _is_sheath(scene, axis):
-        play = slide_play(scene, outwards * axis, config)
-        if play is not None and config.limits.room * scene.frame.diagonal < play[1] < np.inf:
+    if scene.has_bearing and not _in_linkage(scene) and not _is_sheath(scene, axis):
+        clearance = slide_clearance(scene, outwards * axis, config)
+        if clearance is not None and config.limits.room * scene.frame.diagonal < clearance[1] < np.inf:
             return -outwards
     if scene.smallness > 0.5 and not _in_linkage(scene) and not _is_small_lid(scene):
         return -outwards
