@@ -13,11 +13,26 @@ A message is one paragraph that says what was given, what was expected and what 
 
 from __future__ import annotations
 
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """What the command line ends with."""
+
+    FINE = 0
+    FAILURES = 1
+    """It ran and found failures."""
+    UNUSABLE = 2
+    """The input or an argument cannot be used."""
+    FAULT = 3
+    """An engine, the machine or Kinematify itself failed."""
+    INTERRUPTED = 130
+
 
 class KinematifyError(Exception):
     """Base class; `exit_status` is what the command line ends with."""
 
-    exit_status = 2
+    exit_status = ExitStatus.UNUSABLE
 
 
 class InputError(KinematifyError):
@@ -43,4 +58,4 @@ class OutputError(InputError):
 class EnvironmentFault(KinematifyError):
     """An engine or an optional package is missing or failed."""
 
-    exit_status = 3
+    exit_status = ExitStatus.FAULT

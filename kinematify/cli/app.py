@@ -1,7 +1,6 @@
 """The `kinematify` command: finds the subcommand and turns every exception into a message and an exit status.
 
-Exit status: 0 fine; 1 ran and found failures; 2 unusable input or arguments; 3 an engine, the environment or
-Kinematify itself failed; 130 interrupted.
+`ExitStatus` says what the numbers mean.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import click
 from click.exceptions import NoSuchCommand
 
 from kinematify import __version__
-from kinematify.errors import KinematifyError
+from kinematify.errors import ExitStatus, KinematifyError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,10 +24,6 @@ COMMANDS = (
     "generate", "infer", "refine", "validate", "explain", "view", "export", "erase", "bench", "nightly", "doctor",
 )  # fmt: skip
 """Each is a module of this package that defines `command`."""
-
-_INTERRUPTED = 130
-_USAGE = 2
-_CRASHED = 3
 
 
 @dataclass
@@ -55,16 +50,16 @@ def run(arguments: Sequence[str] | None = None) -> int:
         status = cli.main(arguments, prog_name="kinematify", standalone_mode=False, obj=session)
     except click.ClickException as error:
         error.show()
-        return _USAGE
+        return ExitStatus.UNUSABLE
     except click.Abort:
         _say("Interrupted. Nothing half-written was left: a result appears at its place only when it is complete.")
-        return _INTERRUPTED
+        return ExitStatus.INTERRUPTED
     except KinematifyError as error:
         _say(f"Error: {error}", with_traceback=session.traceback)
         return error.exit_status
     except Exception as error:  # the boundary itself: whatever is left is a defect of ours
         _say(_crash_message(error, session), with_traceback=session.traceback)
-        return _CRASHED
+        return ExitStatus.FAULT
     return status if isinstance(status, int) else 0
 
 

@@ -13,6 +13,7 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.regression import Regression
     from kinematify.evaluation.run import BenchmarkReport, Variant
-
-_FOUND_FAILURES = 1
 
 
 @click.command(
@@ -182,7 +181,7 @@ def command(
         click.echo(f"{_describe(report)}\n\nReport: {', '.join(map(str, written))}")
     for regression in regressions:
         click.echo(_describe_regression(regression), err=True)
-    return _FOUND_FAILURES if regressions else 0
+    return ExitStatus.FAILURES if regressions else 0
 
 
 def _inputs(given: str) -> tuple[str, ...]:

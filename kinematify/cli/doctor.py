@@ -15,6 +15,7 @@ from kinematify import __version__
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -55,8 +56,6 @@ MODULES = {
 
 IMPORT_SECONDS = 60.0
 """An engine that takes longer than this to import counts as broken [s]."""
-
-_ENVIRONMENT_FAILED = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +100,7 @@ def command(json_to: str | None) -> int:
         write_answer(_as_answer(findings), json_to)
     if json_to != "-":
         click.echo(_describe(findings))
-    return _ENVIRONMENT_FAILED if failed else 0
+    return ExitStatus.FAULT if failed else 0
 
 
 def examine_packages() -> tuple[Finding, ...]:

@@ -12,6 +12,7 @@ from kinematify.cli.infer import describe
 from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
 from kinematify.config import load_config
+from kinematify.errors import ExitStatus
 from kinematify.evaluation.metrics import score_object
 from kinematify.evaluation.prediction import prediction_of
 from kinematify.generate.procedural.truth import ground_truth
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from kinematify.pipeline import Inference
     from kinematify.validation.report import ValidationReport
 
-_INTERRUPTED = 130
 _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints
 
 
@@ -139,7 +139,7 @@ def status_of(report: ValidationReport | None) -> int:
     """Exit status: 1 if the model has an error, 130 if the validation was interrupted, else 0."""
     if report is None:
         return 0
-    return _INTERRUPTED if report.environment.get("interrupted") else report.exit_status
+    return ExitStatus.INTERRUPTED if report.environment.get("interrupted") else report.exit_status
 
 
 def verdict_on(report: ValidationReport | None, out: Path) -> str:
@@ -151,7 +151,7 @@ def verdict_on(report: ValidationReport | None, out: Path) -> str:
 
 def warn_if_interrupted(report: ValidationReport | None) -> None:
     """Say that only the validation is incomplete."""
-    if status_of(report) == _INTERRUPTED:
+    if status_of(report) == ExitStatus.INTERRUPTED:
         click.echo("Interrupted. The model is complete, its validation is not.", err=True)
 
 

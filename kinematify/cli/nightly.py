@@ -12,6 +12,7 @@ import click
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from kinematify.evaluation.nightly.run import NightResult
     from kinematify.evaluation.nightly.settings import NightlySettings
 
-_FOUND_REGRESSIONS = 1
 _SHOWN = 20
 """Changes of a class that are told on the terminal; the page has all."""
 
@@ -103,7 +103,7 @@ def command(
         click.echo(_described(result))
     for notice in result.notices:
         click.echo(notice, err=True)
-    return _FOUND_REGRESSIONS if result.night.failed else 0
+    return ExitStatus.FAILURES if result.night.failed else 0
 
 
 def _accept(folder: Path, name: str) -> int:

@@ -11,14 +11,13 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
     from kinematify.pipeline.infer import Inference
     from kinematify.refinement import Refinement
 
 TIERS = ("geometry", "engines", "task")
-_FOUND_FAILURES = 1
-_INTERRUPTED = 130
 
 
 @click.command(
@@ -110,9 +109,9 @@ def command(
 def exit_status(refinement: Refinement) -> int:
     """130 after Ctrl-C, 1 if the kept round has an error about motion, else 0."""
     if refinement.interrupted:
-        return _INTERRUPTED
+        return ExitStatus.INTERRUPTED
     history = refinement.history
-    return _FOUND_FAILURES if any(item.errors for item in history.rounds[history.kept : history.kept + 1]) else 0
+    return ExitStatus.FAILURES if any(item.errors for item in history.rounds[history.kept : history.kept + 1]) else 0
 
 
 def describe_refinement(inference: Inference) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.verdict import describe, describe_all, describe_unused, say
-from kinematify.errors import InputError
+from kinematify.errors import ExitStatus, InputError
 from kinematify.validation.finding import Severity
 from kinematify.validation.outcome import Unusable
 from kinematify.validation.run import validate
@@ -29,7 +29,6 @@ PICTURES_AT_MOST = 12
 """With more models an HTML report shows none: it would take long to make and to load."""
 PICTURE_SECONDS = 15.0
 """A picture that takes longer is left out [s]; known robots take 1 to 3."""
-_FOUND_ERRORS, _UNUSABLE_INPUT, _INTERRUPTED = 1, 2, 130
 
 
 @dataclass(kw_only=True)
@@ -102,11 +101,11 @@ class ValidationRun:
     def exit_status(self) -> int:
         """130 after Ctrl-C, else the worst of the models."""
         if self.interrupted:
-            return _INTERRUPTED
+            return ExitStatus.INTERRUPTED
         verdicts = {outcome.verdict for outcome in self.outcomes}
         if "unusable" in verdicts:
-            return _UNUSABLE_INPUT
-        return _FOUND_ERRORS if "fail" in verdicts else 0
+            return ExitStatus.UNUSABLE
+        return ExitStatus.FAILURES if "fail" in verdicts else 0
 
     def say(self, *, quiet: bool) -> None:
         """Tell the user: the report on stdout unless a machine reads that, what is no result on stderr."""
