@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from kinematify.cli.help import examples
+from kinematify.cli.options import package_dirs_option
 
 
 @click.command(
@@ -30,13 +31,7 @@ from kinematify.cli.help import examples
 )
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of pose, order and names of the parts.")
 @click.option("--yaw", type=float, default=0.0, show_default=True, metavar="DEG", help="Turn about the vertical axis.")
-@click.option(
-    "--package-dir",
-    "package_dirs",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    help="Folder in which package:// names are looked up; may be given more than once.",
-)
+@package_dirs_option
 def command(*, model: Path, out: Path, pose: str, seed: int, yaw: float, package_dirs: tuple[Path, ...]) -> None:
     """Remove the kinematics of the URDF MODEL: what is left is what a scan of the object would show.
 

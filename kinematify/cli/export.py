@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from kinematify.cli.help import examples
+from kinematify.cli.options import listed, package_dirs_option, sampling_seed_option
 
 
 @click.command(
@@ -35,15 +36,8 @@ from kinematify.cli.help import examples
 @click.option(
     "--gripper", metavar="JOINTS", help="Joints of the fingers, separated by commas; found on the tool if not given."
 )
-@click.option(
-    "--package-dir",
-    "package_dirs",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Folder in which package:// names are looked up; may be given more than once.",
-)
-@click.option("--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's.")
+@package_dirs_option
+@sampling_seed_option
 def command(
     *,
     model: Path,
@@ -76,7 +70,7 @@ def command(
         raise click.UsageError("--tool and --gripper belong to --to srdf. Leave them out.")
     if free and form in ("srdf", "glb", "urdf"):
         raise click.UsageError("--free belongs to --to mjcf, usd or sdf. Leave it out.")
-    joints = tuple(word.strip() for word in (gripper or "").split(",") if word.strip())
+    joints = listed(gripper)
     settings = load_settings() if seed is None else load_settings(seed=seed)
     done = export(model, form, out, free=free, tool=tool, gripper=joints, package_dirs=package_dirs, settings=settings)
     click.echo(f"Wrote {done.path}")

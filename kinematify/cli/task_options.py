@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from kinematify.cli.options import listed
 from kinematify.errors import InputError, OutputError
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class TaskOptions:
             kind=self.task,
             robot=None if self.robot is None else self.robot.absolute(),
             tool=self.tool,
-            gripper=tuple(word.strip() for word in (self.gripper or "").split(",") if word.strip()),
+            gripper=listed(self.gripper),
             package_dirs=package_dirs,
             grasp=self.grasp or None,
             base=self.base or None,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.help import examples
+from kinematify.cli.options import package_dirs_option, sampling_seed_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.report_files import ReportFiles
 
@@ -34,14 +35,7 @@ if TYPE_CHECKING:
     ),
 )
 @click.argument("models", nargs=-1, required=True, metavar="MODEL...")
-@click.option(
-    "--package-dir",
-    "package_dirs",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Package, or folder of packages, for package:// paths; may be given more than once.",
-)
+@package_dirs_option
 @click.option("--checks", metavar="LIST", help="Only these: ids or patterns such as KV3*, separated by commas.")
 @click.option("--skip", metavar="LIST", help="All but these.")
 @click.option(
@@ -58,7 +52,7 @@ if TYPE_CHECKING:
 @click.option(
     "--config", default="validation", show_default=True, metavar="NAME|FILE", help="Shipped or own thresholds."
 )
-@click.option("--seed", type=int, help="Seed of the sampled configurations, instead of the configuration's.")
+@sampling_seed_option
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores if not given."
 )

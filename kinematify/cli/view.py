@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.help import examples
+from kinematify.cli.options import package_dirs_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,14 +37,7 @@ _SHOWN_TITLE = 60
 @click.argument("model", type=click.Path(path_type=Path))
 @click.option("--joint", "joints", multiple=True, metavar="NAME", help="Joint that stands at the --q behind it.")
 @click.option("--q", "values", multiple=True, type=float, metavar="VALUE", help="Its value [rad or m].")
-@click.option(
-    "--package-dir",
-    "package_dirs",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Package, or folder of packages, for package:// paths; may be given more than once.",
-)
+@package_dirs_option
 @click.option(
     "--report",
     type=click.Path(path_type=Path),
