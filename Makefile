@@ -8,6 +8,8 @@ IN_VENV := $(VENV)/bin/python -m
 JOBS ?= $(shell getconf _NPROCESSORS_ONLN)
 # Test files or options for pytest, e.g. `make test ARGS="tests/test_cli.py -k infer"`.
 ARGS ?=
+# Commit or branch that `make check` compares with.
+BASE ?= main
 # What `make demo` builds.
 export SENTENCE := a kitchen cabinet with two doors above three drawers, 80 cm wide
 # Folder of URDFs to measure, or `pip` for the robots of a package; see `kinematify bench --help`.
@@ -18,12 +20,13 @@ TORCH := $(shell sed -n 's/.*"\(torch==[0-9.]*\)".*/\1/p' pyproject.toml)
 # Named after the content of pyproject.toml: while that does not change there is nothing to do.
 STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
 
-.PHONY: help setup demo test lint format types bench pictures clean
+.PHONY: help setup demo test check lint format types bench pictures clean
 .DEFAULT_GOAL := help
 
 help:
 	@echo "make demo     one sentence -> parts -> joints -> URDF -> verdict -> picture, in out/cabinet/"
 	@echo "make test     run the tests (ARGS=... for pytest)"
+	@echo "make check    lint, types and the tests of the packages that differ from BASE=main; for every change"
 	@echo "make lint     ruff: rules and format"
 	@echo "make format   let ruff mend what it can"
 	@echo "make types    mypy --strict"
@@ -66,6 +69,10 @@ pictures: setup
 test: setup
 	OMP_NUM_THREADS=1 $(IN_VENV) pytest -n $(JOBS) --dist worksteal $(ARGS)
 
+check: lint types
+	tests=$$($(IN_VENV) tools.affected_tests $(BASE)) && OMP_NUM_THREADS=1 $(IN_VENV) pytest -q -n $(JOBS) \
+	  --dist worksteal tests/test_layering.py tests/test_imports.py $$tests
+
 lint: setup
 	$(IN_VENV) ruff check .
 	$(IN_VENV) ruff format --check .
@@ -75,7 +82,7 @@ format: setup
 	$(IN_VENV) ruff format .
 
 types: setup
-	$(IN_VENV) mypy -p kinematify
+	$(IN_VENV) mypy -p kinematify -p tools
 
 bench: setup
 	$(IN_VENV) kinematify bench $(if $(filter pip,$(DATA)),--data pip,$(DATA)) -o results

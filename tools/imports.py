@@ -41,8 +41,8 @@ def imported_names(source: str) -> Iterator[str]:
                 raise ValueError(f"line {node.lineno} has a relative import; write the whole name of the module")
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            if named := re.fullmatch(r"(kinematify(?:\.\w+)+)(?::[\w/-]+)?", node.value):
-                yield named[1]
+            if named := re.fullmatch(r"(kinematify(?:\.\w+)+)(?:(\.)|:[\w/-]+)?", node.value):
+                yield f"{named[1]}.*" if named[2] else named[1]  # with a dot at its end it is the start of an f-string
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "kinematify":
             yield f"kinematify.{node.attr}"
 
@@ -51,17 +51,22 @@ def imported_names(source: str) -> Iterator[str]:
 def import_graph() -> dict[str, frozenset[str]]:
     """For every module the modules of the package, its tests and tools that it imports."""
     resolved = {
-        name: {_module_of(imported) for imported in imported_names(path.read_text("utf-8"))}
+        name: {module for imported in imported_names(path.read_text("utf-8")) for module in _modules_of(imported)}
         for name, path in modules().items()
     }
-    return {name: frozenset(module for module in found - {name} if module) for name, found in resolved.items()}
+    return {name: frozenset(imported - {name}) for name, imported in resolved.items()}
 
 
-def _module_of(name: str) -> str | None:
-    """The module that a dotted name is, or is taken from; where a public name of `kinematify` is loaded from."""
+def _modules_of(name: str) -> set[str]:
+    """The module that a dotted name is or is taken from, all of a package for `package.*`; none of other projects.
+
+    A public name of `kinematify` stands for the module that it is loaded from.
+    """
     top, _, public = name.partition(".")
     if top == "kinematify" and public in _HOMES:
-        return _HOMES[public]
+        return {_HOMES[public]}
+    if name.endswith(".*"):
+        return {module for module in modules() if module.rpartition(".")[0] == name[:-2]}
     while name and name not in modules():
         name = name.rpartition(".")[0]
-    return None if name in ("", "kinematify", "tests", "tools") else name
+    return {name} - {"", "kinematify", "tests", "tools"}
