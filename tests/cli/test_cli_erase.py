@@ -55,7 +55,7 @@ def test_options_change_the_parts(model: Path, options: list[str]) -> None:
 
 @pytest.mark.parametrize(
     ("content", "text"),
-    [(None, "cannot be read"), ("<robot", "broken.urdf"), ("", "broken.urdf"), ("<robot name='r'/>", "broken.urdf")],
+    [(None, "There is no file"), ("<robot", "broken.urdf"), ("", "broken.urdf"), ("<robot name='r'/>", "broken.urdf")],
 )
 def test_unusable_descriptions_end_with_2(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], content: str | None, text: str
