@@ -11,7 +11,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, tray
 from kinematify.joints.candidate import JointEstimate, JointType
-from tests.joint_scenes import infer_joints
+from tests.joints.joint_scenes import infer_joints
 from tests.known import KnownJoint, KnownObject
 
 

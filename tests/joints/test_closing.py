@@ -8,7 +8,7 @@ import pytest
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.limits import find_range
-from tests.joint_scenes import CONFIG, scene_of
+from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, moved, turning
 
 Y = np.array([0.0, 1.0, 0.0])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematify.joints.choice.decide import estimate_joints
-from tests.joint_scenes import CONFIG, estimates_of, evidence, infer_joints
+from tests.joints.joint_scenes import CONFIG, estimates_of, evidence, infer_joints
 from tests.known import transformed
 from tests.objects import BUILDERS, shuffled, with_yaw
 

@@ -16,7 +16,7 @@ from kinematify.joints.hypotheses.bearing_line import BearingLine
 from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, middle_leaf, passing_pairs
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.pipeline.infer import infer
-from tests.joint_scenes import evidence
+from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder, tray
 from kinematify.joints.candidate import JointType
-from tests.joint_scenes import infer_joints, scene_of
+from tests.joints.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning, with_yaw
 
 OPEN = (0.0, 1.5)

@@ -12,7 +12,7 @@ from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.measure.guide import guided_share, guided_travel
-from tests.joint_scenes import CONFIG, scene_of
+from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding
 
 if TYPE_CHECKING:

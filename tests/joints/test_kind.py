@@ -18,7 +18,7 @@ from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
-from tests.joint_scenes import CONFIG, estimates_of, evidence, infer_joints, scene_of
+from tests.joints.joint_scenes import CONFIG, estimates_of, evidence, infer_joints, scene_of
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS
 from tests.robots import parallel_gripper

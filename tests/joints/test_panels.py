@@ -9,7 +9,7 @@ import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.hypotheses.panels import RankedTurns, propose_lines, rank_turns
-from tests.joint_scenes import CONFIG, infer_joints, scene_of
+from tests.joints.joint_scenes import CONFIG, infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 from tests.objects import BUILDERS
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.joints.hypotheses.slides import rank_slides
-from tests.joint_scenes import CONFIG, scene_of
+from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.objects import BUILDERS, with_yaw
 
 NO_TWINS = np.empty((0, 3))

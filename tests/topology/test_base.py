@@ -10,7 +10,7 @@ from kinematify.config import load_config
 from kinematify.topology.base import base_by_degree, rank_bases
 from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.stats import part_stats
-from tests.topology_objects import Machine, X, Y, Z, box, graph_of
+from tests.topology.topology_objects import Machine, X, Y, Z, box, graph_of
 
 CONFIG = load_config().topology.base
 

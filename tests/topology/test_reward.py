@@ -19,7 +19,7 @@ from kinematify.topology.quality import (
     parents_from,
 )
 from kinematify.topology.stats import part_stats
-from tests.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
+from tests.topology.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
 
 CONFIG = load_config().topology
 PAPER = load_config("paper").topology

@@ -21,7 +21,7 @@ from kinematify.topology.quality import parents_from
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import open_edges, plausible_bases, search_trees
 from kinematify.topology.virtual import virtual_costs
-from tests.topology_objects import edge, graph_of, random_assembly, stat
+from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
 
 DEFAULT = load_config().topology
 PAPER = load_config("paper").topology
