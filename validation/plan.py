@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import agreement, engines, evidence, meshes, physics, task
+from kinematify.validation.catalogue import agreement, engines, evidence, meshes, task
 from kinematify.validation.checks import checks_of
 from kinematify.validation.isolation import Stage
 
@@ -23,7 +23,7 @@ CheckKey = tuple[str, str | None]
 def asset_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
     return Stage(
-        name="asset", function="kinematify.validation.asset.stage:run", checks=keys(meshes.CHECKS + physics.CHECKS)
+        name="asset", function="kinematify.validation.asset.stage:run", checks=keys((*meshes.CHECKS, *checks_of("KV2")))
     )
 
 

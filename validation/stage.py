@@ -66,6 +66,8 @@ class OpenCheck:
     measured: dict[str, float] = field(default_factory=dict)
     status: Status | None = None
     reason: str | None = None
+    harmful: bool = False
+    """True after an error that forbids later stages to read the file."""
 
     def find(
         self,
@@ -83,9 +85,15 @@ class OpenCheck:
         limit: float | None = None,
         unit: str | None = None,
         line: int | None = None,
+        harmless: bool = False,
     ) -> None:
-        """Add a finding; severity, blame and engine are the check's unless given, see `Finding` for the rest."""
+        """Add a finding.
+
+        Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
+        after which later stages may read the file all the same.
+        """
         check = CATALOGUE[self.id]
+        self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
         self.findings.append(
             Finding(
                 check=self.id,

@@ -13,14 +13,14 @@ from kinematify.geometry.convex import outermost, signed_volume
 from kinematify.geometry.hull import thickened
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.validation.asset.loads import worst_loads
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config.validation import PhysicsSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.robot.robot import LinkMesh
+    from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
 
 _DIRECTIONS = 200
 """The hull of the outermost points in so many directions leaves 1 % of a ball's volume out."""
@@ -64,7 +64,7 @@ class Room:
         return float((self.hull.equations[:, :3] @ point + self.hull.equations[:, 3]).max())
 
 
-def room_of(shapes: Sequence[DeclaredShape]) -> Room | None:
+def room_of(shapes: Sequence[Shape]) -> Room | None:
     """Measure shapes; None where there is nothing to measure."""
     meshes = [shape.mesh for shape in shapes if len(shape.mesh.faces)]
     if not meshes:
@@ -89,7 +89,7 @@ def closed_volume(mesh: LinkMesh) -> float | None:
 class Body:
     """Links that fixed joints hold together."""
 
-    links: tuple[DeclaredLink, ...]
+    links: tuple[Link, ...]
     """The link nearest the root first."""
     T_body_link: dict[str, FloatArray]
     """Pose of each link in the frame of the first."""
@@ -114,7 +114,7 @@ class Body:
         return sum(link.inertial.mass for link in self.links if link.inertial is not None and link.inertial.mass > 0.0)
 
     @cached_property
-    def heaviest(self) -> DeclaredLink:
+    def heaviest(self) -> Link:
         """The link that a wrong mass is most likely written at."""
         return max(self.links, key=lambda link: 0.0 if link.inertial is None else link.inertial.mass)
 
@@ -139,7 +139,7 @@ class Body:
 class Physics:
     """A model with what was measured of it."""
 
-    model: DeclaredModel
+    model: Robot
     settings: PhysicsSettings
     bodies: tuple[Body, ...]
     """The root's first, parents before children."""
@@ -156,7 +156,7 @@ class Physics:
     @cached_property
     def diagonal(self) -> float:
         """Of the model at zero [m]; 0 without geometry."""
-        poses = forward_kinematics(self.model.kinematics, {})
+        poses = forward_kinematics(self.model, {})
         placed = [
             body.room.points @ poses[body.links[0].name][:3, :3].T + poses[body.links[0].name][:3, 3]
             for body in self.bodies
@@ -164,15 +164,26 @@ class Physics:
         ]
         return float(np.linalg.norm(np.ptp(np.concatenate(placed), axis=0))) if placed else 0.0
 
+    @cached_property
+    def worst_loads(self) -> dict[str, tuple[float, dict[str, float]]]:
+        """Largest weight at each joint [N m or N] and the configuration that it was found in, keyed by joint."""
+        return worst_loads(self.model, self.settings.load_doublings)
 
-def measure(model: DeclaredModel, settings: PhysicsSettings) -> Physics:
+    def inflation(self, shape: Shape) -> float:
+        """Volume of the hull of a closed mesh over its own; 0 for other shapes."""
+        volume = closed_volume(shape.mesh) if shape.kind == "mesh" else None
+        room = room_of([shape]) if volume is not None else None
+        return 0.0 if room is None or volume is None else float(room.hull.volume) / volume
+
+
+def measure(model: Robot, settings: PhysicsSettings) -> Physics:
     """Measure every link once."""
     visual = {link.name: room for link in model.links if (room := room_of(link.visuals)) is not None}
     collision = {link.name: room for link in model.links if (room := room_of(link.collisions)) is not None}
-    poses = forward_kinematics(model.kinematics, {})
+    poses = forward_kinematics(model, {})
     bodies = []
-    for group in rigid_groups(model.kinematics):
-        above = model.kinematics.joint_above.get(group.top)
+    for group in rigid_groups(model):
+        above = model.joint_above.get(group.top)
         T_body_world = np.linalg.inv(poses[group.top])
         bodies.append(
             Body(

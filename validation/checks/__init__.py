@@ -6,11 +6,31 @@ import difflib
 
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
-from kinematify.validation.checks import motion, rest, together
+from kinematify.validation.checks import (
+    collision,
+    drives,
+    file_joints,
+    file_names,
+    file_numbers,
+    file_references,
+    file_shapes,
+    file_text,
+    file_tree,
+    inertias,
+    limits,
+    masses,
+    motion,
+    rest,
+    together,
+)
 
 __all__ = ["CHECKS", "checks_of", "find_check"]
 
-_FAMILIES = (rest, motion, together)
+_FAMILIES = (
+    file_text, file_names, file_tree, file_joints, file_numbers, file_shapes, file_references,
+    masses, inertias, limits, drives, collision,
+    rest, motion, together,
+)  # fmt: skip
 """Read for the checks that they register."""
 
 CHECKS: dict[str, Check] = dict(sorted(REGISTRY.items()))

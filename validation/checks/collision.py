@@ -6,25 +6,34 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.asset.bodies import closed_volume, room_of
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem
+from kinematify.validation.check import check
+from kinematify.validation.checks.needs import something_collides
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
+    from kinematify.config.validation import PhysicsSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredLink
+    from kinematify.robot.robot import Link
     from kinematify.validation.asset.bodies import Body, Physics, Room
+    from kinematify.validation.stage import OpenCheck
 
 
-def missing_collisions(physics: Physics) -> Iterator[Problem]:
-    """KV240: one problem for the whole model where no link has any."""
+@check("KV240", title="Links have collision geometry", severity=Severity.WARNING, blame=Blame.PHYSICS)
+def missing_collisions(result: OpenCheck, physics: Physics) -> None:
+    """Every body with geometry has collision geometry, and so has each of its links that stands out of the rest by
+    `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links). Where no
+    link of the file has any, that is one finding.
+
+    Why it matters: Grippers and other parts pass through the link in every engine.
+
+    Remedy: Copy the <visual> to a <collision>, or write a simpler shape.
+    """
+    # One problem for the whole model where no link has any
     solid = [body for body in physics.bodies if body.rooms]
     if solid and not physics.collision:
-        yield Problem(
-            message=f"None of the {len(solid)} bodies has collision geometry: nothing touches anything in an engine.",
-            remedy="Copy each <visual> to a <collision>, or write simpler shapes; concave ones are best cut into "
+        result.find(
+            f"None of the {len(solid)} bodies has collision geometry: nothing touches anything in an engine.",
+            "Copy each <visual> to a <collision>, or write simpler shapes; concave ones are best cut into "
             "convex pieces.",
             link=solid[0].called,
             value=0,
@@ -32,10 +41,10 @@ def missing_collisions(physics: Physics) -> Iterator[Problem]:
         )
         return
     for body in solid:
-        yield from _uncovered(physics, body)
+        _uncovered(result, physics, body)
 
 
-def _uncovered(physics: Physics, body: Body) -> Iterator[Problem]:
+def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
     """What lies within the hull of its body is decoration, unless nearly all links of the file have collisions."""
     solid = {name for other in physics.bodies for name in other.rooms}
     exception = len(solid - set(physics.collision)) <= max(1.0, physics.settings.bare_minority * len(solid))
@@ -44,10 +53,10 @@ def _uncovered(physics: Physics, body: Body) -> Iterator[Problem]:
         if name in physics.collision or (felt is None and name != body.called):
             continue
         counts = felt is None or exception or _stands_out(body, name, felt) > physics.settings.bare_share
-        yield Problem(
-            message=f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and other "
+        result.find(
+            f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and other "
             "links of the model have some: " + ("what meets it passes through." if counts else "it is small."),
-            remedy="Copy its <visual> to a <collision>, or write a simpler shape.",
+            "Copy its <visual> to a <collision>, or write a simpler shape.",
             severity=None if counts else Severity.NOTE,
             link=name,
             line=physics.model.link_by_name[name].line,
@@ -62,34 +71,45 @@ def _stands_out(body: Body, name: str, felt: Room) -> float:
     return max(felt.outside(point) for point in placed.points) / placed.diagonal
 
 
-def displaced_collisions(physics: Physics) -> Iterator[Problem]:
-    """KV241."""
+@check(
+    "KV241",
+    title="Collision geometry stands where it is seen",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    needs=(something_collides,),
+)
+def displaced_collisions(result: OpenCheck, physics: Physics) -> None:
+    """The bounding box of the collision geometry is not shifted against that of the visual one by more than `shift` of
+    its diagonal (`shift_same` if both have the same size; from `shift_wrong` on that is an error), and does not
+    reach `beyond` it. Coarse shapes and shapes of a part of the link are fine.
+
+    Why it matters: The model collides with what nobody sees, and is not stopped by what everybody sees.
+
+    Remedy: Correct the <origin> of the <collision>.
+    """
     for body in physics.bodies:
         for link in body.links:
             seen, felt = physics.visual.get(link.name), physics.collision.get(link.name)
             if seen is not None and felt is not None and seen.diagonal > 0.0:
-                problem = _displaced(physics, body, link, seen, felt)
-                if problem is not None:
-                    yield problem
+                _displaced(result, link, seen, felt, physics.settings)
 
 
-def _displaced(physics: Physics, body: Body, link: DeclaredLink, seen: Room, felt: Room) -> Problem | None:
-    settings = physics.settings
+def _displaced(result: OpenCheck, link: Link, seen: Room, felt: Room, settings: PhysicsSettings) -> None:
     shift = common_shift(seen, felt)
     moved = float(np.linalg.norm(shift)) / seen.diagonal
     same = np.abs((felt.high - felt.low) - (seen.high - seen.low)).max() < settings.same_size * seen.diagonal
     beyond = float(np.maximum(seen.low - felt.low, felt.high - seen.high).max()) / seen.diagonal
     if moved <= (settings.shift_same if same else settings.shift) and beyond <= settings.beyond:
-        return None
+        return
     if moved > settings.shift or same:
         words = f"stands {moved * seen.diagonal:.3g} m beside the visual geometry ({_vector(shift)})"
         value, limit = moved, settings.shift_same if same else settings.shift
     else:
         words = f"reaches {beyond * seen.diagonal:.3g} m beyond the visual geometry"
         value, limit = beyond, settings.beyond
-    return Problem(
-        message=f"The collision geometry of the link {link.name} {words}, which measures {seen.diagonal:.3g} m.",
-        remedy=f"Correct the <origin> of the <collision>; moving it by {_vector(-shift)} would do."
+    result.find(
+        f"The collision geometry of the link {link.name} {words}, which measures {seen.diagonal:.3g} m.",
+        f"Correct the <origin> of the <collision>; moving it by {_vector(-shift)} would do."
         if moved > settings.shift or same
         else "Check the scale and the <origin> of the <collision>.",
         severity=Severity.ERROR if same and moved > settings.shift_wrong else Severity.WARNING,
@@ -115,19 +135,31 @@ def _vector(values: FloatArray) -> str:
     return " ".join(f"{value + 0.0:.3g}" for value in values)
 
 
-def inflated_hulls(physics: Physics) -> Iterator[Problem]:
-    """KV242: one problem per link, the worst of its meshes."""
+@check(
+    "KV242",
+    title="Collision meshes are nearly convex",
+    severity=Severity.NOTE,
+    blame=Blame.PHYSICS,
+    needs=(something_collides,),
+)
+def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
+    """The hull of a closed collision mesh has at most `inflation` times its volume.
+
+    Why it matters: MuJoCo and PyBullet collide the hull: a drawer cannot enter a cabinet that is one mesh.
+    Kinematify cuts such meshes into convex pieces for its own runs.
+
+    Remedy: Cut the mesh into convex pieces and write each as a <collision>.
+    """
+    # One problem per link, the worst of its meshes
     for link in physics.model.links:
-        worst = max((_inflation(index, link) for index in range(len(link.collisions))), default=(0.0, 0))
-        ratio, index = worst
+        ratio, index = max(((physics.inflation(shape), k) for k, shape in enumerate(link.collisions)), default=(0.0, 0))
         if ratio > physics.settings.inflation:
             shape = link.collisions[index]
             name = shape.file.name if shape.file is not None else shape.kind
-            yield Problem(
-                message=f"The hull of the collision mesh {name} of the link {link.name} has {ratio:.3g} times the "
+            result.find(
+                f"The hull of the collision mesh {name} of the link {link.name} has {ratio:.3g} times the "
                 "volume of the mesh, and MuJoCo and PyBullet see the hull: what reaches into its hollows collides.",
-                remedy="Cut it into convex pieces and write each as a <collision> (kinematify export --to urdf, or "
-                "CoACD).",
+                "Cut it into convex pieces and write each as a <collision> (kinematify export --to urdf, or CoACD).",
                 link=link.name,
                 value=ratio,
                 limit=physics.settings.inflation,
@@ -135,35 +167,32 @@ def inflated_hulls(physics: Physics) -> Iterator[Problem]:
             )
 
 
-def _inflation(index: int, link: DeclaredLink) -> tuple[float, int]:
-    shape = link.collisions[index]
-    volume = closed_volume(shape.mesh) if shape.kind == "mesh" else None
-    room = room_of([shape]) if volume is not None else None
-    return (0.0 if room is None or volume is None else float(room.hull.volume) / volume), index
+@check(
+    "KV243",
+    title="Amount of collision geometry",
+    severity=Severity.NOTE,
+    blame=Blame.PHYSICS,
+    needs=(something_collides,),
+)
+def heavy_collisions(result: OpenCheck, physics: Physics) -> None:
+    """No link has more than `collision_shapes` shapes or `collision_faces` triangles to collide with.
 
+    Why it matters: Contacts take most of the time of a simulation.
 
-def heavy_collisions(physics: Physics) -> Iterator[Problem]:
-    """KV243."""
+    Remedy: Use fewer and simpler shapes.
+    """
     settings = physics.settings
     for link in physics.model.links:
         shapes = len(link.collisions)
         faces = sum(len(shape.mesh.faces) for shape in link.collisions if shape.kind == "mesh")
         many = shapes > settings.collision_shapes
         if many or faces > settings.collision_faces:
-            yield Problem(
-                message=f"The link {link.name} has {shapes} collision shapes with {faces} triangles; engines become "
+            result.find(
+                f"The link {link.name} has {shapes} collision shapes with {faces} triangles; engines become "
                 "slow with so many.",
-                remedy="Use fewer and simpler shapes: boxes and cylinders, or convex pieces of some 50 corners.",
+                "Use fewer and simpler shapes: boxes and cylinders, or convex pieces of some 50 corners.",
                 link=link.name,
                 value=shapes if many else faces,
                 limit=settings.collision_shapes if many else settings.collision_faces,
                 line=link.line,
             )
-
-
-PROBES = {
-    "KV240": missing_collisions,
-    "KV241": displaced_collisions,
-    "KV242": inflated_hulls,
-    "KV243": heavy_collisions,
-}

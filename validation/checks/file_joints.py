@@ -6,9 +6,11 @@ import difflib
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.numbers import finite_numbers
-from kinematify.validation.precheck.problem import Problem, line_of, shown
+from kinematify.robot.urdf_numbers import line_of
+from kinematify.validation.check import check
+from kinematify.validation.checks.file_numbers import finite_numbers
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_document import JointElement
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _SINGLE = ("revolute", "continuous", "prismatic")
 _FREE = ("floating", "planar")
@@ -35,23 +38,37 @@ _ELSEWHERE = {
 _UNITS = {"revolute": "rad", "prismatic": "m"}
 
 
-def unknown_types(urdf: Urdf) -> Iterator[Problem]:
-    """KV130."""
+@check("KV130", title="Joint types are known", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def unknown_types(result: OpenCheck, urdf: Urdf) -> None:
+    """Every type is revolute, continuous, prismatic, fixed, floating or planar.
+
+    Why it matters: Readers stop, or take the joint for fixed.
+
+    Remedy: Write one of the types of URDF.
+    """
     for joint in urdf.joints:
         if joint.kind not in _KNOWN:
             near = difflib.get_close_matches(joint.kind.lower(), _KNOWN, n=1)
             instead = _ELSEWHERE.get(joint.kind.lower()) or (near[0] if near else None)
-            yield Problem(
-                message=f"The joint {joint.name} has {f'the type {shown(joint.kind)}' if joint.kind else 'no type'}, "
+            result.find(
+                f"The joint {joint.name} has {f'the type {shown(joint.kind)}' if joint.kind else 'no type'}, "
                 f"which URDF does not have: it knows {', '.join(_KNOWN)}.",
-                remedy=f"Write {instead} instead." if instead else "Write one of the types of URDF.",
+                f"Write {instead} instead." if instead else "Write one of the types of URDF.",
                 joint=joint.name,
                 line=line_of(joint.element),
             )
 
 
-def free_types(urdf: Urdf) -> Iterator[Problem]:
-    """KV131."""
+@check("KV131", title="Joint types are supported", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def free_types(result: OpenCheck, urdf: Urdf) -> None:
+    """No floating or planar joint stands below a link with geometry. Above the root body it is a note: it says that
+    the model stands freely.
+
+    Why it matters: Engines differ in how they read such joints, most as fixed, so that nothing about the model
+    could be compared.
+
+    Remedy: Describe it as several joints with one axis each.
+    """
     above = {edge.child: edge.parent for edge in urdf.edges}
     solid = {name for name, _ in urdf.shapes()}
     for joint in urdf.joints:
@@ -62,36 +79,43 @@ def free_types(urdf: Urdf) -> Iterator[Problem]:
         while link is not None and link not in seen and link not in solid:
             seen.add(link)
             link = above.get(link)
-        yield _free(joint, link if link in solid else None)
+        _free(result, joint, link if link in solid else None)
 
 
-def _free(joint: JointElement, solid: str | None) -> Problem:
+def _free(result: OpenCheck, joint: JointElement, solid: str | None) -> None:
     if solid is None:
-        return Problem(
-            message=f"The {joint.kind} joint {joint.name} above the root body only says that the model stands freely "
+        result.find(
+            f"The {joint.kind} joint {joint.name} above the root body only says that the model stands freely "
             "in the world; here the model stands still.",
-            remedy="Nothing needs to be done.",
+            "Nothing needs to be done.",
             severity=Severity.NOTE,
             joint=joint.name,
             line=line_of(joint.element),
         )
-    return Problem(
-        message=f"The {joint.kind} joint {joint.name} lets {joint.child} move freely below the link {solid}; only "
+        return
+    result.find(
+        f"The {joint.kind} joint {joint.name} lets {joint.child} move freely below the link {solid}; only "
         "joints with one axis can be checked there, and most engines read it as fixed.",
-        remedy="Describe it as several joints with one axis each, or as two models.",
+        "Describe it as several joints with one axis each, or as two models.",
         joint=joint.name,
         line=line_of(joint.element),
     )
 
 
-def zero_axes(urdf: Urdf) -> Iterator[Problem]:
-    """KV134."""
+@check("KV134", title="Axes have a direction", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def zero_axes(result: OpenCheck, urdf: Urdf) -> None:
+    """No axis of a joint that moves has a length of `zero_axis` or less.
+
+    Why it matters: PyBullet moves such a joint in some direction; MuJoCo stops.
+
+    Remedy: Write a unit vector along the hinge line or the direction of sliding.
+    """
     for joint, element, axis in _axes(urdf):
         length = math.hypot(*axis)
         if length <= urdf.settings.zero_axis:
-            yield Problem(
-                message=f"The axis of the joint {joint.name} is {shown(element.get('xyz'))}: it has no direction.",
-                remedy="Write a unit vector along the hinge line or the direction of sliding.",
+            result.find(
+                f"The axis of the joint {joint.name} is {shown(element.get('xyz'))}: it has no direction.",
+                "Write a unit vector along the hinge line or the direction of sliding.",
                 joint=joint.name,
                 value=length,
                 limit=urdf.settings.zero_axis,
@@ -99,16 +123,23 @@ def zero_axes(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def unnormalised_axes(urdf: Urdf) -> Iterator[Problem]:
-    """KV135: readers disagree whether the length of an axis scales the motion."""
+@check("KV135", title="Axes have unit length", severity=Severity.WARNING, blame=Blame.KINEMATICS)
+def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
+    """The length of an axis is one within `unit_axis_tolerance`; it is only a note within `rounded_axis_tolerance`.
+
+    Why it matters: Readers that do not normalise it turn the joint too far or not far enough.
+
+    Remedy: Divide the axis by its length.
+    """
+    # Readers disagree whether the length of an axis scales the motion
     for joint, element, axis in _axes(urdf):
         length = math.hypot(*axis)
         deviation = abs(length - 1.0)
         if length > urdf.settings.zero_axis and deviation > urdf.settings.unit_axis_tolerance:
             rounded = deviation <= urdf.settings.rounded_axis_tolerance
-            yield Problem(
-                message=f"The axis of the joint {joint.name} has the length {length:g}, not 1.",
-                remedy=f"Write {' '.join(f'{value / length:.9g}' for value in axis)}.",
+            result.find(
+                f"The axis of the joint {joint.name} has the length {length:g}, not 1.",
+                f"Write {' '.join(f'{value / length:.9g}' for value in axis)}.",
                 severity=Severity.NOTE if rounded else None,
                 joint=joint.name,
                 value=length,
@@ -117,8 +148,14 @@ def unnormalised_axes(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def missing_limits(urdf: Urdf) -> Iterator[Problem]:
-    """KV136."""
+@check("KV136", title="Joints with limits state them", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
+    """Every revolute and prismatic joint has a <limit>; one that states neither lower nor upper is a warning.
+
+    Why it matters: MuJoCo takes the joint for unlimited, PyBullet and Pinocchio refuse the file.
+
+    Remedy: Add the <limit>, or make the joint continuous.
+    """
     for joint in urdf.joints:
         if joint.kind not in _UNITS:
             continue
@@ -126,10 +163,10 @@ def missing_limits(urdf: Urdf) -> Iterator[Problem]:
         unit = _UNITS[joint.kind]
         if limit is None:
             turns = joint.kind == "revolute"
-            yield Problem(
-                message=f"The {joint.kind} joint {joint.name} has no <limit>: MuJoCo reads it as unlimited, PyBullet "
+            result.find(
+                f"The {joint.kind} joint {joint.name} has no <limit>: MuJoCo reads it as unlimited, PyBullet "
                 "and Pinocchio refuse the file.",
-                remedy=f'Add <limit lower="..." upper="..." effort="..." velocity="..."/> with the range in {unit}'
+                f'Add <limit lower="..." upper="..." effort="..." velocity="..."/> with the range in {unit}'
                 + (', or write type="continuous".' if turns else "."),
                 joint=joint.name,
                 unit=unit,
@@ -137,10 +174,10 @@ def missing_limits(urdf: Urdf) -> Iterator[Problem]:
                 harmless=turns,  # it is read as continuous
             )
         elif limit.get("lower") is None and limit.get("upper") is None:
-            yield Problem(
-                message=f"The <limit> of the {joint.kind} joint {joint.name} states neither lower nor upper; both are "
+            result.find(
+                f"The <limit> of the {joint.kind} joint {joint.name} states neither lower nor upper; both are "
                 "zero then, and the joint cannot move.",
-                remedy=f"Write lower and upper in {unit}.",
+                f"Write lower and upper in {unit}.",
                 severity=Severity.WARNING,
                 joint=joint.name,
                 unit=unit,
@@ -148,34 +185,30 @@ def missing_limits(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def swapped_limits(urdf: Urdf) -> Iterator[Problem]:
-    """KV137."""
+@check("KV137", title="Limits stand in order", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def swapped_limits(result: OpenCheck, urdf: Urdf) -> None:
+    """lower is not above upper.
+
+    Why it matters: MuJoCo takes the joint for unlimited, others lock it.
+
+    Remedy: Swap the two values.
+    """
     for joint in urdf.joints:
         limit = joint.element.find("limit")
         if joint.kind not in _UNITS or limit is None:
             continue
         lower, upper = (_one(limit, name) for name in ("lower", "upper"))
         if lower is not None and upper is not None and lower > upper:
-            yield Problem(
-                message=f"The joint {joint.name} has the lower limit {lower:g} above the upper limit {upper:g}; MuJoCo "
+            result.find(
+                f"The joint {joint.name} has the lower limit {lower:g} above the upper limit {upper:g}; MuJoCo "
                 "reads this as unlimited.",
-                remedy=f'Write lower="{upper:g}" upper="{lower:g}" if they were swapped.',
+                f'Write lower="{upper:g}" upper="{lower:g}" if they were swapped.',
                 joint=joint.name,
                 value=lower,
                 limit=upper,
                 unit=_UNITS[joint.kind],
                 line=line_of(limit),
             )
-
-
-PROBES = {
-    "KV130": unknown_types,
-    "KV131": free_types,
-    "KV134": zero_axes,
-    "KV135": unnormalised_axes,
-    "KV136": missing_limits,
-    "KV137": swapped_limits,
-}
 
 
 def _axes(urdf: Urdf) -> Iterator[tuple[JointElement, _Element, list[float]]]:

@@ -6,8 +6,10 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem, line_of, shown
+from kinematify.robot.urdf_numbers import line_of
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,31 +17,44 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-def missing_names(urdf: Urdf) -> Iterator[Problem]:
-    """KV110."""
+@check("KV110", title="Names present", severity=Severity.ERROR, blame=Blame.ASSET)
+def missing_names(result: OpenCheck, urdf: Urdf) -> None:
+    """Every link and joint has a name; the robot should have one.
+
+    Why it matters: Without a name nothing can refer to it; most readers stop.
+
+    Remedy: Name it.
+    """
     for element in _named(urdf):
         if not (element.get("name") or "").strip():
-            yield Problem(
-                message=f"A <{element.tag}> has no name, so that nothing can refer to it.",
-                remedy=f'Write <{element.tag} name="..."> with a name that no other {element.tag} has.',
+            result.find(
+                f"A <{element.tag}> has no name, so that nothing can refer to it.",
+                f'Write <{element.tag} name="..."> with a name that no other {element.tag} has.',
                 line=line_of(element),
             )
     if not (urdf.robot.get("name") or "").strip():
-        yield Problem(
-            message="The <robot> has no name; PyBullet and urdfdom want one.",
-            remedy='Write <robot name="...">.',
+        result.find(
+            "The <robot> has no name; PyBullet and urdfdom want one.",
+            'Write <robot name="...">.',
             severity=Severity.WARNING,
             line=line_of(urdf.robot),
         )
 
 
-def repeated_names(urdf: Urdf) -> Iterator[Problem]:
-    """KV111."""
+@check("KV111", title="Names unique", severity=Severity.ERROR, blame=Blame.ASSET)
+def repeated_names(result: OpenCheck, urdf: Urdf) -> None:
+    """No two links, and no two joints, have the same name.
+
+    Why it matters: Readers keep one of the two, and not the same one.
+
+    Remedy: Rename one of them, and correct what refers to it.
+    """
     seen: dict[tuple[str, str], list[_Element]] = defaultdict(list)
     for element in _named(urdf):
         if name := element.get("name"):
@@ -47,9 +62,9 @@ def repeated_names(urdf: Urdf) -> Iterator[Problem]:
     for (tag, name), elements in seen.items():
         if len(elements) > 1:
             lines = ", ".join(str(line_of(element)) for element in elements[:8])
-            yield Problem(
-                message=f"{len(elements)} {tag}s have the name {shown(name)} (lines {lines}).",
-                remedy=f"Give every {tag} a name of its own, and correct what refers to it.",
+            result.find(
+                f"{len(elements)} {tag}s have the name {shown(name)} (lines {lines}).",
+                f"Give every {tag} a name of its own, and correct what refers to it.",
                 value=len(elements),
                 limit=1,
                 line=line_of(elements[1]),
@@ -58,37 +73,41 @@ def repeated_names(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def odd_names(urdf: Urdf) -> Iterator[Problem]:
-    """KV112."""
+@check("KV112", title="Names usable elsewhere", severity=Severity.WARNING, blame=Blame.ASSET)
+def odd_names(result: OpenCheck, urdf: Urdf) -> None:
+    """Names hold no spaces, slashes, quotes and the like; a link below a joint is not called world. Other signs that
+    are no part of identifiers are a note.
+
+    Why it matters: USD, ROS and MuJoCo change or refuse such names, so that results cannot be matched.
+
+    Remedy: Use letters, digits and underscores.
+    """
     plain = []
     for element in _named(urdf):
         name = element.get("name") or ""
         bad = _HARMFUL.search(name)
         if bad is not None:
-            yield _odd(element, f"holds {bad.group()!r}, which paths and other formats give a meaning of its own")
+            _odd(result, element, f"holds {bad.group()!r}, which paths and other formats give a meaning of its own")
         elif element.tag == "link" and name == "world" and name not in urdf.roots:
-            yield _odd(element, "is what MuJoCo calls the fixed world, but the link hangs on a joint")
+            _odd(result, element, "is what MuJoCo calls the fixed world, but the link hangs on a joint")
         elif name and not _IDENTIFIER.fullmatch(name):
             plain.append(element)
     if plain:
-        yield Problem(
-            message=f"Names that are no identifiers: {len(plain)}, the first is {shown(plain[0].get('name'))}. USD and "
+        result.find(
+            f"Names that are no identifiers: {len(plain)}, the first is {shown(plain[0].get('name'))}. USD and "
             "many scripts will change them.",
-            remedy="Use letters, digits and underscores, beginning with a letter.",
+            "Use letters, digits and underscores, beginning with a letter.",
             severity=Severity.NOTE,
             value=len(plain),
             line=line_of(plain[0]),
         )
 
 
-PROBES = {"KV110": missing_names, "KV111": repeated_names, "KV112": odd_names}
-
-
-def _odd(element: _Element, why: str) -> Problem:
+def _odd(result: OpenCheck, element: _Element, why: str) -> None:
     name = element.get("name")
-    return Problem(
-        message=f"The name {shown(name)} of a {element.tag} {why}.",
-        remedy="Use letters, digits and underscores, beginning with a letter.",
+    result.find(
+        f"The name {shown(name)} of a {element.tag} {why}.",
+        "Use letters, digits and underscores, beginning with a letter.",
         line=line_of(element),
         joint=name if element.tag == "joint" else None,
         link=name if element.tag == "link" else None,

@@ -7,8 +7,10 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem, blame_of, line_of, shown
+from kinematify.robot.urdf_numbers import line_of
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import blame_of, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _Counts = dict[str, dict[str, tuple[int, ...]]]
@@ -66,15 +69,21 @@ class _Field:
         return f"{self.attribute}={shown(self.text)} of <{self.element.tag}> of {owner}"
 
 
-def unreadable_numbers(urdf: Urdf) -> Iterator[Problem]:
-    """KV132."""
+@check("KV132", title="Numbers are finite and complete", severity=Severity.ERROR, blame=Blame.ASSET)
+def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
+    """Every attribute that holds numbers holds the right count of plain, finite ones.
+
+    Why it matters: A NaN in an axis passes MuJoCo and PyBullet and turns every later state into NaN.
+
+    Remedy: Write plain numbers separated by spaces; find out why the exporter failed there.
+    """
     for field in _fields(urdf):
         values = finite_numbers(field.text)
         if values is not None and len(values) in field.counts:
             continue
-        yield Problem(
-            message=f"{field.called} is {_what(field.text, values)}; expected {_COUNTS[field.counts[0]]}.",
-            remedy=_remedy(field.text),
+        result.find(
+            f"{field.called} is {_what(field.text, values)}; expected {_COUNTS[field.counts[0]]}.",
+            _remedy(field.text),
             severity=Severity.WARNING if field.element.tag == "color" else None,
             blame=blame_of(field.element),
             joint=field.joint,
@@ -106,8 +115,16 @@ def _remedy(text: str) -> str:
     return "Write plain numbers separated by spaces, such as 0 0.5 1e-3; find out why the exporter failed here."
 
 
-def implausible_numbers(urdf: Urdf) -> Iterator[Problem]:
-    """KV133."""
+@check("KV133", title="Numbers are of a plausible size", severity=Severity.ERROR, blame=Blame.ASSET)
+def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
+    """No number is larger than `max_number` (a warning for effort, velocity, damping and friction), and no roll, pitch
+    or yaw is more than one turn (a warning).
+
+    Why it matters: With 1e16 metres or radians all digits are lost and simulations end in NaN; angles above a turn
+    are degrees most of the time.
+
+    Remedy: Write the true value in metres, radians and kilograms; use a continuous joint where there is no limit.
+    """
     settings = urdf.settings
     for field in _fields(urdf):
         values = finite_numbers(field.text)
@@ -115,11 +132,11 @@ def implausible_numbers(urdf: Urdf) -> Iterator[Problem]:
             continue
         largest = max(values, key=abs)
         if abs(largest) > settings.max_number:
-            yield _huge(field, largest, settings.max_number)
+            _huge(result, field, largest, settings.max_number)
         elif field.attribute == "rpy" and abs(largest) > settings.max_angle:
-            yield Problem(
-                message=f"{field.called} turns by {largest:g} rad, more than a whole turn; it looks like degrees.",
-                remedy=f"Write {math.radians(largest):.6g} if degrees were meant.",
+            result.find(
+                f"{field.called} turns by {largest:g} rad, more than a whole turn; it looks like degrees.",
+                f"Write {math.radians(largest):.6g} if degrees were meant.",
                 severity=Severity.WARNING,
                 blame=blame_of(field.element),
                 value=abs(largest),
@@ -131,12 +148,12 @@ def implausible_numbers(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def _huge(field: _Field, value: float, limit: float) -> Problem:
+def _huge(result: OpenCheck, field: _Field, value: float, limit: float) -> None:
     bound = field.attribute in ("lower", "upper")
     drive = field.attribute in _DRIVE
-    return Problem(
-        message=f"{field.called} is {value:g}; above {limit:g} engines lose all digits and simulations turn into NaN.",
-        remedy=(
+    result.find(
+        f"{field.called} is {value:g}; above {limit:g} engines lose all digits and simulations turn into NaN.",
+        (
             'Write type="continuous" where a hinge has no limit.'
             if bound
             else "Write what the motor can do."
@@ -151,9 +168,6 @@ def _huge(field: _Field, value: float, limit: float) -> Problem:
         limit=limit,
         line=line_of(field.element),
     )
-
-
-PROBES = {"KV132": unreadable_numbers, "KV133": implausible_numbers}
 
 
 def _fields(urdf: Urdf) -> Iterator[_Field]:

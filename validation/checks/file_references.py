@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.mesh_paths import MESH_SUFFIXES, find_mesh
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem, line_of, shown
+from kinematify.robot.urdf_numbers import line_of
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _BY_ENGINES = (".obj", ".stl")
 _DRIVE = re.compile(r"[A-Za-z]:[\\/]")
@@ -35,13 +38,19 @@ class _Reference:
     """Why there is none."""
 
 
-def missing_files(urdf: Urdf) -> Iterator[Problem]:
-    """KV141."""
+@check("KV141", title="Mesh files exist", severity=Severity.ERROR, blame=Blame.ASSET)
+def missing_files(result: OpenCheck, urdf: Urdf) -> None:
+    """Every file name leads to a file, through packages where it says so.
+
+    Why it matters: The link is invisible and collides with nothing, or the model does not load.
+
+    Remedy: Put the file there, correct the path, or name the package's folder with --package-dir.
+    """
     for reference in _references(urdf):
         if reference.path is None:
-            yield Problem(
-                message=reference.fault,
-                remedy=_remedy(reference.filename, urdf.folder),
+            result.find(
+                reference.fault,
+                _remedy(reference.filename, urdf.folder),
                 link=reference.link,
                 line=reference.line,
             )
@@ -70,34 +79,46 @@ def _same_but_for_case(path: Path) -> Path | None:
         return None
 
 
-def unknown_formats(urdf: Urdf) -> Iterator[Problem]:
-    """KV142."""
+@check("KV142", title="Mesh formats can be read", severity=Severity.ERROR, blame=Blame.ASSET)
+def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
+    """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
+
+    Why it matters: Each reader knows other formats; what it does not know it drops or refuses.
+
+    Remedy: Convert the mesh to OBJ or binary STL.
+    """
     converted: dict[str, list[_Reference]] = defaultdict(list)
     for reference in _references(urdf):
         suffix = PurePosixPath(reference.filename.replace("\\", "/")).suffix.lower()
         if suffix not in MESH_SUFFIXES:
-            yield Problem(
-                message=f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can "
-                "be read.",
-                remedy=f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
+            result.find(
+                f"The mesh {shown(reference.filename)} of the link {reference.link} is of no format that can be read.",
+                f"Convert it to one of {', '.join(MESH_SUFFIXES)}, for example with Blender.",
                 link=reference.link,
                 line=reference.line,
             )
         elif suffix not in _BY_ENGINES:
             converted[suffix].append(reference)
     for suffix, references in converted.items():
-        yield Problem(
-            message=f"Meshes in {suffix} files: {len(references)}. MuJoCo reads OBJ and binary STL only; they are "
+        result.find(
+            f"Meshes in {suffix} files: {len(references)}. MuJoCo reads OBJ and binary STL only; they are "
             "converted for the checks.",
-            remedy="Export OBJ or binary STL as well if MuJoCo is to load the file itself.",
+            "Export OBJ or binary STL as well if MuJoCo is to load the file itself.",
             severity=Severity.NOTE,
             value=len(references),
             line=references[0].line,
         )
 
 
-def repeated_base_names(urdf: Urdf) -> Iterator[Problem]:
-    """KV143, one note for all of them."""
+@check("KV143", title="Mesh files have names of their own", severity=Severity.NOTE, blame=Blame.ASSET)
+def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
+    """No two different mesh files have the same name without folder and suffix.
+
+    Why it matters: MuJoCo names meshes after their files: of two called alike, one is shown for both.
+
+    Remedy: Rename one of the files.
+    """
+    # One note for all of them
     found: dict[str, dict[Path, _Reference]] = defaultdict(dict)
     for reference in _references(urdf):
         if reference.path is not None:
@@ -105,32 +126,36 @@ def repeated_base_names(urdf: Urdf) -> Iterator[Problem]:
     repeated = {name: list(references.values()) for name, references in found.items() if len(references) > 1}
     if repeated:
         name, (first, second, *_) = next(iter(repeated.items()))
-        yield Problem(
-            message=f"Names that several mesh files share: {len(repeated)}, the first is {shown(name)} "
+        result.find(
+            f"Names that several mesh files share: {len(repeated)}, the first is {shown(name)} "
             f"({shown(first.filename)} and {shown(second.filename)}); MuJoCo names meshes after their files and takes "
             "one for the other when it strips the paths.",
-            remedy="Give every mesh file a name of its own. Here they are renamed for the engines.",
+            "Give every mesh file a name of its own. Here they are renamed for the engines.",
             link=second.link,
             value=len(repeated),
             line=second.line,
         )
 
 
-def bound_paths(urdf: Urdf) -> Iterator[Problem]:
-    """KV144, one note for all of them."""
+@check("KV144", title="Mesh paths hold elsewhere", severity=Severity.NOTE, blame=Blame.ASSET)
+def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
+    """No mesh path is absolute or written with backslashes.
+
+    Why it matters: The model works on the author's machine only.
+
+    Remedy: Write paths relative to the URDF, or package://NAME/PATH.
+    """
+    # One note for all of them
     bound = [reference for reference in _references(urdf) if _is_bound(reference.filename)]
     if bound:
-        yield Problem(
-            message=f"Mesh paths that hold on one machine or system only: {len(bound)}, the first is "
+        result.find(
+            f"Mesh paths that hold on one machine or system only: {len(bound)}, the first is "
             f"{shown(bound[0].filename)}.",
-            remedy="Write paths relative to the URDF with forward slashes, or package://NAME/PATH.",
+            "Write paths relative to the URDF with forward slashes, or package://NAME/PATH.",
             value=len(bound),
             link=bound[0].link,
             line=bound[0].line,
         )
-
-
-PROBES = {"KV141": missing_files, "KV142": unknown_formats, "KV143": repeated_base_names, "KV144": bound_paths}
 
 
 def _is_bound(filename: str) -> bool:

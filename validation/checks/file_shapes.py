@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.numbers import finite_numbers
-from kinematify.validation.precheck.problem import Problem, blame_of, line_of, shown
+from kinematify.robot.urdf_numbers import line_of
+from kinematify.validation.check import check
+from kinematify.validation.checks.file_numbers import finite_numbers
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import blame_of, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,21 +18,28 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 _KNOWN = ("mesh", *_SIZES)
 
 
-def bad_sizes(urdf: Urdf) -> Iterator[Problem]:
-    """KV138."""
+@check("KV138", title="Sizes of primitives", severity=Severity.ERROR, blame=Blame.ASSET)
+def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
+    """Every length of a box, sphere, cylinder or capsule is above zero.
+
+    Why it matters: PyBullet accepts a negative size and collides with something else than the picture shows.
+
+    Remedy: Write the true size in metres.
+    """
     for link, element, shape in _shapes(urdf):
         for attribute in _SIZES.get(str(shape.tag), ()):
             values = finite_numbers(shape.get(attribute) or "")
             if values and min(values) <= 0.0:
-                yield Problem(
-                    message=f"The <{shape.tag}> of a {element.tag} of the link {link} has {attribute}="
+                result.find(
+                    f"The <{shape.tag}> of a {element.tag} of the link {link} has {attribute}="
                     f"{shown(shape.get(attribute))}; every length must be above zero.",
-                    remedy="Write the true size in metres, or delete the element.",
+                    "Write the true size in metres, or delete the element.",
                     blame=blame_of(element),
                     link=link,
                     value=min(values),
@@ -40,28 +49,34 @@ def bad_sizes(urdf: Urdf) -> Iterator[Problem]:
                 )
 
 
-def bad_scales(urdf: Urdf) -> Iterator[Problem]:
-    """KV139."""
+@check("KV139", title="Scales of meshes", severity=Severity.ERROR, blame=Blame.ASSET)
+def bad_scales(result: OpenCheck, urdf: Urdf) -> None:
+    """No factor of a mesh scale is zero (`zero_scale`); a negative one is a note.
+
+    Why it matters: A mesh scaled by zero vanishes; a mirrored one is inside out for some readers.
+
+    Remedy: Write the factor from the unit of the mesh to metres.
+    """
     for link, element, shape in _shapes(urdf):
         scale = finite_numbers(shape.get("scale") or "") if shape.tag == "mesh" else None
         if not scale:
             continue
         smallest = min(scale, key=abs)
         if abs(smallest) <= urdf.settings.zero_scale:
-            yield Problem(
-                message=f"The mesh of a {element.tag} of the link {link} is scaled by {shown(shape.get('scale'))}, "
+            result.find(
+                f"The mesh of a {element.tag} of the link {link} is scaled by {shown(shape.get('scale'))}, "
                 "which leaves nothing of it.",
-                remedy="Write 1 1 1, or 0.001 0.001 0.001 for a mesh in millimetres.",
+                "Write 1 1 1, or 0.001 0.001 0.001 for a mesh in millimetres.",
                 link=link,
                 value=smallest,
                 limit=urdf.settings.zero_scale,
                 line=line_of(shape),
             )
         elif min(scale) < 0.0:
-            yield Problem(
-                message=f"The mesh of a {element.tag} of the link {link} is mirrored by its scale "
+            result.find(
+                f"The mesh of a {element.tag} of the link {link} is mirrored by its scale "
                 f"{shown(shape.get('scale'))}; some readers turn it inside out.",
-                remedy="Mirror the mesh itself and write a positive scale.",
+                "Mirror the mesh itself and write a positive scale.",
                 severity=Severity.NOTE,
                 link=link,
                 value=min(scale),
@@ -70,15 +85,21 @@ def bad_scales(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def malformed_shapes(urdf: Urdf) -> Iterator[Problem]:
-    """KV140."""
+@check("KV140", title="Geometry elements are complete", severity=Severity.ERROR, blame=Blame.ASSET)
+def malformed_shapes(result: OpenCheck, urdf: Urdf) -> None:
+    """Every visual and collision holds one known shape with the attributes that it needs.
+
+    Why it matters: Readers stop, or drop the shape in silence.
+
+    Remedy: Give every visual and collision one complete shape.
+    """
     for link, element in urdf.shapes():
         fault = _fault(element)
         if fault is not None:
             message, remedy = fault
-            yield Problem(
-                message=f"A {element.tag} of the link {link} {message}.",
-                remedy=remedy,
+            result.find(
+                f"A {element.tag} of the link {link} {message}.",
+                remedy,
                 blame=blame_of(element),
                 link=link,
                 line=line_of(element),
@@ -103,9 +124,6 @@ def _fault(element: _Element) -> tuple[str, str] | None:
     if absent:
         return f"has a <{shape.tag}> without {' and '.join(absent)}", f'Write <{shape.tag} {absent[0]}="..."/>.'
     return None
-
-
-PROBES = {"KV138": bad_sizes, "KV139": bad_scales, "KV140": malformed_shapes}
 
 
 def _shapes(urdf: Urdf) -> Iterator[tuple[str, _Element, _Element]]:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from lxml import etree
 
+from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem, line_of, shown
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_text import UrdfText
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _CHILDREN = {
     "robot": {"link", "joint", "material", "transmission", "gazebo", "sensor"},
@@ -49,30 +52,52 @@ for _parent, _children in _CHILDREN.items():
 _DOCTYPE = re.compile(rb"<!(DOCTYPE|ENTITY)\b")
 
 
-def syntax_problems(source: UrdfText) -> Iterator[Problem]:
-    """KV101."""
+@check("KV101", title="The file is well-formed XML", severity=Severity.ERROR, blame=Blame.ASSET)
+def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
+    """The XML parser reads the whole file.
+
+    Why it matters: No reader loads a file that breaks off or holds a stray sign; some crash instead of saying
+    where.
+
+    Remedy: Correct the line that is named; if the file ends too early, export or copy it again.
+    """
     for line, message in source.syntax_errors:
-        yield Problem(
-            message=f"The text is not well-formed XML: {message}.",
-            remedy=f"Correct line {line}; a file that ends too early was cut off while it was written or copied.",
+        result.find(
+            f"The text is not well-formed XML: {message}.",
+            f"Correct line {line}; a file that ends too early was cut off while it was written or copied.",
             line=line,
         )
 
 
-def doctype_problems(source: UrdfText) -> Iterator[Problem]:
-    """KV102."""
+@check("KV102", title="No DOCTYPE and no entities", severity=Severity.ERROR, blame=Blame.ASSET)
+def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
+    """The file declares neither a DOCTYPE nor entities.
+
+    Why it matters: A few lines of entities can unfold to gigabytes, and external ones read files of the machine. No
+    URDF needs them.
+
+    Remedy: Delete the declaration and write the values where they are used.
+    """
     declared = _DOCTYPE.search(source.text) if source.robot is None else has_doctype(source.robot)
     if declared:
         found = _DOCTYPE.search(source.text)
-        yield Problem(
-            message="The file declares a DOCTYPE or entities, which no URDF needs and which can fill the memory.",
-            remedy="Delete the declaration and write the values of its entities where they are used.",
+        result.find(
+            "The file declares a DOCTYPE or entities, which no URDF needs and which can fill the memory.",
+            "Delete the declaration and write the values of its entities where they are used.",
             line=1 if found is None else source.text.count(b"\n", 0, found.start()) + 1,
         )
 
 
-def cap_problems(urdf: Urdf) -> Iterator[Problem]:
-    """KV103."""
+@check("KV103", title="Size within the caps", severity=Severity.ERROR, blame=Blame.ASSET)
+def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
+    """Elements, links and joints, and how deep links hang one below the other, stay below `max_elements`, `max_links`
+    and `max_depth`.
+
+    Why it matters: A chain of 20,000 links hangs MuJoCo and crashes Pinocchio; no known robot has more than about
+    150.
+
+    Remedy: Split the model, or merge links that fixed joints hold together.
+    """
     settings = urdf.settings
     depths = urdf.depths(urdf.roots)
     elements = sum(1 for _ in urdf.robot.iter(etree.Element))
@@ -83,24 +108,30 @@ def cap_problems(urdf: Urdf) -> Iterator[Problem]:
         ("joints one below the other", max(depths.values(), default=0), settings.max_depth),
     ):
         if count > most:
-            yield Problem(
-                message=f"The file has {count} {what}; at most {most} are handed to engines, some of which hang or "
+            result.find(
+                f"The file has {count} {what}; at most {most} are handed to engines, some of which hang or "
                 "crash with more.",
-                remedy="Split the model, or merge links that fixed joints hold together.",
+                "Split the model, or merge links that fixed joints hold together.",
                 value=count,
                 limit=most,
             )
 
 
-def long_text(urdf: Urdf) -> Iterator[Problem]:
-    """KV104."""
+@check("KV104", title="Lines and names short enough", severity=Severity.WARNING, blame=Blame.ASSET)
+def long_text(result: OpenCheck, urdf: Urdf) -> None:
+    """No line is longer than `max_line_bytes`, no name longer than `max_name`.
+
+    Why it matters: PyBullet fails on lines of 8 KB and crashes on a robot name of 1,100 characters.
+
+    Remedy: Format the file with one tag per line; shorten the names.
+    """
     settings = urdf.settings
     lengths = [len(line) for line in urdf.text.split(b"\n")]
     longest = max(lengths)
     if longest > settings.max_line_bytes:
-        yield Problem(
-            message=f"The longest of the lines has {longest} bytes; PyBullet fails to parse lines of about 8 KB.",
-            remedy="Write one tag per line (`xmllint --format`). Engines are given a copy with short lines here.",
+        result.find(
+            f"The longest of the lines has {longest} bytes; PyBullet fails to parse lines of about 8 KB.",
+            "Write one tag per line (`xmllint --format`). Engines are given a copy with short lines here.",
             value=longest,
             limit=settings.max_line_bytes,
             unit="bytes",
@@ -109,34 +140,41 @@ def long_text(urdf: Urdf) -> Iterator[Problem]:
     for element in (urdf.robot, *urdf.links, *(joint.element for joint in urdf.joints)):
         name = element.get("name") or ""
         if len(name) > settings.max_name:
-            yield Problem(
-                message=f"The name of a <{element.tag}> has {len(name)} characters; PyBullet crashes with very long "
-                "names.",
-                remedy=f"Use at most {settings.max_name} characters.",
+            result.find(
+                f"The name of a <{element.tag}> has {len(name)} characters; PyBullet crashes with very long names.",
+                f"Use at most {settings.max_name} characters.",
                 value=len(name),
                 limit=settings.max_name,
                 line=line_of(element),
             )
 
 
-def displaced_elements(urdf: Urdf) -> Iterator[Problem]:
-    """KV105: more than once where it may stand once, or known but in the wrong place."""
+@check("KV105", title="Elements once and in their place", severity=Severity.WARNING, blame=Blame.ASSET)
+def displaced_elements(result: OpenCheck, urdf: Urdf) -> None:
+    """What may stand once in its parent stands once, and what URDF knows stands where URDF wants it.
+
+    Why it matters: With two <origin> elements one reader takes the first, another the last; a <link> inside a
+    <link> is not there for any.
+
+    Remedy: Keep one element, in the place that the finding names.
+    """
+    # More than once where it may stand once, or known but in the wrong place
     for parent in _structure(urdf.robot):
         counts = Counter(child.tag for child in parent if isinstance(child.tag, str))
         for tag, count in counts.items():
             single = tag in _CHILDREN[parent.tag] - _REPEATABLE.get(parent.tag, set())
             if single and count > 1 and parent.tag != "geometry":  # geometries have a check of their own
-                yield _repeated(parent, tag, count)
+                _repeated(result, parent, tag, count)
         for child in parent:
             if _is_displaced(child, parent):
-                yield _displaced(child, parent)
+                _displaced(result, child, parent)
 
 
-def _repeated(parent: _Element, tag: str, count: int) -> Problem:
+def _repeated(result: OpenCheck, parent: _Element, tag: str, count: int) -> None:
     second = parent.findall(tag)[1]
-    return Problem(
-        message=f"{_called(parent)} has {count} <{tag}> elements; readers differ in which of them they take.",
-        remedy=f"Keep one <{tag}>.",
+    result.find(
+        f"{_called(parent)} has {count} <{tag}> elements; readers differ in which of them they take.",
+        f"Keep one <{tag}>.",
         value=count,
         limit=1,
         line=line_of(second),
@@ -145,19 +183,26 @@ def _repeated(parent: _Element, tag: str, count: int) -> Problem:
     )
 
 
-def _displaced(child: _Element, parent: _Element) -> Problem:
+def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
     homes = " or ".join(f"<{home}>" for home in sorted(_HOMES[child.tag]))
-    return Problem(
-        message=f"A <{child.tag}> {shown(child.get('name'))} stands inside {_called(parent)}, where no reader looks.",
-        remedy=f"Move it into {homes}, or delete it.",
+    result.find(
+        f"A <{child.tag}> {shown(child.get('name'))} stands inside {_called(parent)}, where no reader looks.",
+        f"Move it into {homes}, or delete it.",
         line=line_of(child),
         link=_owner(parent, "link"),
         joint=_owner(parent, "joint"),
     )
 
 
-def unknown_elements(urdf: Urdf) -> Iterator[Problem]:
-    """KV106, one note per kind of element."""
+@check("KV106", title="Elements are known", severity=Severity.NOTE, blame=Blame.ASSET)
+def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
+    """Elements that neither URDF nor the usual extensions define are counted by kind.
+
+    Why it matters: A tag with a typing mistake is ignored in silence, with all that it says.
+
+    Remedy: Correct the tag, or delete it if nothing reads it.
+    """
+    # One note per kind of element
     found: dict[tuple[str, str], list[_Element]] = defaultdict(list)
     for parent in _structure(urdf.robot):
         for child in parent:
@@ -165,16 +210,13 @@ def unknown_elements(urdf: Urdf) -> Iterator[Problem]:
                 found[str(parent.tag), str(child.tag)].append(child)
     for (parent_tag, tag), elements in found.items():
         close = next((known for known in _CHILDREN[parent_tag] if known.lower() == tag.lower()), None)
-        yield Problem(
-            message=f"URDF has no <{tag}> inside <{parent_tag}>; what it says is ignored (found: {len(elements)}).",
-            remedy=f"Write <{close}>: tags are case-sensitive." if close else "Delete it if nothing reads it.",
+        result.find(
+            f"URDF has no <{tag}> inside <{parent_tag}>; what it says is ignored (found: {len(elements)}).",
+            f"Write <{close}>: tags are case-sensitive." if close else "Delete it if nothing reads it.",
             severity=Severity.WARNING if close else None,
             value=len(elements),
             line=line_of(elements[0]),
         )
-
-
-PROBES = {"KV104": long_text, "KV105": displaced_elements, "KV106": unknown_elements}
 
 
 def _structure(robot: _Element) -> Iterator[_Element]:

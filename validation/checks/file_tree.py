@@ -6,8 +6,10 @@ import difflib
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem, line_of, shown
+from kinematify.robot.urdf_numbers import line_of
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.precheck.words import shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -16,65 +18,90 @@ if TYPE_CHECKING:
 
     from kinematify.robot.urdf_document import JointElement
     from kinematify.validation.precheck.urdf import Urdf
+    from kinematify.validation.stage import OpenCheck
 
 _SHOWN = 8
 
 
-def no_links(urdf: Urdf) -> Iterator[Problem]:
-    """KV120."""
+@check("KV120", title="There are links", severity=Severity.ERROR, blame=Blame.ASSET)
+def no_links(result: OpenCheck, urdf: Urdf) -> None:
+    """At least one <link> stands in the <robot>.
+
+    Why it matters: An empty model proves nothing.
+
+    Remedy: Give a URDF with at least one link.
+    """
     if not urdf.links:
-        yield Problem(
-            message="The file holds no link, so there is nothing to move and nothing to look at.",
-            remedy="Give a URDF with at least one link.",
+        result.find(
+            "The file holds no link, so there is nothing to move and nothing to look at.",
+            "Give a URDF with at least one link.",
             line=line_of(urdf.robot),
         )
 
 
-def dangling_ends(urdf: Urdf) -> Iterator[Problem]:
-    """KV121."""
+@check("KV121", title="Parents and children exist", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def dangling_ends(result: OpenCheck, urdf: Urdf) -> None:
+    """Every joint names a parent and a child, and both are links of the file.
+
+    Why it matters: Readers stop, or drop the joint with all that hangs on it.
+
+    Remedy: Correct the name of the link.
+    """
     known = set(urdf.link_names)
     for joint in urdf.joints:
         for tag, link in (("parent", joint.parent), ("child", joint.child)):
             if not link:
-                yield Problem(
-                    message=f"The joint {joint.name} names no {tag} link.",
-                    remedy=f'Add <{tag} link="..."/>.',
+                result.find(
+                    f"The joint {joint.name} names no {tag} link.",
+                    f'Add <{tag} link="..."/>.',
                     joint=joint.name,
                     line=line_of(joint.element),
                 )
             elif link not in known:
-                yield Problem(
-                    message=f"The {tag} of the joint {joint.name} is the link {shown(link)}, which is not there.",
-                    remedy=_suggestion(link, known, "link"),
+                result.find(
+                    f"The {tag} of the joint {joint.name} is the link {shown(link)}, which is not there.",
+                    _suggestion(link, known, "link"),
                     joint=joint.name,
                     line=_line(joint, tag),
                 )
 
 
-def self_joined(urdf: Urdf) -> Iterator[Problem]:
-    """KV122."""
+@check("KV122", title="Parent and child differ", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def self_joined(result: OpenCheck, urdf: Urdf) -> None:
+    """No joint joins a link to itself.
+
+    Why it matters: PyBullet crashes with such a joint.
+
+    Remedy: Name two different links.
+    """
     for joint in urdf.joints:
         if joint.parent and joint.parent == joint.child:
-            yield Problem(
-                message=f"The joint {joint.name} joins the link {joint.child} to itself; PyBullet crashes with this.",
-                remedy="Name two different links.",
+            result.find(
+                f"The joint {joint.name} joins the link {joint.child} to itself; PyBullet crashes with this.",
+                "Name two different links.",
                 joint=joint.name,
                 link=joint.child,
                 line=_line(joint, "child"),
             )
 
 
-def second_parents(urdf: Urdf) -> Iterator[Problem]:
-    """KV123."""
+@check("KV123", title="One parent per link", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def second_parents(result: OpenCheck, urdf: Urdf) -> None:
+    """No link is the child of two joints.
+
+    Why it matters: A URDF is a tree; readers keep one of the joints, not always the same.
+
+    Remedy: Cut one of the joints.
+    """
     carriers: dict[str, list[JointElement]] = defaultdict(list)
     for edge in urdf.edges:
         carriers[edge.child].append(edge)
     for link, joints in carriers.items():
         if len(joints) > 1:
             names = ", ".join(joint.name for joint in joints[:_SHOWN])
-            yield Problem(
-                message=f"The link {link} hangs on {len(joints)} joints ({names}); in a URDF a link has one parent.",
-                remedy="Cut all but one of them. Closed chains need a constraint of the simulator beside the URDF.",
+            result.find(
+                f"The link {link} hangs on {len(joints)} joints ({names}); in a URDF a link has one parent.",
+                "Cut all but one of them. Closed chains need a constraint of the simulator beside the URDF.",
                 joint=joints[1].name,
                 link=link,
                 value=len(joints),
@@ -83,13 +110,20 @@ def second_parents(urdf: Urdf) -> Iterator[Problem]:
             )
 
 
-def cycles(urdf: Urdf) -> Iterator[Problem]:
-    """KV124: joints that lead back to a link above them."""
+@check("KV124", title="No circle of links", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def cycles(result: OpenCheck, urdf: Urdf) -> None:
+    """Following joints downward never leads back to a link above.
+
+    Why it matters: Readers without a guard never end; the others refuse the file.
+
+    Remedy: Cut the joint that closes the circle, or correct its parent.
+    """
+    # Joints that lead back to a link above them
     for joint, way in _closing_joints(urdf):
         links = " -> ".join(way[:_SHOWN] + (["..."] if len(way) > _SHOWN else []) + [joint.child])
-        yield Problem(
-            message=f"The joint {joint.name} closes a circle of links: {links}.",
-            remedy="A URDF is a tree: cut the joint, or correct its parent or child.",
+        result.find(
+            f"The joint {joint.name} closes a circle of links: {links}.",
+            "A URDF is a tree: cut the joint, or correct its parent or child.",
             joint=joint.name,
             line=line_of(joint.element),
         )
@@ -116,58 +150,85 @@ def _closing_joints(urdf: Urdf) -> Iterator[tuple[JointElement, list[str]]]:
                 waiting.append(iter(urdf.below.get(joint.child, ())))
 
 
-def second_roots(urdf: Urdf) -> Iterator[Problem]:
-    """KV125: trees beside the largest one; links without any joint have a check of their own."""
+@check("KV125", title="One root", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def second_roots(result: OpenCheck, urdf: Urdf) -> None:
+    """One link carries all others.
+
+    Why it matters: PyBullet crashes with two roots; MuJoCo welds the second to the world without a word.
+
+    Remedy: Join the second root to the rest by a fixed joint, or split the file.
+    """
+    # Trees beside the largest one; links without any joint have a check of their own
     roots = [root for root in urdf.roots if root in urdf.below]
     if not roots and urdf.edges:
-        yield Problem(
-            message="Every link hangs on a joint, so there is no root.",
-            remedy="Cut the joint above the link that is to stand still.",
+        result.find(
+            "Every link hangs on a joint, so there is no root.",
+            "Cut the joint above the link that is to stand still.",
         )
     sizes = {root: len(urdf.depths([root])) for root in roots[: _SHOWN * 8]}
     largest = max(sizes, key=lambda root: sizes[root], default="")
     for root in roots:
         if root != largest:
             count = sizes.get(root, 1)
-            yield Problem(
-                message=f"The link {root} is a second root beside {largest}: its tree has {count} links. PyBullet "
+            result.find(
+                f"The link {root} is a second root beside {largest}: its tree has {count} links. PyBullet "
                 "crashes with two roots.",
-                remedy="Join it to the rest by a joint (a fixed one if it does not move), or split the file.",
+                "Join it to the rest by a joint (a fixed one if it does not move), or split the file.",
                 link=root,
                 line=_line_of_link(urdf, root),
             )
 
 
-def isolated_links(urdf: Urdf) -> Iterator[Problem]:
-    """KV126."""
+@check("KV126", title="No isolated link", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def isolated_links(result: OpenCheck, urdf: Urdf) -> None:
+    """Every link hangs on a joint or carries one, unless it is the only link.
+
+    Why it matters: It is a second root: it stays behind when the model moves, or crashes the engine.
+
+    Remedy: Join it by a joint, or delete it.
+    """
     if len(set(urdf.link_names)) < 2:
         return
     for link in urdf.roots:
         if link not in urdf.below:
-            yield Problem(
-                message=f"The link {link} hangs on no joint and carries none.",
-                remedy="Join it to the rest by a joint (a fixed one if it does not move), or delete it.",
+            result.find(
+                f"The link {link} hangs on no joint and carries none.",
+                "Join it to the rest by a joint (a fixed one if it does not move), or delete it.",
                 link=link,
                 line=_line_of_link(urdf, link),
             )
 
 
-def dangling_mimics(urdf: Urdf) -> Iterator[Problem]:
-    """KV127."""
+@check("KV127", title="Leaders of mimic joints exist", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def dangling_mimics(result: OpenCheck, urdf: Urdf) -> None:
+    """Every <mimic> names a joint of the file.
+
+    Why it matters: All loaders accept a missing leader in silence, and the joint then moves freely or not at all.
+
+    Remedy: Correct the name of the leader.
+    """
     known = {joint.name for joint in urdf.joints if joint.name}
     for joint, mimic in _followers(urdf):
         leader = mimic.get("joint") or ""
         if leader not in known:
-            yield Problem(
-                message=f"The joint {joint.name} mimics {shown(leader) if leader else 'no joint'}, which is not there.",
-                remedy=_suggestion(leader, known, "joint"),
+            result.find(
+                f"The joint {joint.name} mimics {shown(leader) if leader else 'no joint'}, which is not there.",
+                _suggestion(leader, known, "joint"),
                 joint=joint.name,
                 line=line_of(mimic),
             )
 
 
-def mimic_circles(urdf: Urdf) -> Iterator[Problem]:
-    """KV128: circles, and chains so long that they can only be a mistake."""
+@check("KV128", title="Mimic joints follow a leader", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+def mimic_circles(result: OpenCheck, urdf: Urdf) -> None:
+    """Followers do not follow each other in a circle, nor in chains of more than `max_mimic_chain`; a follower of a
+    follower is a warning.
+
+    Why it matters: A circle has no value that is right; readers without a guard never end.
+
+    Remedy: Let one of them lead, and let the others name it.
+    """
+    # Circles, and chains so long that they can only be a mistake
     follows = {joint.name: mimic.get("joint") or "" for joint, mimic in _followers(urdf)}
     lines = {joint.name: line_of(mimic) for joint, mimic in _followers(urdf)}
     settled: dict[str, int] = {}
@@ -179,9 +240,9 @@ def mimic_circles(urdf: Urdf) -> Iterator[Problem]:
             name = follows[name]
         if name in way:
             circle = list(way)[way[name] :]
-            yield Problem(
-                message=f"The mimic joints {' -> '.join([*circle[:_SHOWN], name])} follow each other in a circle.",
-                remedy="Let one of them lead: delete its <mimic>.",
+            result.find(
+                f"The mimic joints {' -> '.join([*circle[:_SHOWN], name])} follow each other in a circle.",
+                "Let one of them lead: delete its <mimic>.",
                 joint=circle[-1],
                 line=lines[circle[-1]],
             )
@@ -189,41 +250,28 @@ def mimic_circles(urdf: Urdf) -> Iterator[Problem]:
         for place, member in enumerate(reversed(way)):
             settled[member] = below + place + 1
         if settled[start] > urdf.settings.max_mimic_chain and name not in way:
-            yield Problem(
-                message=f"The joint {start} follows a chain of {settled[start]} mimic joints.",
-                remedy="Let every follower name the first leader, with the product of the multipliers.",
+            result.find(
+                f"The joint {start} follows a chain of {settled[start]} mimic joints.",
+                "Let every follower name the first leader, with the product of the multipliers.",
                 joint=start,
                 value=settled[start],
                 limit=urdf.settings.max_mimic_chain,
                 line=lines[start],
             )
-    yield from _chained(follows, lines)
+    _chained(result, follows, lines)
 
 
-def _chained(follows: dict[str, str], lines: dict[str, int]) -> Iterator[Problem]:
+def _chained(result: OpenCheck, follows: dict[str, str], lines: dict[str, int]) -> None:
     """Followers of followers, which most readers resolve wrongly."""
     for follower, leader in follows.items():
         if leader in follows and follows[leader] != follower and leader != follower:
-            yield Problem(
-                message=f"The joint {follower} mimics {leader}, which mimics {follows[leader]}.",
-                remedy=f"Let it mimic {follows[leader]} directly, with the product of the multipliers.",
+            result.find(
+                f"The joint {follower} mimics {leader}, which mimics {follows[leader]}.",
+                f"Let it mimic {follows[leader]} directly, with the product of the multipliers.",
                 severity=Severity.WARNING,
                 joint=follower,
                 line=lines[follower],
             )
-
-
-PROBES = {
-    "KV120": no_links,
-    "KV121": dangling_ends,
-    "KV122": self_joined,
-    "KV123": second_parents,
-    "KV124": cycles,
-    "KV125": second_roots,
-    "KV126": isolated_links,
-    "KV127": dangling_mimics,
-    "KV128": mimic_circles,
-}
 
 
 def _followers(urdf: Urdf) -> Iterator[tuple[JointElement, _Element]]:

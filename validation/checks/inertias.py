@@ -2,27 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem
+from kinematify.validation.check import check
+from kinematify.validation.checks.needs import something_weighs
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredInertial, DeclaredLink
+    from kinematify.robot.robot import Inertial, Link
     from kinematify.validation.asset.bodies import Body, Physics, Room
+    from kinematify.validation.stage import OpenCheck
 
 _ROUNDING = 1e-9
 """Relative rounding of moments that were read from text."""
 
 
-def tensors_not_positive(physics: Physics) -> Iterator[Problem]:
-    """KV204: harmless where nothing moves, for instance in the base of an arm."""
+@check(
+    "KV204",
+    title="Inertia tensors are positive definite",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
+)
+def tensors_not_positive(result: OpenCheck, physics: Physics) -> None:
+    """All principal moments of inertia are above zero. It is a warning for bodies that do not move, and where some
+    moments are zero and none is negative.
+
+    Why it matters: MuJoCo refuses the model; PyBullet takes the inertia for zero and the simulation blows up.
+
+    Remedy: Compute the tensor from the geometry; the finding names the values of a box of the same size.
+    """
+    # Harmless where nothing moves, for instance in the base of an arm
     for body, link, inertial in _weighed(physics):
         low, _, high = np.linalg.eigvalsh(inertial.tensor)
         if low > _ROUNDING * high and high > 0.0:
@@ -30,15 +46,15 @@ def tensors_not_positive(physics: Physics) -> Iterator[Problem]:
         nothing = not np.any(inertial.tensor)
         # A rod without thickness has such moments: a slip, where negative ones are nonsense.
         flat = low >= -_ROUNDING * high and not nothing
-        yield Problem(
-            message=f"The inertia of the link {link.name} "
+        result.find(
+            f"The inertia of the link {link.name} "
             + (
                 "is zero"
                 if nothing
                 else f"is not positive definite: its principal moments are {_moments(inertial)} kg m2"
             )
             + ("; MuJoCo refuses it, and PyBullet takes it for zero." if body.moves else "; no body has that."),
-            remedy=_better_tensor(body, link),
+            _better_tensor(body, link),
             severity=Severity.ERROR if body.moves and not flat else Severity.WARNING,
             link=link.name,
             value=low,
@@ -48,11 +64,11 @@ def tensors_not_positive(physics: Physics) -> Iterator[Problem]:
         )
 
 
-def _moments(inertial: DeclaredInertial) -> str:
+def _moments(inertial: Inertial) -> str:
     return ", ".join(f"{value:.3g}" for value in np.linalg.eigvalsh(inertial.tensor))
 
 
-def _better_tensor(body: Body, link: DeclaredLink) -> str:
+def _better_tensor(body: Body, link: Link) -> str:
     """That of a box with the extents of the geometry, which is never far from the truth."""
     room = body.rooms.get(link.name)
     mass = link.inertial.mass if link.inertial is not None else 0.0
@@ -66,8 +82,23 @@ def _better_tensor(body: Body, link: DeclaredLink) -> str:
     )
 
 
-def moments_out_of_proportion(physics: Physics) -> Iterator[Problem]:
-    """KV205: in every body two principal moments together are at least the third."""
+@check(
+    "KV205",
+    title="Principal moments satisfy the triangle inequality",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
+)
+def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
+    """No principal moment is larger than the sum of the other two: an error above `moment_ratio` times the sum for
+    bodies that move, a note below `moment_rounding`, a warning otherwise.
+
+    Why it matters: No distribution of mass has such moments: MuJoCo refuses them, PyBullet takes the inertia for
+    zero.
+
+    Remedy: Compute the tensor from the geometry, or write it with more digits.
+    """
+    # In every body two principal moments together are at least the third
     settings = physics.settings
     for body, link, inertial in _weighed(physics):
         low, middle, high = np.linalg.eigvalsh(inertial.tensor)
@@ -76,11 +107,11 @@ def moments_out_of_proportion(physics: Physics) -> Iterator[Problem]:
         ratio = high / (low + middle)
         rounding = ratio < settings.moment_rounding
         certain = body.moves and ratio > settings.moment_ratio
-        yield Problem(
-            message=f"The principal moments {_moments(inertial)} kg m2 of the link {link.name} can be those of no "
+        result.find(
+            f"The principal moments {_moments(inertial)} kg m2 of the link {link.name} can be those of no "
             f"body: the largest is {ratio:.4g} times the sum of the others. MuJoCo refuses that unless it may balance "
             "them, PyBullet takes the inertia for zero.",
-            remedy="Write the tensor with more digits." if rounding else _better_tensor(body, link),
+            "Write the tensor with more digits." if rounding else _better_tensor(body, link),
             severity=Severity.ERROR if certain else Severity.NOTE if rounding else Severity.WARNING,
             link=link.name,
             value=ratio,
@@ -89,29 +120,65 @@ def moments_out_of_proportion(physics: Physics) -> Iterator[Problem]:
         )
 
 
-def radii_of_gyration(physics: Physics) -> Iterator[Problem]:
-    """KV207: no mass of a body lies farther from its centre than its geometry; one problem where many links have it."""
-    found = [misfit for misfit in (_misfit(physics, *item) for item in _weighed(physics)) if misfit is not None]
-    if len(found) <= physics.settings.listed:
-        yield from (misfit.problem for misfit in found)
-        return
-    worst = max(found, key=lambda misfit: misfit.factor)
-    yield replace(
-        worst.problem,
-        message=f"The inertias of {len(found)} links do not fit their geometry; they look like placeholders. "
-        + worst.problem.message,
-    )
+@check(
+    "KV207",
+    title="Inertia fits the geometry",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
+)
+def radii_of_gyration(result: OpenCheck, physics: Physics) -> None:
+    """The largest radius of gyration lies between `gyration_small` and `gyration_large` times the distance of the
+    outermost point of the body from the centre of mass.
+
+    Why it matters: An inertia copied from another link, or in another unit, makes joints sluggish or nervous.
+
+    Remedy: Compute the tensor from the geometry.
+    """
+    settings = physics.settings
+    found = [misfit for item in _weighed(physics) if (misfit := _misfit(physics, *item)) is not None]
+    many = len(found) > settings.listed
+    for misfit in [max(found, key=lambda misfit: misfit.factor)] if many else found:
+        factor = settings.gyration_large if misfit.large else settings.gyration_small
+        result.find(
+            (
+                f"The inertias of {len(found)} links do not fit their geometry; they look like placeholders. "
+                if many
+                else ""
+            )
+            + f"The inertia of the link {misfit.link.name} has a radius of gyration of {misfit.radius:.3g} m, but its "
+            f"geometry reaches {misfit.farthest:.3g} m from its centre of mass"
+            + (": no mass lies that far out." if misfit.large else ": all its mass would sit in the centre."),
+            _better_tensor(misfit.body, misfit.link),
+            link=misfit.link.name,
+            value=misfit.radius,
+            limit=factor * misfit.farthest,
+            unit="m",
+            line=misfit.inertial.line,
+        )
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _Misfit:
-    """An inertia that does not fit, and by which factor."""
+    """An inertia whose radius of gyration does not fit the geometry."""
 
-    problem: Problem
-    factor: float
+    body: Body
+    link: Link
+    inertial: Inertial
+    radius: float
+    """Of gyration [m]."""
+    farthest: float
+    """Distance of the outermost point of the geometry from the centre of mass [m]."""
+    large: bool
+    """The radius is too large; otherwise too small."""
+
+    @property
+    def factor(self) -> float:
+        """How far the two are apart, above 1."""
+        return max(self.radius / self.farthest, self.farthest / self.radius)
 
 
-def _misfit(physics: Physics, body: Body, link: DeclaredLink, inertial: DeclaredInertial) -> _Misfit | None:
+def _misfit(physics: Physics, body: Body, link: Link, inertial: Inertial) -> _Misfit | None:
     settings = physics.settings
     own = body.rooms.get(link.name)
     moments = np.linalg.eigvalsh(inertial.tensor)
@@ -124,18 +191,7 @@ def _misfit(physics: Physics, body: Body, link: DeclaredLink, inertial: Declared
         farthest = _farthest(own, inertial.center_of_mass)
     if farthest == 0.0 or not (large or radius < settings.gyration_small * farthest):
         return None
-    problem = Problem(
-        message=f"The inertia of the link {link.name} has a radius of gyration of {radius:.3g} m, but its geometry "
-        f"reaches {farthest:.3g} m from its centre of mass"
-        + (": no mass lies that far out." if large else ": all its mass would sit in the centre."),
-        remedy=_better_tensor(body, link),
-        link=link.name,
-        value=radius,
-        limit=(settings.gyration_large if large else settings.gyration_small) * farthest,
-        unit="m",
-        line=inertial.line,
-    )
-    return _Misfit(problem=problem, factor=max(radius / farthest, farthest / radius))
+    return _Misfit(body=body, link=link, inertial=inertial, radius=radius, farthest=farthest, large=large)
 
 
 def _farthest(room: Room, centre: FloatArray) -> float:
@@ -143,14 +199,28 @@ def _farthest(room: Room, centre: FloatArray) -> float:
     return float(np.linalg.norm(room.points - centre, axis=1).max())
 
 
-def _centre(body: Body, link: DeclaredLink, inertial: DeclaredInertial) -> FloatArray:
+def _centre(body: Body, link: Link, inertial: Inertial) -> FloatArray:
     """Centre of mass in the frame of the body, shape (3,)."""
     T_body_link = body.T_body_link[link.name]
     return np.asarray(T_body_link[:3, :3] @ inertial.center_of_mass + T_body_link[:3, 3])
 
 
-def centres_outside(physics: Physics) -> Iterator[Problem]:
-    """KV208: the body counts, not the link, because authors lump what is fixed together."""
+@check(
+    "KV208",
+    title="Centres of mass lie in the geometry",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
+)
+def centres_outside(result: OpenCheck, physics: Physics) -> None:
+    """The centre of mass lies in the hull of the body, inflated by `centre_outside` of its diagonal; beyond
+    `centre_far` it is an error.
+
+    Why it matters: Gravity turns the part the wrong way, and joints need torques that they do not need in truth.
+
+    Remedy: Correct the <origin> of the <inertial>: its unit, or the frame that it is meant in.
+    """
+    # The body counts, not the link, because authors lump what is fixed together
     settings = physics.settings
     for body, link, inertial in _weighed(physics):
         room = body.room
@@ -158,10 +228,10 @@ def centres_outside(physics: Physics) -> Iterator[Problem]:
             continue
         outside = room.outside(_centre(body, link, inertial))
         if outside > settings.centre_outside * room.diagonal:
-            yield Problem(
-                message=f"The centre of mass of the link {link.name} lies {outside:.3g} m outside its geometry, which "
+            result.find(
+                f"The centre of mass of the link {link.name} lies {outside:.3g} m outside its geometry, which "
                 f"measures {room.diagonal:.3g} m.",
-                remedy=f"Write it inside the geometry, for instance {_middle(physics, link)}; check units and frame of "
+                f"Write it inside the geometry, for instance {_middle(physics, link)}; check units and frame of "
                 "the <origin> of its <inertial>.",
                 severity=Severity.ERROR if outside > settings.centre_far * room.diagonal else Severity.WARNING,
                 link=link.name,
@@ -172,22 +242,14 @@ def centres_outside(physics: Physics) -> Iterator[Problem]:
             )
 
 
-def _middle(physics: Physics, link: DeclaredLink) -> str:
+def _middle(physics: Physics, link: Link) -> str:
     room = physics.visual.get(link.name) or physics.collision.get(link.name)
     return "0 0 0" if room is None else " ".join(f"{value:.4g}" for value in 0.5 * (room.low + room.high))
 
 
-def _weighed(physics: Physics) -> Iterator[tuple[Body, DeclaredLink, DeclaredInertial]]:
+def _weighed(physics: Physics) -> Iterator[tuple[Body, Link, Inertial]]:
     """Links with a mass above zero; what is wrong with the others is said elsewhere."""
     for body in physics.bodies:
         for link in body.links:
             if link.inertial is not None and link.inertial.mass > 0.0:
                 yield body, link, link.inertial
-
-
-PROBES = {
-    "KV204": tensors_not_positive,
-    "KV205": moments_out_of_proportion,
-    "KV207": radii_of_gyration,
-    "KV208": centres_outside,
-}

@@ -4,27 +4,42 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.finding import Severity
-from kinematify.validation.precheck.problem import Problem
+from kinematify.validation.check import check
+from kinematify.validation.checks.needs import something_moves, something_weighs
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from kinematify.robot.declared import DeclaredInertial, DeclaredLink
+    from kinematify.robot.robot import Inertial, Link
     from kinematify.validation.asset.bodies import Body, Physics, Room
+    from kinematify.validation.stage import OpenCheck
 
 
-def missing_masses(physics: Physics) -> Iterator[Problem]:
-    """KV201: one problem for the whole model where no link has a mass."""
+@check(
+    "KV201",
+    title="Bodies that move have a mass",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    needs=(something_moves,),
+)
+def missing_masses(result: OpenCheck, physics: Physics) -> None:
+    """Of the links that fixed joints hold together, at least one has an <inertial>. Where no body of the file has one,
+    that is one finding.
+
+    Why it matters: Without it PyBullet takes 1 kg, MuJoCo the mass of the hull, Pinocchio nothing: no two engines
+    move the model alike. MuJoCo refuses a body without mass and geometry.
+
+    Remedy: Add an <inertial> to the link; 100 to 1000 kg/m3 times its volume is a start.
+    """
+    # One problem for the whole model where no link has a mass
     moving = [body for body in physics.bodies if body.moves]
     without = [body for body in moving if all(link.inertial is None for link in body.links)]
     if not without:
         return
     if len(without) == len(moving) and len(moving) > 1:
-        yield Problem(
-            message=f"None of the {len(moving)} bodies that move has an <inertial>: PyBullet gives each link 1 kg, "
+        result.find(
+            f"None of the {len(moving)} bodies that move has an <inertial>: PyBullet gives each link 1 kg, "
             "MuJoCo the mass of its hull, Pinocchio none.",
-            remedy="Add an <inertial> to every link; 100 to 1000 kg/m3 times the volume is a start.",
+            "Add an <inertial> to every link; 100 to 1000 kg/m3 times the volume is a start.",
             link=without[0].called,
             value=len(without),
             limit=0,
@@ -32,10 +47,10 @@ def missing_masses(physics: Physics) -> Iterator[Problem]:
         return
     for body in without:
         frame = not body.rooms
-        yield Problem(
-            message=f"The link {body.called}, which the joint {body.joint} moves, has no <inertial>"
+        result.find(
+            f"The link {body.called}, which the joint {body.joint} moves, has no <inertial>"
             + (" and no geometry: MuJoCo refuses it." if frame else ": PyBullet gives it 1 kg, Pinocchio nothing."),
-            remedy="Add a small mass and inertia, such as 0.001 kg and 1e-7 kg m2."
+            "Add a small mass and inertia, such as 0.001 kg and 1e-7 kg m2."
             if frame
             else f"Add an <inertial>{_suggested(body)}.",
             link=body.called,
@@ -48,26 +63,31 @@ def _suggested(body: Body) -> str:
     return "" if volume is None else f"; at 1000 kg/m3 its geometry has {1000.0 * volume:.3g} kg"
 
 
-def masses_not_positive(physics: Physics) -> Iterator[Problem]:
-    """KV202."""
+@check("KV202", title="Masses are above zero", severity=Severity.ERROR, blame=Blame.PHYSICS)
+def masses_not_positive(result: OpenCheck, physics: Physics) -> None:
+    """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, a note for
+    scenery without joints, and a warning where the link does not move or others of its body have a mass.
+
+    Why it matters: MuJoCo refuses such a body if it moves; PyBullet freezes it where it is.
+
+    Remedy: Write the true mass in kilograms.
+    """
     still = not any(body.moves for body in physics.bodies)
     for body in physics.bodies:
         for link in body.links:
             inertial = link.inertial
             if inertial is None or inertial.mass > 0.0:
                 continue
-            problem = _not_positive(physics, body, link, inertial, still=still)
-            if problem is not None:
-                yield problem
+            _not_positive(result, physics, body, link, inertial, still=still)
 
 
 def _not_positive(
-    physics: Physics, body: Body, link: DeclaredLink, inertial: DeclaredInertial, *, still: bool
-) -> Problem | None:
+    result: OpenCheck, physics: Physics, body: Body, link: Link, inertial: Inertial, *, still: bool
+) -> None:
     """Zero is harmless for a frame that is fixed to a mass, and PyBullet's sign for a base that never moves."""
     frame = link.name not in body.rooms
     if inertial.mass == 0.0 and frame and (body.mass > 0.0 or not body.moves):
-        return None
+        return
     refused = body.moves and body.mass == 0.0
     certain = inertial.mass < 0.0 or (refused and not frame)
     note = inertial.mass == 0.0 and not body.moves and still
@@ -80,9 +100,9 @@ def _not_positive(
         if not body.moves
         else "the mass is missing from the body that it belongs to"
     )
-    return Problem(
-        message=f"The link {link.name} has a mass of {inertial.mass:g} kg: {consequence}.",
-        remedy=f"Write the true mass{_suggested(body)}.",
+    result.find(
+        f"The link {link.name} has a mass of {inertial.mass:g} kg: {consequence}.",
+        f"Write the true mass{_suggested(body)}.",
         severity=Severity.ERROR if certain else Severity.NOTE if note else Severity.WARNING,
         link=link.name,
         value=inertial.mass,
@@ -92,8 +112,14 @@ def _not_positive(
     )
 
 
-def implausible_masses(physics: Physics) -> Iterator[Problem]:
-    """KV203."""
+@check("KV203", title="Masses are plausible", severity=Severity.WARNING, blame=Blame.PHYSICS, needs=(something_weighs,))
+def implausible_masses(result: OpenCheck, physics: Physics) -> None:
+    """The mass of every body with geometry lies between `tiny_mass` and `huge_mass`.
+
+    Why it matters: Placeholders and grams for kilograms make contacts stiff and motions absurd.
+
+    Remedy: Write the true mass in kilograms.
+    """
     settings = physics.settings
     for body in physics.bodies:
         if body.mass <= 0.0 or not body.rooms:
@@ -101,10 +127,10 @@ def implausible_masses(physics: Physics) -> Iterator[Problem]:
         if settings.tiny_mass <= body.mass <= settings.huge_mass:
             continue
         tiny = body.mass < settings.tiny_mass
-        yield Problem(
-            message=f"The link {body.heaviest.name} has a mass of {body.mass:g} kg; expected {settings.tiny_mass:g} to "
+        result.find(
+            f"The link {body.heaviest.name} has a mass of {body.mass:g} kg; expected {settings.tiny_mass:g} to "
             f"{settings.huge_mass:g} kg.",
-            remedy="Write the true mass in kilograms; exporters that know no material write a placeholder.",
+            "Write the true mass in kilograms; exporters that know no material write a placeholder.",
             link=body.heaviest.name,
             value=body.mass,
             limit=settings.tiny_mass if tiny else settings.huge_mass,
@@ -113,8 +139,18 @@ def implausible_masses(physics: Physics) -> Iterator[Problem]:
         )
 
 
-def implausible_densities(physics: Physics) -> Iterator[Problem]:
-    """KV206: too heavy even for a solid hull, or too light for what its closed surfaces enclose."""
+@check(
+    "KV206", title="Densities are plausible", severity=Severity.ERROR, blame=Blame.PHYSICS, needs=(something_weighs,)
+)
+def implausible_densities(result: OpenCheck, physics: Physics) -> None:
+    """The mass of a body over the volume of its hull is not above `dense` (an error above `impossibly_dense`), and
+    over the volume inside its surfaces not below `light`.
+
+    Why it matters: The mass or the unit of the meshes is wrong, and with it every force.
+
+    Remedy: Correct the mass, or the scale of the geometry.
+    """
+    # Too heavy even for a solid hull, or too light for what its closed surfaces enclose
     settings = physics.settings
     for body in physics.bodies:
         room = body.room
@@ -122,9 +158,9 @@ def implausible_densities(physics: Physics) -> Iterator[Problem]:
             continue
         heavy, light = body.mass / room.hull.volume, body.mass / _largest_volume(room)
         if heavy > settings.dense:
-            yield _density(body, heavy, settings.dense, certain=heavy > settings.impossibly_dense)
+            _density(result, body, heavy, settings.dense, certain=heavy > settings.impossibly_dense)
         elif light < settings.light:
-            yield _density(body, light, settings.light, certain=False)
+            _density(result, body, light, settings.light, certain=False)
 
 
 def _largest_volume(room: Room) -> float:
@@ -132,12 +168,12 @@ def _largest_volume(room: Room) -> float:
     return float(room.hull.volume) if room.solid is None else min(room.solid, float(room.hull.volume))
 
 
-def _density(body: Body, density: float, limit: float, *, certain: bool) -> Problem:
+def _density(result: OpenCheck, body: Body, density: float, limit: float, *, certain: bool) -> None:
     heavy = density > limit
-    return Problem(
-        message=f"The link {body.heaviest.name} has {body.mass:.4g} kg in a volume that makes {density:.3g} kg/m3 of "
+    result.find(
+        f"The link {body.heaviest.name} has {body.mass:.4g} kg in a volume that makes {density:.3g} kg/m3 of "
         f"it; {'gold has 19,300' if heavy else 'foam has 30'}, {limit:g} is the limit.",
-        remedy="Correct the mass, or the unit of the geometry: "
+        "Correct the mass, or the unit of the geometry: "
         + ("it is too heavy or too small." if heavy else "it is too light or too large."),
         severity=Severity.ERROR if certain else Severity.WARNING,
         link=body.heaviest.name,
@@ -148,28 +184,35 @@ def _density(body: Body, density: float, limit: float, *, certain: bool) -> Prob
     )
 
 
-def steep_mass_ratios(physics: Physics) -> Iterator[Problem]:
-    """KV209: a heavy body on a light one; a light one on a heavy one is harmless in joint coordinates."""
+@check(
+    "KV209",
+    title="Neighbours have comparable masses",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    needs=(
+        something_moves,
+        something_weighs,
+    ),
+)
+def steep_mass_ratios(result: OpenCheck, physics: Physics) -> None:
+    """No body that moves carries one that is more than `mass_ratio` times as heavy.
+
+    Why it matters: Solvers need tiny time steps for a heavy body on a light one, or shake.
+
+    Remedy: Check both masses.
+    """
+    # A heavy body on a light one; a light one on a heavy one is harmless in joint coordinates
     for body in physics.bodies:
         if body.joint is None:
             continue
         parent = physics.body_of[physics.model.joint_by_name[body.joint].joint.parent]
         if parent.moves and body.mass > physics.settings.mass_ratio * parent.mass > 0.0:
-            yield Problem(
-                message=f"The joint {body.joint} carries {body.mass:.3g} kg ({body.called}) on {parent.mass:.3g} kg "
+            result.find(
+                f"The joint {body.joint} carries {body.mass:.3g} kg ({body.called}) on {parent.mass:.3g} kg "
                 f"({parent.called}), a ratio of {body.mass / parent.mass:.0f}.",
-                remedy="Check both masses; give the light link a mass nearer to that of its neighbour.",
+                "Check both masses; give the light link a mass nearer to that of its neighbour.",
                 joint=body.joint,
                 link=parent.called,
                 value=body.mass / parent.mass,
                 limit=physics.settings.mass_ratio,
             )
-
-
-PROBES = {
-    "KV201": missing_masses,
-    "KV202": masses_not_positive,
-    "KV203": implausible_masses,
-    "KV206": implausible_densities,
-    "KV209": steep_mass_ratios,
-}

@@ -1,32 +1,25 @@
 """KV10x to KV14x: the text of a URDF, before any mesh is opened and any engine sees it.
 
-Every probe reads the XML tree and hands back all problems of its kind, so that one run tells all of them.
+Every check reads the XML tree and tells all problems of its kind, so that one run tells all of them.
 """
 
 from __future__ import annotations
 
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_text import read_text
-from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.finding import Severity, Status
-from kinematify.validation.precheck import joints, names, numbers, references, shapes, text, tree
+from kinematify.validation.checks import CHECKS, checks_of
+from kinematify.validation.finding import Status
 from kinematify.validation.precheck.urdf import Urdf
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from kinematify.validation.precheck.problem import Problem
+    from kinematify.validation.check import Check
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
-    Probe = Callable[[Urdf], Iterator[Problem]]
-
+_TEXT = ("KV101", "KV102")
+_SIZE = "KV103"
 _SHOWN = 50
 """Findings per check; what a thousand lines have in common is seen in the first fifty."""
-
-_PROBES: dict[str, Probe] = {**text.PROBES, **names.PROBES, **tree.PROBES, **joints.PROBES}
-_PROBES |= {**numbers.PROBES, **shapes.PROBES, **references.PROBES}
 
 
 def precheck(request: StageRequest, recorder: Recorder) -> bool:
@@ -40,40 +33,30 @@ def precheck(request: StageRequest, recorder: Recorder) -> bool:
         DescriptionError: The file is missing, cannot be opened, or is something else than a URDF.
     """
     source = read_text(request.urdf)
-    with recorder.check("KV101") as check:
-        _add_all(check, text.syntax_problems(source))
-    with recorder.check("KV102") as check:
-        _add_all(check, text.doctype_problems(source))
-        refused = bool(check.findings)
-    if source.robot is None or refused:
+    refused = [_blocks(CHECKS[name], source, recorder) for name in _TEXT]
+    if source.robot is None or any(refused):
         return False
     urdf = Urdf.of(source.robot, request, source.text)
-    with recorder.check("KV103") as check:
-        oversized = _add_all(check, text.cap_problems(urdf))
-    if oversized:
+    if _blocks(CHECKS[_SIZE], urdf, recorder):
         return False
-    blocked = [_blocked(name, probe, urdf, recorder) for name, probe in sorted(_PROBES.items())]
+    others = [check for check in checks_of("KV10", "KV11", "KV12", "KV13", "KV14") if check.id not in (*_TEXT, _SIZE)]
+    blocked = [_blocks(check, urdf, recorder) for check in others]
     return not any(blocked)
 
 
-def _blocked(name: str, probe: Probe, urdf: Urdf, recorder: Recorder) -> bool:
-    """Run a probe; True if what it finds, or that it failed, forbids later stages to read the file."""
+def _blocks(check: Check, context: object, recorder: Recorder) -> bool:
+    """Run a check; True if what it finds, or that it failed, forbids later stages to read the file."""
     blocks = True
-    with recorder.check(name) as check:
-        blocks = _add_all(check, probe(urdf))
-    return blocks or check.status is Status.BLOCKED
+    with recorder.check(check.id) as result:
+        check.run(result, context)
+        _shorten(result)
+        blocks = result.harmful
+    return blocks or result.status is Status.BLOCKED
 
 
-def _add_all(check: OpenCheck, problems: Iterator[Problem]) -> bool:
-    """Add the problems as findings; True if one of them forbids later stages to read the file."""
-    usual = CATALOGUE[check.id].severity
-    blocks = False
-    for problem in islice(problems, _SHOWN):
-        problem.add_to(check)
-        blocks |= (problem.severity or usual) is Severity.ERROR and not problem.harmless
-    left = list(problems)
-    if left:
-        check.measured["not_listed"] = len(left)
-        check.reason = f"{len(left)} more findings of this kind are not listed"
-        blocks |= any((problem.severity or usual) is Severity.ERROR and not problem.harmless for problem in left)
-    return blocks
+def _shorten(result: OpenCheck) -> None:
+    left = len(result.findings) - _SHOWN
+    if left > 0:
+        del result.findings[_SHOWN:]
+        result.measured["not_listed"] = left
+        result.reason = f"{left} more findings of this kind are not listed"

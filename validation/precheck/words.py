@@ -1,53 +1,13 @@
-"""What a probe of the document hands back, before it becomes a finding."""
+"""How findings about the text of a URDF name lines, values and who answers for them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.robot.urdf_numbers import line_of
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Blame
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
-
-    from kinematify.validation.stage import OpenCheck
-
-
-__all__ = ["Problem", "blame_of", "line_of", "shown"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Problem:
-    """One thing that is wrong with the text; severity and blame are those of the check unless given."""
-
-    message: str
-    remedy: str
-    severity: Severity | None = None
-    blame: Blame | None = None
-    joint: str | None = None
-    link: str | None = None
-    value: float | None = None
-    limit: float | None = None
-    unit: str | None = None
-    line: int | None = None
-    harmless: bool = False
-    """True where later stages may read the file although it is an error."""
-
-    def add_to(self, check: OpenCheck) -> None:
-        """Turn it into a finding."""
-        check.find(
-            self.message,
-            self.remedy,
-            severity=self.severity,
-            blame=self.blame,
-            joint=self.joint,
-            link=self.link,
-            value=self.value,
-            limit=self.limit,
-            unit=self.unit,
-            line=self.line,
-        )
 
 
 def blame_of(element: _Element) -> Blame:
