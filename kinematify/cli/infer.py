@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.config import Config
-    from kinematify.model.kinematic_model import Joint
     from kinematify.pipeline import Inference
+    from kinematify.robot.robot import Joint
 
 DOUBTFUL = 0.5
 """Joints of less confidence are named as those to look at first."""

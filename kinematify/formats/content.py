@@ -6,7 +6,7 @@ therefore what `kinematify validate` simulates: primitives, and meshes cut into 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,77 +16,38 @@ from kinematify.geometry.rest import Allowance
 from kinematify.geometry.scene import read_scene
 from kinematify.model.collision_pieces import decomposed
 from kinematify.model.masses import prepared_inertials
-from kinematify.robot.description import parse_description
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Link, LinkMesh, Shape
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from lxml.etree import _Element
-
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.collision_pieces import Pieces
     from kinematify.model.masses import PreparedInertial
-    from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredJoint, DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.robot.robot import Robot
 
 GREY = (0.7, 0.7, 0.7, 1.0)
-MESH = "mesh"
+"""Of shapes whose colour the file does not state."""
 WORLD = "world"
 """What MuJoCo and Gazebo call the outside."""
 _LEAST_VERTICES = 4  # engines refuse meshes with fewer
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Shape:
-    """One thing to be seen or to collide with, in its link's frame."""
-
-    kind: str
-    """``mesh``, ``box``, ``cylinder``, ``sphere`` or ``capsule``."""
-    vertices: FloatArray
-    """Triangles of all kinds, primitives tessellated; link frame [m], shape (V, 3)."""
-    faces: IntArray
-    """Shape (F, 3)."""
-    size: tuple[float, ...]
-    """Of a primitive, as in `DeclaredShape`; empty for a mesh."""
-    T_link_shape: FloatArray
-    """Of a primitive; the identity for a mesh, whose vertices are in the link's frame; shape (4, 4)."""
-    color: tuple[float, ...]
-    """Red, green, blue, opacity in [0, 1]."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
-    """A link."""
-
-    name: str
-    visuals: tuple[Shape, ...]
-    collisions: tuple[Shape, ...]
-    """Convex, each of them."""
-    inertial: PreparedInertial
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Content:
     """Everything that a format may hold."""
 
-    name: str
-    bodies: tuple[Body, ...]
-    joints: tuple[DeclaredJoint, ...]
-    """In the order of the document, fixed ones included."""
-    model: DeclaredModel
+    robot: Robot
+    """Collision shapes are convex, each of them, and meshes stand in the frame of their link; every link that is not a
+    mere frame has a mass."""
+    settings: PrepareSettings
+    """What joints without effort and velocity get where a format demands them."""
     apart: tuple[tuple[str, str], ...]
     """Links that are not to collide: neighbours in the tree, and those in contact at rest."""
-    settings: PrepareSettings
-    """What joints without effort and velocity get."""
     notes: tuple[str, ...]
     """What was made up or changed, one sentence each."""
-
-    @property
-    def root(self) -> str:
-        """Link that hangs on none."""
-        return self.model.kinematics.root
 
 
 def body_name(link: str) -> str:
@@ -96,7 +57,7 @@ def body_name(link: str) -> str:
 
 def told_renaming(content: Content) -> list[str]:
     """A sentence where a link had to be renamed."""
-    renamed = any(body.name == WORLD for body in content.bodies)
+    renamed = WORLD in content.robot.link_by_name
     return [f"The link {WORLD!r} is named {body_name(WORLD)!r}, since the outside is called so."] if renamed else []
 
 
@@ -111,35 +72,33 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
     Raises:
         InputError: The URDF cannot be used.
     """
-    model = read_model(urdf, package_dirs=package_dirs)
+    model = read_robot(urdf, package_dirs=package_dirs)
     inertials = prepared_inertials(model, settings.prepare)
     pieces = decomposed(model, settings.prepare)
-    colors = _colors(parse_description(urdf))
-    bodies = []
-    for link in model.links:
-        found = pieces[link.name]
-        color = colors.get(link.name, ())
-        hulls = [_mesh(piece.vertices, piece.faces, GREY) for piece in found.convex]
-        bodies.append(
-            Body(
-                name=link.name,
-                visuals=_visuals(link, color),
-                collisions=(*(_shape(primitive, GREY) for primitive in found.primitives), *hulls),
-                inertial=inertials[link.name],
-            )
+    links = tuple(
+        Link(
+            name=link.name,
+            inertial=inertials[link.name] if inertials[link.name].mass > 0.0 else None,
+            visuals=_visuals(link),
+            collisions=(
+                *pieces[link.name].primitives,
+                *(
+                    Shape(mesh=LinkMesh(vertices=piece.vertices, faces=piece.faces))
+                    for piece in pieces[link.name].convex
+                ),
+            ),
         )
+        for link in model.links
+    )
     return Content(
-        name=model.name,
-        bodies=tuple(bodies),
-        joints=model.joints,
-        model=model,
-        apart=_apart(model, settings),
+        robot=replace(model, links=links),
         settings=settings.prepare,
+        apart=_apart(model, settings),
         notes=tuple(_notes(model, inertials, pieces)),
     )
 
 
-def _notes(model: DeclaredModel, inertials: dict[str, PreparedInertial], pieces: dict[str, Pieces]) -> list[str]:
+def _notes(model: Robot, inertials: dict[str, PreparedInertial], pieces: dict[str, Pieces]) -> list[str]:
     weighed = [link.name for link in model.links if inertials[link.name].mass_added and link.has_geometry]
     notes = []
     cut = [name for name, found in pieces.items() if len(found.convex) > 1]
@@ -158,60 +117,17 @@ def _notes(model: DeclaredModel, inertials: dict[str, PreparedInertial], pieces:
     return notes
 
 
-def _visuals(link: DeclaredLink, colors: Sequence[tuple[float, ...]]) -> tuple[Shape, ...]:
+def _visuals(link: Link) -> tuple[Shape, ...]:
     """What is seen: collision geometry where there is nothing else, as viewers do."""
-    shown = link.visuals or link.collisions
-    found = []
-    for number, shape in enumerate(shown):
-        if shape.kind != MESH or len(np.unique(shape.mesh.faces)) >= _LEAST_VERTICES:
-            found.append(_shape(shape, colors[number] if number < len(colors) and link.visuals else GREY))
-    return tuple(found)
+    shown = [
+        shape
+        for shape in link.visuals or link.collisions
+        if shape.kind != "mesh" or len(np.unique(shape.mesh.faces)) >= _LEAST_VERTICES
+    ]
+    return tuple(Shape(mesh=shape.mesh, color=shape.color) if shape.kind == "mesh" else shape for shape in shown)
 
 
-def _shape(shape: DeclaredShape, color: tuple[float, ...]) -> Shape:
-    if shape.kind == MESH:
-        return _mesh(shape.mesh.vertices, shape.mesh.faces, color)
-    return Shape(
-        kind=shape.kind,
-        vertices=shape.mesh.vertices,
-        faces=shape.mesh.faces,
-        size=shape.size,
-        T_link_shape=shape.T_link_shape,
-        color=color,
-    )
-
-
-def _mesh(vertices: FloatArray, faces: IntArray, color: tuple[float, ...]) -> Shape:
-    return Shape(kind=MESH, vertices=vertices, faces=faces, size=(), T_link_shape=np.eye(4), color=color)
-
-
-def _colors(robot: _Element) -> dict[str, list[tuple[float, ...]]]:
-    """Colour of every visual element, by link; grey where none is stated."""
-    named = {material.get("name"): color for material in robot.iter("material")
-             for color in [_color(material)] if color is not None}  # fmt: skip
-    return {
-        str(link.get("name")): [_visual_color(visual, named) for visual in link.findall("visual")]
-        for link in robot.findall("link")
-    }
-
-
-def _visual_color(visual: _Element, named: dict[str | None, tuple[float, ...]]) -> tuple[float, ...]:
-    material = visual.find("material")
-    if material is None:
-        return GREY
-    return _color(material) or named.get(material.get("name"), GREY)
-
-
-def _color(material: _Element) -> tuple[float, ...] | None:
-    color = material.find("color")
-    try:
-        values = tuple(float(word) for word in str(color.get("rgba")).split()) if color is not None else ()
-    except ValueError:
-        return None
-    return values if len(values) == 4 and all(0.0 <= value <= 1.0 for value in values) else None
-
-
-def _apart(model: DeclaredModel, settings: ValidationSettings) -> tuple[tuple[str, str], ...]:
+def _apart(model: Robot, settings: ValidationSettings) -> tuple[tuple[str, str], ...]:
     """Pairs of links that touch where nothing is wrong: neighbours, and what is in contact at rest."""
     scene = read_scene(model, settings.geometry)
     allowance = Allowance(scene, Overlap(scene))

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
+
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.formats.content import Shape
+    from kinematify.robot.robot import Shape
 
 
 class MeshFiles:
@@ -28,7 +30,5 @@ class MeshFiles:
         """Write a mesh in its link's frame and return its file name."""
         name = f"{self._count:03d}_{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:60]}.obj"
         self._count += 1
-        with (self.folder / name).open("w", encoding="ascii") as file:
-            file.writelines(f"v {x:.9g} {y:.9g} {z:.9g}\n" for x, y, z in shape.vertices.tolist())
-            file.writelines(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in shape.faces.tolist())
+        write_obj(self.folder / name, shape.mesh.vertices, shape.mesh.faces, OBJ_DIGITS)
         return name

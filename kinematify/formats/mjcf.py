@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import body_name, told_renaming
+from kinematify.formats.content import GREY, body_name, told_renaming
 from kinematify.formats.mesh_files import MeshFiles
-from kinematify.model.urdf_elements import numbers
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of
+from kinematify.robot.write import numbers
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from lxml.etree import _Element
 
-    from kinematify.formats.content import Body, Content, Shape
-    from kinematify.robot.declared import DeclaredJoint
+    from kinematify.formats.content import Content
+    from kinematify.robot.robot import Joint, Link, Shape
 
 _SEEN, _COLLIDES = "2", "3"  # MuJoCo's viewer shows groups 0 to 2
 
@@ -39,7 +39,7 @@ def write_mjcf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
         OSError: A file cannot be written.
     """
     meshes = MeshFiles(out)
-    document = etree.Element("mujoco", model=content.name)
+    document = etree.Element("mujoco", model=content.robot.name)
     etree.SubElement(document, "compiler", angle="radian", meshdir=meshes.folder.name, autolimits="true")
     assets = etree.SubElement(document, "asset")
     world = etree.SubElement(document, "worldbody")
@@ -49,7 +49,7 @@ def write_mjcf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     _add_followers(document, content)
     _add_motors(document, content)
     etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
-    fast = [joint.name for joint in content.joints if joint.velocity is not None and _moves(joint)]
+    fast = [joint.name for joint in content.robot.joints if joint.velocity is not None and _moves(joint)]
     lost = told_renaming(content)
     if fast:
         lost.append(f"Speed limits of {len(fast)} joints are left out: MJCF has none.")
@@ -61,24 +61,20 @@ class _Writer:
 
     def __init__(self, content: Content, meshes: MeshFiles, assets: _Element) -> None:
         self._content, self._meshes, self._assets = content, meshes, assets
-        self._below: dict[str, list[DeclaredJoint]] = {}
-        for joint in content.joints:
-            self._below.setdefault(joint.joint.parent, []).append(joint)
-        self._body_of = {body.name: body for body in content.bodies}
 
     def add_tree(self, world: _Element, *, free: bool) -> None:
-        root = etree.SubElement(world, "body", name=body_name(self._content.root))
+        robot = self._content.robot
+        root = etree.SubElement(world, "body", name=body_name(robot.root))
         if free:
             etree.SubElement(root, "freejoint", name="root")
-        waiting = [(root, self._content.root)]
+        waiting = [(root, robot.root)]
         while waiting:  # a loop: chains may be longer than Python's stack
             element, name = waiting.pop()
-            self._fill(element, self._body_of[name])
-            for joint in self._below.get(name, ()):
-                waiting.append((self._add_child(element, joint), joint.joint.child))
+            self._fill(element, robot.link_by_name[name])
+            for joint in robot.joints_below[name]:
+                waiting.append((self._add_child(element, joint), joint.child))
 
-    def _add_child(self, parent: _Element, declared: DeclaredJoint) -> _Element:
-        joint = declared.joint
+    def _add_child(self, parent: _Element, joint: Joint) -> _Element:
         T = joint.T_parent_child
         child = etree.SubElement(
             parent, "body", name=body_name(joint.child), pos=numbers(T[:3, 3]), quat=numbers(quaternion_of(T[:3, :3]))
@@ -90,32 +86,32 @@ class _Writer:
         )
         if np.isfinite([joint.lower, joint.upper]).all():
             element.set("range", numbers([joint.lower, joint.upper]))
-        for key, value in (("damping", declared.damping), ("frictionloss", declared.friction)):
+        for key, value in (("damping", joint.damping), ("frictionloss", joint.friction)):
             if value:
                 element.set(key, numbers([value]))
         return child
 
-    def _fill(self, element: _Element, body: Body) -> None:
-        inertial = body.inertial
-        if inertial.mass > 0.0:
+    def _fill(self, element: _Element, link: Link) -> None:
+        inertial = link.inertial
+        if inertial is not None:
             m = inertial.tensor
             etree.SubElement(
                 element, "inertial", pos=numbers(inertial.center_of_mass), mass=numbers([inertial.mass]),
                 fullinertia=numbers([m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]]),
             )  # fmt: skip
-        for shape in body.visuals:
-            geom = self._geom(element, body, shape)
-            geom.set("rgba", numbers(shape.color))
+        for shape in link.visuals:
+            geom = self._geom(element, link, shape)
+            geom.set("rgba", numbers(shape.color or GREY))
             geom.set("group", _SEEN)
             geom.set("contype", "0")
             geom.set("conaffinity", "0")
-        for shape in body.collisions:
-            self._geom(element, body, shape).set("group", _COLLIDES)
+        for shape in link.collisions:
+            self._geom(element, link, shape).set("group", _COLLIDES)
 
-    def _geom(self, element: _Element, body: Body, shape: Shape) -> _Element:
+    def _geom(self, element: _Element, link: Link, shape: Shape) -> _Element:
         geom = etree.SubElement(element, "geom", type=shape.kind, mass="0")
         if shape.kind == "mesh":
-            file = self._meshes.write(shape, body.name)
+            file = self._meshes.write(shape, link.name)
             name = file.removesuffix(".obj")
             # Only what is seen may be open or flat, for which a volume makes no sense.
             etree.SubElement(self._assets, "mesh", name=name, file=file, inertia="shell")
@@ -135,8 +131,8 @@ def _half(shape: Shape) -> list[float]:
     return [shape.size[0], *(0.5 * length for length in shape.size[1:])]
 
 
-def _moves(joint: DeclaredJoint) -> bool:
-    return joint.joint.kind is not JointType.FIXED
+def _moves(joint: Joint) -> bool:
+    return joint.kind is not JointType.FIXED
 
 
 def _add_contact(document: _Element, content: Content) -> None:
@@ -147,22 +143,22 @@ def _add_contact(document: _Element, content: Content) -> None:
 
 
 def _add_followers(document: _Element, content: Content) -> None:
-    followers = [joint for joint in content.joints if joint.joint.mimic is not None and _moves(joint)]
+    followers = [joint for joint in content.robot.joints if joint.mimic is not None and _moves(joint)]
     if not followers:
         return
     equality = etree.SubElement(document, "equality")
-    for declared in followers:
-        mimic = declared.joint.mimic
+    for joint in followers:
+        mimic = joint.mimic
         assert mimic is not None
         etree.SubElement(
-            equality, "joint", name=f"{declared.name} follows", joint1=declared.name, joint2=mimic.joint,
+            equality, "joint", name=f"{joint.name} follows", joint1=joint.name, joint2=mimic.joint,
             polycoef=numbers([mimic.offset, mimic.multiplier, 0.0, 0.0, 0.0]),
         )  # fmt: skip
 
 
 def _add_motors(document: _Element, content: Content) -> None:
     driven = [
-        joint for joint in content.joints if _moves(joint) and joint.joint.mimic is None and (joint.effort or 0) > 0
+        joint for joint in content.robot.joints if _moves(joint) and joint.mimic is None and (joint.effort or 0) > 0
     ]
     if not driven:
         return

@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import WORLD, body_name, told_renaming
+from kinematify.formats.content import GREY, WORLD, body_name, told_renaming
 from kinematify.formats.mesh_files import MeshFiles
-from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import rpy_of
+from kinematify.robot.write import numbers
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from lxml.etree import _Element
 
-    from kinematify.formats.content import Body, Content, Shape
+    from kinematify.formats.content import Content
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredJoint
+    from kinematify.robot.robot import Joint, Link, Shape
 
 _VERSION = "1.11"  # the first that knows followers
 _ENDLESS = 1e16  # the value that SDFormat takes for no limit
@@ -29,15 +30,15 @@ def write_sdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     """Write an SDF file and a folder with its meshes; arguments, result and errors as for `write_mjcf`."""
     meshes = MeshFiles(out)
     document = etree.Element("sdf", version=_VERSION)
-    model = etree.SubElement(document, "model", name=content.name)
+    model = etree.SubElement(document, "model", name=content.robot.name)
     poses = _at_zero(content)
     if not free:
         fixed = etree.SubElement(model, "joint", name="world_joint", type="fixed")
         etree.SubElement(fixed, "parent").text = WORLD
-        etree.SubElement(fixed, "child").text = body_name(content.root)
-    for body in content.bodies:
-        _add_link(model, body, poses[body.name], meshes)
-    for joint in content.joints:
+        etree.SubElement(fixed, "child").text = body_name(content.robot.root)
+    for link in content.robot.links:
+        _add_link(model, link, poses[link.name], meshes)
+    for joint in content.robot.joints:
         _add_joint(model, joint)
     etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
     return tuple(told_renaming(content))
@@ -45,38 +46,37 @@ def write_sdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
 
 def _at_zero(content: Content) -> dict[str, FloatArray]:
     """Where links stand with all joints at zero, followers too: SDFormat counts from there."""
-    poses = {content.root: np.eye(4)}
-    for joint in content.model.kinematics.joints_downward:
+    poses = {content.robot.root: np.eye(4)}
+    for joint in content.robot.joints_downward:
         poses[joint.child] = poses[joint.parent] @ joint.T_parent_child
     return poses
 
 
 def _pose(parent: _Element, T: FloatArray) -> None:
-    etree.SubElement(parent, "pose").text = f"{numbers(T[:3, 3])} {numbers(roll_pitch_yaw(T[:3, :3]))}"
+    etree.SubElement(parent, "pose").text = f"{numbers(T[:3, 3])} {numbers(rpy_of(T[:3, :3]))}"
 
 
-def _add_link(model: _Element, body: Body, T_model_link: FloatArray, meshes: MeshFiles) -> None:
-    link = etree.SubElement(model, "link", name=body_name(body.name))
-    _pose(link, T_model_link)
-    if body.inertial.mass > 0.0:
-        inertial = etree.SubElement(link, "inertial")
+def _add_link(model: _Element, link: Link, T_model_link: FloatArray, meshes: MeshFiles) -> None:
+    element = etree.SubElement(model, "link", name=body_name(link.name))
+    _pose(element, T_model_link)
+    if link.inertial is not None:
+        inertial = etree.SubElement(element, "inertial")
         T = np.eye(4)
-        T[:3, 3] = body.inertial.center_of_mass
+        T[:3, 3] = link.inertial.center_of_mass
         _pose(inertial, T)
-        etree.SubElement(inertial, "mass").text = numbers([body.inertial.mass])
+        etree.SubElement(inertial, "mass").text = numbers([link.inertial.mass])
         inertia, names = etree.SubElement(inertial, "inertia"), "xyz"
         for row, column in zip(*np.triu_indices(3), strict=True):
-            etree.SubElement(inertia, f"i{names[row]}{names[column]}").text = numbers(
-                [body.inertial.tensor[row, column]]
-            )
-    for kind, shapes in (("visual", body.visuals), ("collision", body.collisions)):
+            moment = link.inertial.tensor[row, column]
+            etree.SubElement(inertia, f"i{names[row]}{names[column]}").text = numbers([moment])
+    for kind, shapes in (("visual", link.visuals), ("collision", link.collisions)):
         for number, shape in enumerate(shapes):
-            element = etree.SubElement(link, kind, name=f"{kind}_{number}")
-            _add_shape(element, shape, body.name, meshes)
+            block = etree.SubElement(element, kind, name=f"{kind}_{number}")
+            _add_shape(block, shape, link.name, meshes)
             if kind == "visual":
-                material = etree.SubElement(element, "material")
+                material = etree.SubElement(block, "material")
                 for name in ("ambient", "diffuse"):
-                    etree.SubElement(material, name).text = numbers(shape.color)
+                    etree.SubElement(material, name).text = numbers(shape.color or GREY)
 
 
 def _add_shape(element: _Element, shape: Shape, link: str, meshes: MeshFiles) -> None:
@@ -91,8 +91,7 @@ def _add_shape(element: _Element, shape: Shape, link: str, meshes: MeshFiles) ->
             etree.SubElement(kind, name).text = numbers([value])
 
 
-def _add_joint(model: _Element, declared: DeclaredJoint) -> None:
-    joint = declared.joint
+def _add_joint(model: _Element, joint: Joint) -> None:
     element = etree.SubElement(model, "joint", name=joint.name, type=_TYPES[joint.kind])
     etree.SubElement(element, "parent").text = body_name(joint.parent)
     etree.SubElement(element, "child").text = body_name(joint.child)
@@ -111,12 +110,12 @@ def _add_joint(model: _Element, declared: DeclaredJoint) -> None:
         ("upper", joint.upper if limited else _ENDLESS),
     ):
         etree.SubElement(limit, name).text = numbers([value])
-    for name, stated in (("effort", declared.effort), ("velocity", declared.velocity)):
+    for name, stated in (("effort", joint.effort), ("velocity", joint.velocity)):
         if stated is not None:
             etree.SubElement(limit, name).text = numbers([stated])
-    if declared.damping or declared.friction:
+    if joint.damping or joint.friction:
         dynamics = etree.SubElement(axis, "dynamics")
-        for name, stated in (("damping", declared.damping), ("friction", declared.friction)):
+        for name, stated in (("damping", joint.damping), ("friction", joint.friction)):
             etree.SubElement(dynamics, name).text = numbers([stated or 0.0])
 
 

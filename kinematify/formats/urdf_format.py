@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from lxml import etree
-
 from kinematify.formats.mesh_files import MeshFiles
-from kinematify.model.urdf_elements import add_joint, add_link, numbers, roll_pitch_yaw
+from kinematify.model.drives import prepared_joint
+from kinematify.robot.robot import Shape
+from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from lxml.etree import _Element
-
-    from kinematify.formats.content import Content, Shape
-
-_CAPSULE = "capsule"
+    from kinematify.formats.content import Content
+    from kinematify.robot.robot import Link
 
 
 def write_urdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
@@ -39,34 +35,22 @@ def write_urdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     """
     del free
     meshes = MeshFiles(out)
-    robot = etree.Element("robot", name=content.name)
-    for body in content.bodies:
-        link = add_link(robot, body.name, body.inertial)
-        if body.inertial.mass <= 0.0:  # a mere frame
-            link.remove(link[0])
-        for number, shape in enumerate(body.visuals):
-            visual = _add_shape(link, "visual", shape, body.name, meshes)
-            material = etree.SubElement(visual, "material", name=f"{body.name}_{number}")
-            etree.SubElement(material, "color", rgba=numbers(shape.color))
-        for shape in body.collisions:
-            _add_shape(link, "collision", shape, body.name, meshes)
-    for joint in content.joints:
-        add_joint(robot, joint, content.settings)
-    etree.ElementTree(robot).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    links = tuple(_link(link, meshes) for link in content.robot.links)
+    joints = tuple(prepared_joint(joint, content.settings) for joint in content.robot.joints)
+    write_robot(replace(content.robot, links=links, joints=joints), out)
     return ()
 
 
-def _add_shape(link: _Element, tag: str, shape: Shape, name: str, meshes: MeshFiles) -> _Element:
-    element = etree.SubElement(link, tag)
-    primitive = shape.kind not in ("mesh", _CAPSULE)  # URDF has no capsule: its triangles stand in its link's frame
-    T = shape.T_link_shape if primitive else np.eye(4)
-    etree.SubElement(element, "origin", xyz=numbers(T[:3, 3]), rpy=numbers(roll_pitch_yaw(T[:3, :3])))
-    geometry = etree.SubElement(element, "geometry")
-    if not primitive:
-        etree.SubElement(geometry, "mesh", filename=f"{meshes.folder.name}/{meshes.write(shape, name)}")
-    elif shape.kind == "box":
-        etree.SubElement(geometry, "box", size=numbers(shape.size))
-    else:
-        sizes = dict(zip(("radius", "length"), (numbers([value]) for value in shape.size), strict=False))
-        etree.SubElement(geometry, shape.kind, sizes)
-    return element
+def _link(link: Link, meshes: MeshFiles) -> Link:
+    return replace(
+        link,
+        visuals=tuple(_shape(shape, link.name, meshes) for shape in link.visuals),
+        collisions=tuple(_shape(shape, link.name, meshes) for shape in link.collisions),
+    )
+
+
+def _shape(shape: Shape, link: str, meshes: MeshFiles) -> Shape:
+    """URDF has no capsule: its triangles stand for it."""
+    if shape.kind not in ("mesh", "capsule"):
+        return shape
+    return Shape(mesh=shape.mesh, file=Path(meshes.folder.name, meshes.write(shape, link)), color=shape.color)

@@ -8,6 +8,7 @@ import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from kinematify.errors import OutputError
+from kinematify.formats.content import GREY
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import quaternion_of, rotation_from_x
@@ -16,9 +17,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
-    from kinematify.formats.content import Body, Content, Shape
+    from kinematify.formats.content import Content
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredJoint
+    from kinematify.robot.robot import Joint, Link, Shape
 
 SUFFIXES = (".usd", ".usda", ".usdc")
 
@@ -34,8 +35,8 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     writer.add_all(free=free)
     if not writer.stage.GetRootLayer().Export(str(out)):
         raise OSError(f"USD could not write {out}")
-    followers = [joint.name for joint in content.joints if joint.joint.mimic is not None]
-    fast = [joint.name for joint in content.joints if joint.velocity is not None]
+    followers = [joint.name for joint in content.robot.joints if joint.mimic is not None]
+    fast = [joint.name for joint in content.robot.joints if joint.velocity is not None]
     lost = []
     if followers:
         lost.append(f"The physics schema has no followers: {', '.join(followers)} move freely, and tell in customData "
@@ -54,9 +55,9 @@ class _Writer:
         UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)
         UsdGeom.SetStageMetersPerUnit(self.stage, 1.0)
         UsdPhysics.SetStageKilogramsPerUnit(self.stage, 1.0)
-        self._top = Sdf.Path.absoluteRootPath.AppendChild(_identifier(content.name, set()))
+        self._top = Sdf.Path.absoluteRootPath.AppendChild(_identifier(content.robot.name, set()))
         taken: set[str] = {"joints"}
-        self._paths = {body.name: self._top.AppendChild(_identifier(body.name, taken)) for body in content.bodies}
+        self._paths = {link.name: self._top.AppendChild(_identifier(link.name, taken)) for link in content.robot.links}
 
     def add_all(self, *, free: bool) -> None:
         """Everything below one prim, which is the file's default."""
@@ -64,28 +65,28 @@ class _Writer:
         self.stage.SetDefaultPrim(top.GetPrim())
         UsdPhysics.Scene.Define(self.stage, self._top.AppendChild("physics_scene"))
         UsdPhysics.ArticulationRootAPI.Apply(top.GetPrim())
-        poses = forward_kinematics(self._content.model.kinematics, {})
-        for body in self._content.bodies:
-            self._add_body(body, poses[body.name])
+        poses = forward_kinematics(self._content.robot, {})
+        for link in self._content.robot.links:
+            self._add_link(link, poses[link.name])
         taken: set[str] = set()
         joints = self._top.AppendChild("joints")
         UsdGeom.Scope.Define(self.stage, joints)
         if not free:
             path = joints.AppendChild(_identifier("root_joint", taken))
             joint = UsdPhysics.FixedJoint.Define(self.stage, path)
-            joint.CreateBody1Rel().SetTargets([self._paths[self._content.root]])
-        for declared in self._content.joints:
-            self._add_joint(declared, joints.AppendChild(_identifier(declared.name, taken)))
+            joint.CreateBody1Rel().SetTargets([self._paths[self._content.robot.root]])
+        for joint in self._content.robot.joints:
+            self._add_joint(joint, joints.AppendChild(_identifier(joint.name, taken)))
         self._keep_apart()
 
-    def _add_body(self, body: Body, T_world_link: FloatArray) -> None:
-        path = self._paths[body.name]
+    def _add_link(self, link: Link, T_world_link: FloatArray) -> None:
+        path = self._paths[link.name]
         xform = UsdGeom.Xform.Define(self.stage, path)
-        xform.GetPrim().SetDisplayName(body.name)
+        xform.GetPrim().SetDisplayName(link.name)
         _place(xform, T_world_link)
         UsdPhysics.RigidBodyAPI.Apply(xform.GetPrim())
-        self._add_mass(xform.GetPrim(), body)
-        for folder, shapes in (("visuals", body.visuals), ("collisions", body.collisions)):
+        self._add_mass(xform.GetPrim(), link)
+        for folder, shapes in (("visuals", link.visuals), ("collisions", link.collisions)):
             above = path.AppendChild(folder)
             scope = UsdGeom.Xform.Define(self.stage, above)
             if folder == "collisions":
@@ -97,33 +98,33 @@ class _Writer:
                     if shape.kind == "mesh":
                         UsdPhysics.MeshCollisionAPI.Apply(prim).CreateApproximationAttr(UsdPhysics.Tokens.convexHull)
 
-    def _add_mass(self, prim: Any, body: Body) -> None:
-        if body.inertial.mass <= 0.0:
+    def _add_mass(self, prim: Any, link: Link) -> None:
+        if link.inertial is None:
             return
-        moments, axes = np.linalg.eigh(body.inertial.tensor)
+        moments, axes = np.linalg.eigh(link.inertial.tensor)
         axes[:, 2] *= np.sign(np.linalg.det(axes))
         mass = UsdPhysics.MassAPI.Apply(prim)
-        mass.CreateMassAttr(body.inertial.mass)
-        mass.CreateCenterOfMassAttr(_vector(body.inertial.center_of_mass))
+        mass.CreateMassAttr(link.inertial.mass)
+        mass.CreateCenterOfMassAttr(_vector(link.inertial.center_of_mass))
         mass.CreateDiagonalInertiaAttr(_vector(moments))
         mass.CreatePrincipalAxesAttr(_turn(axes))
 
     def _add_shape(self, path: Any, shape: Shape) -> Any:
         if shape.kind == "mesh":
             found = UsdGeom.Mesh.Define(self.stage, path)
-            found.CreatePointsAttr([_vector(point) for point in shape.vertices])
-            found.CreateFaceVertexCountsAttr([3] * len(shape.faces))
-            found.CreateFaceVertexIndicesAttr(shape.faces.ravel().tolist())
+            found.CreatePointsAttr([_vector(point) for point in shape.mesh.vertices])
+            found.CreateFaceVertexCountsAttr([3] * len(shape.mesh.faces))
+            found.CreateFaceVertexIndicesAttr(shape.mesh.faces.ravel().tolist())
             found.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
         else:
             found = _primitive(self.stage, path, shape)
-        found.CreateDisplayColorAttr([_vector(shape.color[:3])])
-        if shape.color[3] < 1.0:
-            found.CreateDisplayOpacityAttr([float(shape.color[3])])
+        *color, opacity = shape.color or GREY
+        found.CreateDisplayColorAttr([_vector(color)])
+        if opacity < 1.0:
+            found.CreateDisplayOpacityAttr([float(opacity)])
         return found.GetPrim()
 
-    def _add_joint(self, declared: DeclaredJoint, path: Any) -> None:
-        joint = declared.joint
+    def _add_joint(self, joint: Joint, path: Any) -> None:
         kind = {JointType.FIXED: UsdPhysics.FixedJoint, JointType.PRISMATIC: UsdPhysics.PrismaticJoint}
         found = kind.get(joint.kind, UsdPhysics.RevoluteJoint).Define(self.stage, path)
         found.GetPrim().SetDisplayName(joint.name)
@@ -142,25 +143,25 @@ class _Writer:
             unit = np.degrees if joint.kind.turns else np.asarray
             found.CreateLowerLimitAttr(float(unit(joint.lower)))
             found.CreateUpperLimitAttr(float(unit(joint.upper)))
-        self._add_drive(found.GetPrim(), declared)
+        self._add_drive(found.GetPrim(), joint)
         if joint.mimic is not None:
             found.GetPrim().SetCustomDataByKey("kinematify", {
                 "follows": joint.mimic.joint, "multiplier": joint.mimic.multiplier, "offset": joint.mimic.offset,
             })  # fmt: skip
 
-    def _add_drive(self, prim: Any, declared: DeclaredJoint) -> None:
+    def _add_drive(self, prim: Any, joint: Joint) -> None:
         """Damping and the largest effort; an importer adds the gains that it wants."""
-        turns = declared.joint.kind.turns
+        turns = joint.kind.turns
         drive = UsdPhysics.DriveAPI.Apply(prim, "angular" if turns else "linear")
         per_degree = np.pi / 180.0 if turns else 1.0
         drive.CreateStiffnessAttr(0.0)
-        drive.CreateDampingAttr(float((declared.damping or 0.0) * per_degree))
-        if declared.effort:
-            drive.CreateMaxForceAttr(float(declared.effort))
+        drive.CreateDampingAttr(float((joint.damping or 0.0) * per_degree))
+        if joint.effort:
+            drive.CreateMaxForceAttr(float(joint.effort))
 
     def _keep_apart(self) -> None:
         """Pairs that no joint connects; those that one connects do not collide anyway."""
-        joined = {frozenset((joint.joint.parent, joint.joint.child)) for joint in self._content.joints}
+        joined = {frozenset((joint.parent, joint.child)) for joint in self._content.robot.joints}
         for first, second in self._content.apart:
             if frozenset((first, second)) not in joined:
                 prim = self.stage.GetPrimAtPath(self._paths[first])

@@ -1,30 +1,25 @@
-"""Copies of a URDF for planners and engines: mesh paths absolute, sizes scaled."""
+"""Copies of a URDF at another size."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-from lxml import etree
-
-from kinematify.model.urdf_elements import numbers
-from kinematify.robot.description import parse_description
-from kinematify.robot.read import read_parsed
-from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import LinkMesh, Mimic
+from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from lxml.etree import _Element
-
-    from kinematify.robot.declared import DeclaredModel
-
-_LENGTHS = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Inertial, Joint, Robot, Shape
 
 
 def write_scaled(urdf: Path, factor: float, path: Path, *, package_dirs: Sequence[Path] = ()) -> None:
-    """Write an object at another size: lengths by the factor, masses by its cube, inertias by its fifth power.
+    """Write an object at another size, with absolute mesh paths.
 
     Args:
         urdf: The object.
@@ -36,61 +31,61 @@ def write_scaled(urdf: Path, factor: float, path: Path, *, package_dirs: Sequenc
         InputError: The object cannot be read.
         OSError: The file cannot be written.
     """
-    document = parse_description(urdf)
-    model = read_parsed(document, urdf, geometry_source(urdf, package_dirs))
-    with_absolute_meshes(document, model)
-    slides = {j.name for j in model.joints if j.declared_kind == "prismatic"}
-    for link in document.findall("link"):
-        for block in [*link.findall("visual"), *link.findall("collision"), *link.findall("inertial")]:
-            _scale_origin(block, factor)
-        for geometry in link.iter("geometry"):
-            _scale_shape(geometry[0], factor)
-        for inertial in link.findall("inertial"):
-            _scale(inertial.find("mass"), ("value",), factor**3)
-            _scale(inertial.find("inertia"), ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), factor**5)
-    for joint in document.findall("joint"):
-        _scale_joint(joint, slides, factor)
-    etree.ElementTree(document).write(path, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    write_robot(scaled(read_robot(urdf, package_dirs=package_dirs), factor), path)
 
 
-def with_absolute_meshes(document: _Element, model: DeclaredModel) -> None:
-    """Make every mesh path of a document absolute."""
-    for element, link in zip(document.findall("link"), model.links, strict=True):
-        for tag, shapes in (("visual", link.visuals), ("collision", link.collisions)):
-            for block, shape in zip(element.findall(tag), shapes, strict=True):
-                mesh = block.find("geometry/mesh")
-                if shape.file is not None and mesh is not None:
-                    mesh.set("filename", str(shape.file))
+def scaled(robot: Robot, factor: float) -> Robot:
+    """Return a robot at another size: lengths by the factor, masses by its cube, inertias by its fifth power."""
+    unit = {joint.name: factor if joint.kind is JointType.PRISMATIC else 1.0 for joint in robot.joints}
+    return replace(
+        robot,
+        links=tuple(
+            replace(
+                link,
+                inertial=None if link.inertial is None else _inertial(link.inertial, factor),
+                visuals=tuple(_shape(shape, factor) for shape in link.visuals),
+                collisions=tuple(_shape(shape, factor) for shape in link.collisions),
+            )
+            for link in robot.links
+        ),
+        joints=tuple(_joint(joint, factor, unit) for joint in robot.joints),
+    )
 
 
-def _scale_joint(joint: _Element, slides: set[str], factor: float) -> None:
-    _scale_origin(joint, factor)
-    own = factor if joint.get("name") in slides else 1.0
-    _scale(joint.find("limit"), ("lower", "upper", "velocity"), own)
-    mimic = joint.find("mimic")
-    if mimic is not None:
-        _scale(mimic, ("offset",), own)
-        mimic.set("multiplier", mimic.get("multiplier") or "1")
-        _scale(mimic, ("multiplier",), own / (factor if mimic.get("joint") in slides else 1.0))
+def _inertial(inertial: Inertial, factor: float) -> Inertial:
+    return replace(
+        inertial,
+        mass=inertial.mass * factor**3,
+        center_of_mass=inertial.center_of_mass * factor,
+        tensor=inertial.tensor * factor**5,
+    )
 
 
-def _scale_shape(shape: _Element, factor: float) -> None:
-    if shape.tag == "mesh":
-        shape.set("scale", shape.get("scale") or "1 1 1")
-        _scale(shape, ("scale",), factor)
-    else:
-        _scale(shape, _LENGTHS.get(str(shape.tag), ()), factor)
+def _shape(shape: Shape, factor: float) -> Shape:
+    return replace(
+        shape,
+        mesh=LinkMesh(vertices=shape.mesh.vertices * factor, faces=shape.mesh.faces),
+        scale=shape.scale * factor if shape.kind == "mesh" else shape.scale,
+        size=tuple(length * factor for length in shape.size),
+        T_link_shape=_placed(shape.T_link_shape, factor),
+    )
 
 
-def _scale_origin(block: _Element, factor: float) -> None:
-    _scale(block.find("origin"), ("xyz",), factor)
+def _joint(joint: Joint, factor: float, unit: dict[str, float]) -> Joint:
+    own, mimic = unit[joint.name], joint.mimic
+    return replace(
+        joint,
+        T_parent_child=_placed(joint.T_parent_child, factor),
+        lower=joint.lower * own,
+        upper=joint.upper * own,
+        velocity=None if joint.velocity is None else joint.velocity * own,
+        mimic=None
+        if mimic is None
+        else Mimic(joint=mimic.joint, multiplier=mimic.multiplier * own / unit[mimic.joint], offset=mimic.offset * own),
+    )
 
 
-def _scale(element: _Element | None, attributes: Sequence[str], factor: float) -> None:
-    """Multiply the numbers of some attributes; those that are absent stay so."""
-    if element is None or factor == 1.0:
-        return
-    for attribute in attributes:
-        text = element.get(attribute)
-        if text is not None:
-            element.set(attribute, numbers(factor * np.array([float(word) for word in text.split()])))
+def _placed(transform: FloatArray, factor: float) -> FloatArray:
+    moved = transform.copy()
+    moved[:3, 3] *= factor
+    return moved

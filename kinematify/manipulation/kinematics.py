@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,13 +12,15 @@ from lxml import etree
 from scipy.spatial import KDTree
 from scipy.stats import qmc
 
-from kinematify.robot.description import parse_description
-from kinematify.robot.read import read_model
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
+from kinematify.robot.write import robot_element
 
 if TYPE_CHECKING:
     from kinematify.config.planning import PlanSettings
     from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Robot
 
 _BATCH = 14  # two to this power configurations stand for what the arm can reach
 
@@ -34,8 +37,9 @@ class Arm:
             seed: Of restarts and of the samples that stand for what can be reached.
         """
         self.robot, self.settings, self._seed = robot, settings, seed
-        self.declared = read_model(robot.urdf)
-        self.model = self._reduced(pin.buildModelFromXML(_without_endless_joints(robot)))
+        self.declared = read_robot(robot.urdf)
+        text = etree.tostring(robot_element(_without_endless_joints(self.declared)), encoding="unicode")
+        self.model = self._reduced(pin.buildModelFromXML(text))
         self._data = self.model.createData()
         self._tool = self.model.getFrameId(robot.tool)
         joints = [self.model.joints[self.model.getJointId(name)] for name in robot.arm_joints]
@@ -198,13 +202,14 @@ def _features(poses: FloatArray, radian: float) -> FloatArray:
     return np.concatenate([poses[:, :3, 3], radian * poses[:, :3, 2]], axis=1)
 
 
-def _without_endless_joints(robot: TaskRobot) -> str:
-    """The robot's URDF, endless joints as joints of one turn: planners want one number per joint, and limits."""
-    document = parse_description(robot.urdf)
-    for joint in document.findall("joint"):
-        if joint.get("type") == "continuous":
-            joint.set("type", "revolute")
-            for limit in joint.findall("limit"):
-                joint.remove(limit)
-            etree.SubElement(joint, "limit", lower=str(-np.pi), upper=str(np.pi), effort="50", velocity="1")
-    return etree.tostring(document, encoding="unicode")
+def _without_endless_joints(robot: Robot) -> Robot:
+    """Endless joints as joints of one turn: planners want one number per joint, and limits."""
+    return replace(
+        robot,
+        joints=tuple(
+            replace(joint, kind=JointType.REVOLUTE, lower=-np.pi, upper=np.pi, effort=50.0, velocity=1.0)
+            if joint.kind is JointType.CONTINUOUS
+            else joint
+            for joint in robot.joints
+        ),
+    )

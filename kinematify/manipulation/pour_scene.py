@@ -6,37 +6,33 @@ lip, and the lip stays above the middle of the container.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from lxml import etree
 
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, visible_shapes
 from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.place import ObjectMotion, object_box
 from kinematify.manipulation.sizes import sizing
-from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
-from kinematify.robot.description import parse_description
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import read_model
-from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Joint, Link, Robot, forward_kinematics, rest_configuration
 from kinematify.robot.transforms import rotation_about
+from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from lxml.etree import _Element
 
     from kinematify.config.task import PourSettings
     from kinematify.config.validation import ValidationSettings
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
 
 LIFT, CARRY, TILT = "pour_lift", "pour_carry", "pour_tilt"
-_ROOT, _PIVOT, _CUP, _INTO = "pour_table", "pour_pivot", "cup_", "into_"
+_ROOT, _LIFTED, _CARRIED, _PIVOT = "pour_table", "pour_lifted", "pour_carried", "pour_pivot"
+_CUP, _INTO = "cup_", "into_"
 _LIP = 0.1  # of the cup's height: its uppermost part, where it is widest towards the container
 _EXTRA = 0.1  # of range beyond what is needed [m or rad]
 
@@ -77,12 +73,12 @@ def read_vessel(urdf: Path, path: Path, settings: ValidationSettings, scale: flo
         InputError: It cannot be read, has no geometry, or its size makes no sense.
         OSError: The file cannot be written.
     """
-    model = read_model(urdf)
+    model = read_robot(urdf)
     scene = read_scene(model, settings.geometry, visible_shapes)
     if not scene.bodies:
         raise InputError(f"{urdf} has no geometry, so nothing can be poured from it or into it. Give another model.")
     write_scaled(urdf, sizing(urdf, model.name, object_box(scene), scale=scale).factor, path)
-    scene = read_scene(read_model(path), settings.geometry, visible_shapes)
+    scene = read_scene(read_robot(path), settings.geometry, visible_shapes)
     points = [corners @ T[:3, :3].T + T[:3, 3] for body, T in zip(scene.bodies, scene.at_rest, strict=True)
               for corners in body.shapes]  # fmt: skip
     return Vessel(urdf=path, box=object_box(scene), points=np.concatenate(points))
@@ -115,25 +111,25 @@ def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: Pour
         carry=apart - float(lip[0]),
         tilt=float(np.radians(settings.tilt_deg)),
     )
-    document = etree.Element("robot", name="pour")
-    etree.SubElement(document, "link", name=_ROOT)
-    tops = [_add_vessel(document, vessel, prefix) for vessel, prefix in ((cup, _CUP), (into, _INTO))]
+    hung, stood = _at_rest(cup, _CUP), _at_rest(into, _INTO)
     stand = np.eye(4)
     stand[:3, 3] = np.array([apart, 0.0, 0.0]) - into.middle
-    _add_joint(document, f"{_INTO}stands", (_ROOT, tops[1]), stand)
-    links = [_ROOT, "pour_lifted", "pour_carried", _PIVOT]
     at_lip = np.eye(4)
     at_lip[:3, 3] = lip
-    for link in links[1:]:
-        etree.SubElement(document, "link", name=link)
-    _add_joint(document, LIFT, (links[0], links[1]), np.eye(4), "prismatic", axis=2, reach=pour.lift)
-    _add_joint(document, CARRY, (links[1], links[2]), np.eye(4), "prismatic", axis=0, reach=pour.carry)
-    _add_joint(document, TILT, (links[2], links[3]), at_lip, "revolute", axis=1, reach=pour.tilt)
     hang = np.eye(4)
     hang[:3, :3] = turn
     hang[:3, 3] = -turn @ cup.middle - lip
-    _add_joint(document, f"{_CUP}hangs", (_PIVOT, tops[0]), hang)
-    etree.ElementTree(document).write(path, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    joints = (
+        *stood.joints,
+        _fixed(f"{_INTO}stands", _ROOT, stood.root, stand),
+        _moving(LIFT, (_ROOT, _LIFTED), np.eye(4), JointType.PRISMATIC, axis=2, reach=pour.lift),
+        _moving(CARRY, (_LIFTED, _CARRIED), np.eye(4), JointType.PRISMATIC, axis=0, reach=pour.carry),
+        _moving(TILT, (_CARRIED, _PIVOT), at_lip, JointType.REVOLUTE, axis=1, reach=pour.tilt),
+        *hung.joints,
+        _fixed(f"{_CUP}hangs", _PIVOT, hung.root, hang),
+    )
+    frames = tuple(Link(name=name) for name in (_ROOT, _LIFTED, _CARRIED, _PIVOT))
+    write_robot(Robot(name="pour", links=(*frames, *hung.links, *stood.links), joints=joints), path)
     return pour
 
 
@@ -152,7 +148,7 @@ def pour_motion(scene: Scene, pour: Pour, settings: PourSettings) -> ObjectMotio
             row[names.index(name)] = value
             rows.append(row)
     table = np.array(rows)
-    links = [forward_kinematics(scene.model.kinematics, dict(zip(names, row.tolist(), strict=True))) for row in table]
+    links = [forward_kinematics(scene.model, dict(zip(names, row.tolist(), strict=True))) for row in table]
     return ObjectMotion(
         joint=TILT,
         T_world_object=np.eye(4),
@@ -163,37 +159,41 @@ def pour_motion(scene: Scene, pour: Pour, settings: PourSettings) -> ObjectMotio
     )
 
 
-def _add_vessel(document: _Element, vessel: Vessel, prefix: str) -> str:
-    """Add the links of a vessel with its joints fixed at rest; returns the name of its root."""
-    source, model = parse_description(vessel.urdf), read_model(vessel.urdf)
-    values = joint_values(model.kinematics, rest_configuration(model.kinematics))
-    for material in source.iter("material"):
-        if material.get("name"):
-            material.set("name", prefix + str(material.get("name")))
-    for element in [*source.findall("material"), *source.findall("link")]:
-        if element.tag == "link":
-            element.set("name", prefix + str(element.get("name")))
-        document.append(element)
-    for joint in model.kinematics.joints:
-        motion = joint.motion(values[joint.name]) if joint.kind is not JointType.FIXED else np.eye(4)
-        _add_joint(document, prefix + joint.name, (prefix + joint.parent, prefix + joint.child),
-                   joint.T_parent_child @ motion)  # fmt: skip
-    return prefix + _root(model)
+def _at_rest(vessel: Vessel, prefix: str) -> Robot:
+    """A vessel with its joints fixed where they rest, and a prefix before all names."""
+    robot = read_robot(vessel.urdf)
+    values = rest_configuration(robot)
+    return Robot(
+        name=robot.name,
+        links=tuple(replace(link, name=prefix + link.name) for link in robot.links),
+        joints=tuple(
+            _fixed(
+                prefix + joint.name,
+                prefix + joint.parent,
+                prefix + joint.child,
+                joint.T_parent_child @ joint.motion(values[joint.name]),
+            )
+            for joint in robot.joints
+        ),
+    )
 
 
-def _root(model: DeclaredModel) -> str:
-    return model.kinematics.root
+def _fixed(name: str, parent: str, child: str, T_parent_child: FloatArray) -> Joint:
+    return Joint(name=name, kind=JointType.FIXED, parent=parent, child=child, T_parent_child=T_parent_child)
 
 
-def _add_joint(
-    document: _Element, name: str, links: tuple[str, str], T: FloatArray, kind: str = "fixed", *, axis: int = 0,
-    reach: float = 0.0,
-) -> None:  # fmt: skip
-    joint = etree.SubElement(document, "joint", name=name, type=kind)
-    etree.SubElement(joint, "parent", link=links[0])
-    etree.SubElement(joint, "child", link=links[1])
-    etree.SubElement(joint, "origin", xyz=numbers(T[:3, 3]), rpy=numbers(roll_pitch_yaw(T[:3, :3])))
-    if kind != "fixed":
-        etree.SubElement(joint, "axis", xyz=numbers(np.eye(3)[axis]))
-        ends = {"lower": numbers([-_EXTRA]), "upper": numbers([reach + _EXTRA])}
-        etree.SubElement(joint, "limit", {**ends, "effort": "100", "velocity": "10"})
+def _moving(
+    name: str, links: tuple[str, str], T_parent_child: FloatArray, kind: JointType, *, axis: int, reach: float
+) -> Joint:
+    return Joint(
+        name=name,
+        kind=kind,
+        parent=links[0],
+        child=links[1],
+        T_parent_child=T_parent_child,
+        axis=np.eye(3)[axis],
+        lower=-_EXTRA,
+        upper=reach + _EXTRA,
+        effort=100.0,
+        velocity=10.0,
+    )

@@ -6,21 +6,17 @@ more link, whose frame is the grasp frame of all planning: +z approaches, +y clo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from lxml import etree
 
 from kinematify.errors import InputError
 from kinematify.manipulation import arm
-from kinematify.manipulation.copies import with_absolute_meshes
-from kinematify.model.urdf_elements import numbers, roll_pitch_yaw
-from kinematify.robot.description import parse_description
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import read_parsed
-from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration
-from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Joint, Link, forward_kinematics, joint_values, rest_configuration
+from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,8 +24,7 @@ if TYPE_CHECKING:
 
     from kinematify.manipulation.request import TaskRequest
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
-    from kinematify.robot.robot import DescribedJoint, RobotDescription
+    from kinematify.robot.robot import Robot
 
 ROBOT_FILE = "robot.urdf"
 GRASP_LINK = "kinematify_grasp_frame"
@@ -120,9 +115,7 @@ def user_robot(
         InputError: The robot cannot be read, has no such link or joints, or its fingers do not open.
         OSError: The folder cannot be written.
     """
-    document = parse_description(urdf)
-    model = read_parsed(document, urdf, geometry_source(urdf, package_dirs))
-    robot = model.kinematics
+    robot = read_robot(urdf, package_dirs=package_dirs)
     if tool not in robot.link_by_name:
         raise InputError(
             f"The robot {urdf} has no link {tool!r}, which --tool names. Its links are "
@@ -140,11 +133,11 @@ def user_robot(
             f"No movable joint leads from the root of {urdf} to the link {tool!r}: there is no arm. Name the link at "
             "the end of the arm with --tool."
         )
-    hand = _Hand(model=model, tool=tool, fingers=fingers)
+    hand = _Hand(robot=robot, tool=tool, fingers=fingers)
     frame, opening = hand.measured(urdf)
     closed = hand.meeting(frame, opening)
     path = folder.resolve() / ROBOT_FILE
-    _write_copy(document, model, path, tool, frame)
+    write_robot(_with_grasp_frame(robot, tool, frame), path)
     rest = rest_configuration(robot)
     return TaskRobot(
         urdf=path,
@@ -158,7 +151,7 @@ def user_robot(
     )
 
 
-def arm_chain(robot: RobotDescription, tool: str) -> tuple[str, ...]:
+def arm_chain(robot: Robot, tool: str) -> tuple[str, ...]:
     """Joints that lead (no followers) between the root and a link, from the root on."""
     above, link, found = robot.joint_above, tool, []
     while link in above:
@@ -169,7 +162,7 @@ def arm_chain(robot: RobotDescription, tool: str) -> tuple[str, ...]:
     return tuple(reversed(found))
 
 
-def named_fingers(robot: RobotDescription, urdf: Path, names: Sequence[str]) -> tuple[DescribedJoint, ...]:
+def named_fingers(robot: Robot, urdf: Path, names: Sequence[str]) -> tuple[Joint, ...]:
     """Return the finger joints that a user named, and their followers.
 
     Raises:
@@ -186,12 +179,12 @@ def named_fingers(robot: RobotDescription, urdf: Path, names: Sequence[str]) -> 
     return tuple(dict.fromkeys([*(movable[name] for name in names), *followers]))
 
 
-def found_fingers(robot: RobotDescription, tool: str) -> tuple[DescribedJoint, ...]:
+def found_fingers(robot: Robot, tool: str) -> tuple[Joint, ...]:
     """Return the first movable joints below a link, or below the body that it is fixed to."""
     top = tool
     while top in robot.joint_above and robot.joint_above[top].kind is JointType.FIXED:
         top = robot.joint_above[top].parent
-    found: list[DescribedJoint] = []
+    found: list[Joint] = []
     frontier = [top]
     for link in frontier:
         for joint in robot.joints_below[link]:
@@ -206,9 +199,9 @@ def found_fingers(robot: RobotDescription, tool: str) -> tuple[DescribedJoint, .
 class _Hand:
     """The fingers of a gripper and where their surfaces are, in the frame of the tool link."""
 
-    model: DeclaredModel
+    robot: Robot
     tool: str
-    fingers: tuple[DescribedJoint, ...]
+    fingers: tuple[Joint, ...]
 
     @property
     def apart(self) -> dict[str, float]:
@@ -277,7 +270,7 @@ class _Hand:
 
     def _ends(self) -> tuple[dict[str, float], dict[str, float]]:
         """Values of the finger joints closed and open, leaders taken to the end that parts the fingers."""
-        robot = self.model.kinematics
+        robot = self.robot
         leaders = list(dict.fromkeys(j.name if j.mimic is None else j.mimic.joint for j in self.fingers))
         ends = {name: self._bounds(name) for name in leaders}
         rest = {name: min(max(0.0, low), high) for name, (low, high) in ends.items()}
@@ -290,7 +283,7 @@ class _Hand:
         return {name: closed[name] for name in names}, {name: opened[name] for name in names}
 
     def _bounds(self, name: str) -> tuple[float, float]:
-        joint = self.model.kinematics.joint_by_name[name]
+        joint = self.robot.joint_by_name[name]
         turn = 0.25 * np.pi  # a finger without limits: an eighth of a turn either way
         return (joint.lower, joint.upper) if np.isfinite(joint.upper - joint.lower) else (-turn, turn)
 
@@ -301,20 +294,20 @@ class _Hand:
 
     def _surfaces(self, q: dict[str, float]) -> list[FloatArray]:
         """Corners of every finger in the tool frame [m], shape (n, 3) each."""
-        robot = self.model.kinematics
+        robot = self.robot
         poses = forward_kinematics(robot, {**rest_configuration(robot), **q})
         T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
         return [self._corners(joint.child, T_tool_world, poses) for joint in self.fingers]
 
     def _corners(self, top: str, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
-        robot = self.model.kinematics
+        robot = self.robot
         links = [top]
         for link in links:
             links += [joint.child for joint in robot.joints_below[link] if joint not in self.fingers]
         found = [np.empty((0, 3))]
         for link in links:
             T = T_tool_world @ poses[link]
-            declared = self.model.link_by_name[link]
+            declared = self.robot.link_by_name[link]
             for shape in declared.collisions or declared.visuals:
                 used = shape.mesh.vertices[np.unique(shape.mesh.faces)]
                 found.append(used @ T[:3, :3].T + T[:3, 3])
@@ -330,7 +323,7 @@ class _Hand:
 
     def _approach(self, fingers: FloatArray, closing: FloatArray) -> FloatArray:
         """Unit direction from what carries the fingers to their tips, tool frame, shape (3,)."""
-        robot = self.model.kinematics
+        robot = self.robot
         poses = forward_kinematics(robot, {**rest_configuration(robot), **self.apart})
         T_tool_world = np.asarray(np.linalg.inv(poses[self.tool]), dtype=np.float64)
         carrier = self._carrier(T_tool_world, poses)
@@ -347,7 +340,7 @@ class _Hand:
 
     def _carrier(self, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
         """Middle of the body that the fingers hang on, tool frame [m], shape (3,)."""
-        robot = self.model.kinematics
+        robot = self.robot
         link = self.fingers[0].parent
         found = [self._alone(link, T_tool_world, poses)]
         while not len(np.concatenate(found)) and link in robot.joint_above:
@@ -360,7 +353,7 @@ class _Hand:
 
     def _alone(self, link: str, T_tool_world: FloatArray, poses: dict[str, FloatArray]) -> FloatArray:
         T = T_tool_world @ poses[link]
-        declared = self.model.link_by_name[link]
+        declared = self.robot.link_by_name[link]
         shapes = declared.collisions or declared.visuals
         parts = [shape.mesh.vertices @ T[:3, :3].T + T[:3, 3] for shape in shapes]
         return np.concatenate([np.empty((0, 3)), *parts])
@@ -371,12 +364,9 @@ def _end(points: FloatArray, along: FloatArray) -> FloatArray:
     return np.asarray(points[along >= along.max() - _TIP_SHARE * np.ptp(along)])
 
 
-def _write_copy(document: etree._Element, model: DeclaredModel, path: Path, tool: str, frame: FloatArray) -> None:
-    """Write the robot with absolute mesh paths and the grasp frame as a link of its own."""
-    with_absolute_meshes(document, model)
-    etree.SubElement(document, "link", name=GRASP_LINK)
-    joint = etree.SubElement(document, "joint", name=f"{GRASP_LINK}_joint", type="fixed")
-    etree.SubElement(joint, "parent", link=tool)
-    etree.SubElement(joint, "child", link=GRASP_LINK)
-    etree.SubElement(joint, "origin", xyz=numbers(frame[:3, 3]), rpy=numbers(roll_pitch_yaw(frame[:3, :3])))
-    etree.ElementTree(document).write(path, pretty_print=True, xml_declaration=True, encoding="utf-8")
+def _with_grasp_frame(robot: Robot, tool: str, T_tool_grasp: FloatArray) -> Robot:
+    """The robot with the grasp frame as a link of its own."""
+    joint = Joint(
+        name=f"{GRASP_LINK}_joint", kind=JointType.FIXED, parent=tool, child=GRASP_LINK, T_parent_child=T_tool_grasp
+    )
+    return replace(robot, links=(*robot.links, Link(name=GRASP_LINK)), joints=(*robot.joints, joint))

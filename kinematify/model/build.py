@@ -9,9 +9,10 @@ import numpy as np
 
 from kinematify.assembly.part import Part
 from kinematify.geometry.hull import convex_hull, thickened
-from kinematify.joints.candidate import JointType
 from kinematify.model.inertia import inertial_of
-from kinematify.model.kinematic_model import Joint, KinematicModel, Link
+from kinematify.model.kinematic_model import KinematicModel, ModelLink
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Joint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,12 +69,12 @@ def build_model(
     )
 
 
-def _link(assembly: Assembly, index: int, origin: FloatArray, *, thickness: float, config: ModelConfig) -> Link:
+def _link(assembly: Assembly, index: int, origin: FloatArray, *, thickness: float, config: ModelConfig) -> ModelLink:
     part = assembly.parts[index]
     original = assembly.originals.get(part.name)
     T_world_link = np.eye(4)
     T_world_link[:3, 3] = origin
-    return Link(
+    return ModelLink(
         name=part.name,
         part=part,
         T_world_link=T_world_link,
@@ -107,7 +108,9 @@ def _joint_names(children: Sequence[str], taken: set[str]) -> list[str]:
     return names
 
 
-def _joint(estimate: JointEstimate, links: Sequence[Link], name: str, diagonal: float, config: ModelConfig) -> Joint:
+def _joint(
+    estimate: JointEstimate, links: Sequence[ModelLink], name: str, diagonal: float, config: ModelConfig
+) -> Joint:
     parent, child = links[estimate.parent], links[estimate.child]
     T_parent_child = np.eye(4)
     T_parent_child[:3, 3] = child.T_world_link[:3, 3] - parent.T_world_link[:3, 3]

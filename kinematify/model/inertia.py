@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.hull import convex_hull, thickened
-from kinematify.model.kinematic_model import Inertial
+from kinematify.robot.robot import Inertial
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part

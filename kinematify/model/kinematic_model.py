@@ -8,34 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
 from kinematify.robot.arrays import read_only
+from kinematify.robot.robot import Link, Robot
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Inertial, Joint
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Inertial:
-    """Mass properties of a link, expressed in the link frame."""
-
-    mass: float
-    """[kg]."""
-    center_of_mass: FloatArray
-    """Link frame [m], shape (3,). Read-only."""
-    tensor: FloatArray
-    """Inertia about the centre of mass, axes of the link frame [kg m^2], shape (3, 3). Read-only."""
-    source: str
-    """``volume`` for a closed mesh, ``hull`` for the convex hull of an open or flat one."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "center_of_mass", read_only(self.center_of_mass, np.float64))
-        object.__setattr__(self, "tensor", read_only(self.tensor, np.float64))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Link:
+class ModelLink:
     """One rigid body; its frame has world orientation and its origin on the axis of its joint."""
 
     name: str
@@ -61,46 +44,25 @@ class Link:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Joint:
-    """A URDF joint; the joint frame is the child link's frame."""
-
-    name: str
-    kind: JointType
-    parent: str
-    child: str
-    T_parent_child: FloatArray
-    """Child frame in the parent frame at q = 0, shape (4, 4). Read-only."""
-    axis: FloatArray
-    """Unit direction in the joint frame, shape (3,). Read-only."""
-    lower: float
-    """[rad or m]; -inf for continuous."""
-    upper: float
-    """[rad or m]; +inf for continuous."""
-    effort: float
-    """[N m or N]."""
-    velocity: float
-    """[rad/s or m/s]."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "T_parent_child", read_only(self.T_parent_child, np.float64))
-        object.__setattr__(self, "axis", read_only(self.axis, np.float64))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class KinematicModel:
     """A kinematic tree of links and joints; the root link's frame is the world frame of the input."""
 
     name: str
-    links: tuple[Link, ...]
+    links: tuple[ModelLink, ...]
     joints: tuple[Joint, ...]
 
     @cached_property
-    def link_by_name(self) -> dict[str, Link]:
+    def link_by_name(self) -> dict[str, ModelLink]:
         """Links keyed by name."""
         return {link.name: link for link in self.links}
 
     @cached_property
+    def robot(self) -> Robot:
+        """The tree with its masses, without shapes: for forward kinematics and whatever else needs no mesh."""
+        links = tuple(Link(name=link.name, inertial=link.inertial) for link in self.links)
+        return Robot(name=self.name, links=links, joints=self.joints)
+
+    @property
     def root(self) -> str:
         """Name of the base link."""
-        children = {joint.child for joint in self.joints}
-        return next(link.name for link in self.links if link.name not in children)
+        return self.robot.root

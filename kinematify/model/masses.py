@@ -10,14 +10,14 @@ import numpy as np
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.model.inertia import inertial_of
-from kinematify.robot.robot import rigid_groups
+from kinematify.robot.robot import Inertial, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config.validation import PrepareSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredInertial, DeclaredLink, DeclaredModel, DeclaredShape
+    from kinematify.robot.robot import Link, Robot, Shape
 
 
 _ROUNDING = 1e-9
@@ -25,20 +25,16 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PreparedInertial:
-    """What is written for a link."""
+class PreparedInertial(Inertial):
+    """What engines are given for a link."""
 
-    mass: float
-    """[kg]."""
-    center_of_mass: FloatArray
-    """Link frame [m], shape (3,)."""
-    tensor: FloatArray
-    """About the centre of mass, axes of the link frame [kg m^2], shape (3, 3)."""
     mass_added: bool
+    """True if the file states no mass above zero."""
     inertia_added: bool
+    """True if the file states no tensor that engines take, or one that had to be changed by more than rounding."""
 
 
-def prepared_inertials(model: DeclaredModel, settings: PrepareSettings) -> dict[str, PreparedInertial]:
+def prepared_inertials(model: Robot, settings: PrepareSettings) -> dict[str, PreparedInertial]:
     """Return mass properties for every link.
 
     A link without a usable mass that is fixed to links with one adds nothing, as its author meant it. Where no link of
@@ -46,7 +42,7 @@ def prepared_inertials(model: DeclaredModel, settings: PrepareSettings) -> dict[
     to nothing.
     """
     found: dict[str, PreparedInertial] = {}
-    for group in rigid_groups(model.kinematics):
+    for group in rigid_groups(model):
         links = [model.link_by_name[name] for name in group.links]
         weighed = any(usable_mass(link.inertial) for link in links)
         for link in links:
@@ -56,7 +52,7 @@ def prepared_inertials(model: DeclaredModel, settings: PrepareSettings) -> dict[
     return found
 
 
-def usable_mass(inertial: DeclaredInertial | None) -> bool:
+def usable_mass(inertial: Inertial | None) -> bool:
     """True if there is a mass above zero."""
     return inertial is not None and inertial.mass > 0.0
 
@@ -77,7 +73,7 @@ def lifted(tensor: FloatArray) -> FloatArray | None:
     return np.asarray(tensor + lift * np.eye(3))
 
 
-def _inertial(link: DeclaredLink, *, weighed: bool, settings: PrepareSettings) -> PreparedInertial:
+def _inertial(link: Link, *, weighed: bool, settings: PrepareSettings) -> PreparedInertial:
     declared = link.inertial
     if declared is None or not usable_mass(declared):
         part = None if weighed else link_part(link)
@@ -95,7 +91,7 @@ def _inertial(link: DeclaredLink, *, weighed: bool, settings: PrepareSettings) -
     )
 
 
-def _with_made_up_tensor(link: DeclaredLink, declared: DeclaredInertial, settings: PrepareSettings) -> PreparedInertial:
+def _with_made_up_tensor(link: Link, declared: Inertial, settings: PrepareSettings) -> PreparedInertial:
     """Keep mass and centre; the tensor is that of the geometry, or of a small ball where there is none."""
     part = link_part(link)
     if part is None:
@@ -119,6 +115,7 @@ def _from_geometry(part: Part) -> PreparedInertial:
         mass=solid.mass,
         center_of_mass=solid.center_of_mass,
         tensor=solid.tensor,
+        source=solid.source,
         mass_added=True,
         inertia_added=True,
     )
@@ -129,18 +126,19 @@ def _ball(mass: float, settings: PrepareSettings) -> PreparedInertial:
         mass=mass,
         center_of_mass=np.zeros(3),
         tensor=np.eye(3) * mass * settings.ball_radius**2,
+        source="ball",
         mass_added=True,
         inertia_added=True,
     )
 
 
-def link_part(link: DeclaredLink) -> Part | None:
+def link_part(link: Link) -> Part | None:
     """All solid geometry of a link as one mesh: the visual one, which shows the true shape, else the collision one."""
     shapes = link.visuals or link.collisions
     return merged_part(link.name, shapes) if shapes else None
 
 
-def merged_part(name: str, shapes: Sequence[DeclaredShape]) -> Part:
+def merged_part(name: str, shapes: Sequence[Shape]) -> Part:
     """Put shapes together in the link frame."""
     starts = np.cumsum([0, *(len(shape.mesh.vertices) for shape in shapes)])
     return Part(

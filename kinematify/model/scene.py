@@ -6,20 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
-from kinematify.model.kinematics import forward_kinematics
 from kinematify.render.camera import fit_camera
 from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import PosedMesh
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import PreviewConfig
-    from kinematify.model.kinematic_model import Joint, KinematicModel
+    from kinematify.model.kinematic_model import KinematicModel
     from kinematify.render.camera import Camera
     from kinematify.render.picture import PictureScene
     from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.robot import Joint
 
 GLYPH_COLORS = {
     JointType.REVOLUTE: np.array([0.84, 0.10, 0.16]),
@@ -76,7 +77,7 @@ def posed_meshes(
     Returns:
         Link name -> mesh in the world frame.
     """
-    T_world_link = forward_kinematics(model, q)
+    T_world_link = forward_kinematics(model.robot, q)
     posed = {}
     for link in model.links:
         parts = (link.visual, *(part for part in link.fixed_visuals if len(part.faces)))
@@ -95,7 +96,7 @@ def joint_glyphs(model: KinematicModel, q: Mapping[str, float], config: PreviewC
     Returns:
         Joint name -> arrow in the world frame.
     """
-    T_world_link = forward_kinematics(model, q)
+    T_world_link = forward_kinematics(model.robot, q)
     diagonal = _diagonal(model)
     glyphs = {}
     for joint in moving_joints(model):

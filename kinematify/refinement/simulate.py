@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import GeometrySettings
     from kinematify.geometry.sweep import JointSweep
-    from kinematify.model.kinematic_model import Joint, KinematicModel
+    from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.robot.robot import Joint
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
 

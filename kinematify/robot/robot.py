@@ -78,7 +78,8 @@ class Inertial:
     tensor: FloatArray
     """About the centre of mass, axes of the link frame [kg m^2], shape (3, 3). Read-only."""
     source: str = "file"
-    """``file``; or ``volume`` for a closed mesh, ``hull`` for the convex hull of an open or flat one."""
+    """``file``; or ``volume`` for a closed mesh, ``hull`` for the convex hull of an open or flat one, ``ball`` for a
+    small ball in the place of a mere frame."""
     line: int = 0
 
     def __post_init__(self) -> None:
@@ -128,11 +129,11 @@ class Joint:
     child: str
     T_parent_child: FloatArray
     """Child frame in the parent frame at zero, shape (4, 4). Read-only."""
-    axis: FloatArray
+    axis: FloatArray = field(default_factory=lambda: np.array([1.0, 0.0, 0.0]))
     """Unit direction in the joint frame, shape (3,). Read-only."""
-    lower: float
+    lower: float = 0.0
     """[rad or m]; -inf for continuous, 0 for fixed."""
-    upper: float
+    upper: float = 0.0
     """[rad or m]; +inf for continuous, 0 for fixed."""
     mimic: Mimic | None = None
     declared_kind: str = ""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from lxml.etree import _Element
+
+    from kinematify.robot.arrays import FloatArray
 
 SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 """Attributes that hold the size of a primitive."""
@@ -53,23 +54,23 @@ class GeometrySource:
                 f"The {element.tag} of {where} has no geometry element with exactly one shape inside. Give it a mesh, "
                 "box, cylinder or sphere, or remove it."
             )
-        shape = geometry[0]
-        kind = str(shape.tag)
-        mesh = self._mesh_file(shape, where) if kind == "mesh" else _primitive(shape, where)
-        transform = origin_transform(element, where)
+        shape, transform = geometry[0], origin_transform(element, where)
+        color, line = _color(element.find("material")), line_of(element)
+        if shape.tag != "mesh":
+            return replace(primitive(str(shape.tag), _primitive_size(shape, where), transform, color), line=line)
+        mesh = self._mesh_file(shape, where)
         scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
-        vertices = (mesh.vertices * scale) @ transform[:3, :3].T + transform[:3, 3]
         # A mirroring scale turns the triangles inside out.
         order = [0, 2, 1] if np.prod(scale) < 0 else [0, 1, 2]
         return Shape(
-            kind=kind,
-            mesh=LinkMesh(vertices=vertices, faces=mesh.faces[:, order]),
-            file=self.resolved(shape.get("filename") or "", where) if kind == "mesh" else None,
-            scale=scale if kind == "mesh" else np.ones(3),
-            size=tuple(float(word) for key in SIZES.get(kind, ()) for word in (shape.get(key) or "").split()),
+            mesh=LinkMesh(
+                vertices=(mesh.vertices * scale) @ transform[:3, :3].T + transform[:3, 3], faces=mesh.faces[:, order]
+            ),
+            file=self.resolved(shape.get("filename") or "", where),
+            scale=scale,
             T_link_shape=transform,
-            color=_color(element.find("material")),
-            line=line_of(element),
+            color=color,
+            line=line,
         )
 
     def _mesh_file(self, shape: _Element, where: str) -> RawMesh:
@@ -96,35 +97,51 @@ def geometry_source(document: Path, package_dirs: Sequence[Path]) -> GeometrySou
     return GeometrySource(folder=document.resolve().parent, package_dirs=folders, cache={})
 
 
-def _primitive(shape: _Element, where: str) -> RawMesh:
-    from trimesh import creation  # noqa: PLC0415  # takes longer than reading an OBJ, which needs none of it
+def primitive(
+    kind: str,
+    size: tuple[float, ...],
+    T_link_shape: FloatArray,
+    color: tuple[float, float, float, float] | None = None,
+) -> Shape:
+    """Return a box, cylinder, sphere or capsule with its triangles; the arguments are fields of `Shape`."""
+    mesh = _tessellated(kind, size)
+    vertices = mesh.vertices @ T_link_shape[:3, :3].T + T_link_shape[:3, 3]
+    return Shape(
+        kind=kind,
+        mesh=LinkMesh(vertices=vertices, faces=mesh.faces),
+        size=size,
+        T_link_shape=T_link_shape,
+        color=color,
+    )
 
-    if shape.tag == "box":
-        size = vector(shape, "size", None, where)
-        _positive(where, "box", *size)
-        mesh = creation.box(extents=size)
-    elif shape.tag == "sphere":
-        radius = number(shape, "radius", None, where)
-        _positive(where, "sphere", radius)
-        mesh = creation.icosphere(subdivisions=_SUBDIVISIONS, radius=radius)
-    elif shape.tag in ("cylinder", "capsule"):
-        radius, length = number(shape, "radius", None, where), number(shape, "length", None, where)
-        _positive(where, str(shape.tag), radius, length)
-        if shape.tag == "cylinder":
-            mesh = creation.cylinder(radius=radius, height=length, sections=_SECTIONS)
-        else:
-            mesh = creation.capsule(radius=radius, height=length, count=(_SECTIONS // 2, _SECTIONS))
-    else:
+
+def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
+    if shape.tag not in SIZES:
         raise DescriptionError(
             f"The geometry of {where} is a <{shape.tag}>, which URDF does not have. Use a mesh, box, cylinder or "
             "sphere."
         )
+    if shape.tag == "box":
+        size = tuple(vector(shape, "size", None, where).tolist())
+    else:
+        size = tuple(number(shape, attribute, None, where) for attribute in SIZES[str(shape.tag)])
+    if not all(length > 0 for length in size):
+        raise DescriptionError(f"The {shape.tag} of {where} has the size {size}. Every length must be above zero.")
+    return size
+
+
+def _tessellated(kind: str, size: tuple[float, ...]) -> RawMesh:
+    from trimesh import creation  # noqa: PLC0415  # takes longer than reading an OBJ, which needs none of it
+
+    if kind == "box":
+        mesh = creation.box(extents=size)
+    elif kind == "sphere":
+        mesh = creation.icosphere(subdivisions=_SUBDIVISIONS, radius=size[0])
+    elif kind == "cylinder":
+        mesh = creation.cylinder(radius=size[0], height=size[1], sections=_SECTIONS)
+    else:
+        mesh = creation.capsule(radius=size[0], height=size[1], count=(_SECTIONS // 2, _SECTIONS))
     return RawMesh(name="", vertices=np.asarray(mesh.vertices), faces=np.asarray(mesh.faces, dtype=np.int64))
-
-
-def _positive(where: str, shape: str, *sizes: float) -> None:
-    if not all(size > 0 and math.isfinite(size) for size in sizes):
-        raise DescriptionError(f"The {shape} of {where} has the size {sizes}. Every length must be above zero.")
 
 
 def _color(material: _Element | None) -> tuple[float, float, float, float] | None:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from lxml import etree
-
-from kinematify.model import urdf_elements as document
 from kinematify.model.collision_pieces import Pieces, decomposed
+from kinematify.model.drives import lacks_drive, prepared_joint
 from kinematify.model.masses import prepared_inertials
+from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
+from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
+from kinematify.robot.write import write_robot
 from kinematify.simulation.prepared import URDF_FILE, Prepared, PreparedLink, write_record
 from kinematify.validation.left_model import model_of
 
@@ -18,10 +19,10 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import PrepareSettings
     from kinematify.model.masses import PreparedInertial
-    from kinematify.robot.declared import DeclaredLink, DeclaredModel
     from kinematify.validation.stage import Recorder, StageRequest
 
 _MESH_FOLDER = "prepared_meshes"
+_NAME = "prepared"  # short, because PyBullet crashes on long names
 
 
 def run(request: StageRequest, recorder: Recorder) -> None:
@@ -31,41 +32,46 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     prepare(model, request.work, request.settings.prepare)
 
 
-def prepare(model: DeclaredModel, work: Path, settings: PrepareSettings) -> Prepared:
+def prepare(model: Robot, work: Path, settings: PrepareSettings) -> Prepared:
     """Write the file that engines load, and its record, into an existing folder."""
     work = work.resolve()
     (work / _MESH_FOLDER).mkdir(exist_ok=True)
     inertials = prepared_inertials(model, settings)
-    shapes = decomposed(model, settings)
-    robot = document.robot_element()
-    for index, link in enumerate(model.links):
-        element = document.add_link(robot, link.name, inertials[link.name])
-        _add_collision(element, shapes[link.name], work / _MESH_FOLDER, f"{index:03d}_{_safe(link.name)}")
-    for joint in model.joints:
-        document.add_joint(robot, joint, settings)
-    etree.ElementTree(robot).write(work / URDF_FILE, pretty_print=True, xml_declaration=True, encoding="utf-8")
+    pieces = decomposed(model, settings)
+    links = tuple(
+        Link(
+            name=link.name,
+            inertial=inertials[link.name],
+            collisions=_shapes(pieces[link.name], work / _MESH_FOLDER, f"{index:03d}_{_safe(link.name)}"),
+        )
+        for index, link in enumerate(model.links)
+    )
+    joints = tuple(prepared_joint(joint, settings) for joint in model.joints)
+    write_robot(Robot(name=_NAME, links=links, joints=joints), work / URDF_FILE)
     prepared = Prepared(
         urdf=work / URDF_FILE,
-        links=tuple(_record(link, shapes[link.name], inertials[link.name]) for link in model.links),
-        drives_added=tuple(joint.name for joint in model.joints if document.lacks_drive(joint)),
+        links=tuple(_record(link, pieces[link.name], inertials[link.name]) for link in model.links),
+        drives_added=tuple(joint.name for joint in model.joints if lacks_drive(joint)),
     )
     write_record(prepared, work)
     return prepared
 
 
-def _add_collision(element: etree._Element, pieces: Pieces, folder: Path, stem: str) -> None:
-    for shape in pieces.primitives:
-        document.add_primitive(element, shape)
+def _shapes(pieces: Pieces, folder: Path, stem: str) -> tuple[Shape, ...]:
+    """Primitives as they are, and convex pieces, written as OBJ."""
+    shapes = list(pieces.primitives)
     for number, piece in enumerate(pieces.convex):
-        # MuJoCo takes meshes with the same base name for one mesh.
-        document.add_piece(element, piece, folder / f"{stem}_{number:03d}.obj")
+        path = folder / f"{stem}_{number:03d}.obj"  # MuJoCo takes meshes with the same base name for one mesh
+        write_obj(path, piece.vertices, piece.faces, OBJ_DIGITS)
+        shapes.append(Shape(mesh=LinkMesh(vertices=piece.vertices, faces=piece.faces), file=path))
+    return tuple(shapes)
 
 
 def _safe(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_-]", "_", name)[:60]
 
 
-def _record(link: DeclaredLink, pieces: Pieces, inertial: PreparedInertial) -> PreparedLink:
+def _record(link: Link, pieces: Pieces, inertial: PreparedInertial) -> PreparedLink:
     return PreparedLink(
         link=link.name,
         method=pieces.method,

@@ -13,7 +13,7 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.model.inertia import inertial_of
-from kinematify.model.kinematic_model import Inertial
+from kinematify.robot.robot import Inertial
 
 CONFIG = load_config().model
 ORIGIN = np.zeros(3)

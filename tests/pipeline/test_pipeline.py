@@ -14,9 +14,9 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointType
-from kinematify.model.kinematics import forward_kinematics
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.pipeline.record import inference_record
+from kinematify.robot.robot import forward_kinematics
 from tests.engines import read_pinocchio
 from tests.objects import BUILDERS, KnownObject, posed, rotation, shuffled, with_yaw
 
@@ -187,7 +187,7 @@ def test_a_given_base_is_the_root() -> None:
 def test_the_model_at_zero_is_the_input(name: str, tmp_path: Path) -> None:
     inference = inferred(name)
     parts = {part.name: part for part in inference.assembly.parts}
-    poses = forward_kinematics(inference.model, {})
+    poses = forward_kinematics(inference.model.robot, {})
     for link in inference.model.links:
         assert np.allclose(poses[link.name], link.T_world_link, atol=1e-12)
     write_inference(inference, tmp_path / "out", preview=False)

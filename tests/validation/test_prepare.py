@@ -24,9 +24,9 @@ from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 from kinematify.geometry.cut import Concave, Surface, cut_worst_first, split
 from kinematify.geometry.cut_cache import cache_folder
 from kinematify.model.masses import lifted
-from kinematify.model.urdf_elements import roll_pitch_yaw
 from kinematify.robot.read import read_model
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import rpy_of
 from kinematify.simulation.prepare import run
 from kinematify.simulation.prepared import Method, Prepared, load_prepared
 from kinematify.validation.catalogue import CATALOGUE
@@ -220,7 +220,7 @@ def test_a_tensor_that_is_not_positive_is_not_lifted() -> None:
 def test_angles_are_those_of_the_matrix(angles: tuple[float, float, float], pitch: float | None) -> None:
     roll, tilt, yaw = angles
     matrix = euler_matrix(roll, tilt if pitch is None else pitch, yaw)[:3, :3]
-    np.testing.assert_allclose(euler_matrix(*roll_pitch_yaw(matrix))[:3, :3], matrix, atol=1e-7)
+    np.testing.assert_allclose(euler_matrix(*rpy_of(matrix))[:3, :3], matrix, atol=1e-7)
 
 
 # ---- pieces ----------------------------------------------------------------------------------------------------------

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from kinematify.config.validation import load_settings
-from kinematify.model.kinematics import forward_kinematics
 from kinematify.robot.read import read_model
+from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.formats.picture import Drawing, drawing_of, shown_model
 
 GRIPPER = """<robot name="gripper">
@@ -46,7 +46,7 @@ def test_shown_model_stands_at_rest_and_moves_as_declared(gripper: Path) -> None
     limits = {joint.name: (joint.lower, joint.upper) for joint in model.joints}
     assert limits["spin"] == pytest.approx((-0.5, 0.5))
     assert limits["follow"] == pytest.approx((-0.05, 0.0))
-    moved = forward_kinematics(model, {"open": 0.05, "follow": -0.05})
+    moved = forward_kinematics(model.robot, {"open": 0.05, "follow": -0.05})
     gap = np.linalg.norm(moved["left"][:3, 3] - moved["right"][:3, 3])
     assert gap == pytest.approx(0.12)
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.model.kinematic_model import Inertial, Joint, KinematicModel, Link
+from kinematify.model.kinematic_model import KinematicModel, ModelLink
 from kinematify.model.preview import render_preview
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import read_model
-from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Inertial, Joint, forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.isolation import Stage, run_stages
 from kinematify.validation.stage import StageRequest
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import DescribedJoint, RigidGroup, RobotDescription
+    from kinematify.robot.robot import RigidGroup, Robot
     from kinematify.validation.stage import Recorder
 
 _FILE = "picture.png"
@@ -95,17 +95,17 @@ def scene_of(path: Path, package_dirs: Sequence[Path] = ()) -> str:
     Raises:
         DescriptionError: It cannot be read.
     """
-    return _scene(read_model(path, package_dirs=package_dirs).kinematics)
+    return _scene(read_robot(path, package_dirs=package_dirs))
 
 
-def _scene(robot: RobotDescription) -> str:
+def _scene(robot: Robot) -> str:
     scene = view_data(robot, faces=_FACES)
     return "" if scene is None else json.dumps(scene, allow_nan=False)
 
 
 def run(request: StageRequest, _recorder: Recorder) -> None:
     """Draw the model of a request into its folder; body of the process."""
-    robot = read_model(request.urdf, package_dirs=request.package_dirs).kinematics
+    robot = read_robot(request.urdf, package_dirs=request.package_dirs)
     scene = _scene(robot)
     if scene:
         aside = request.work / f".{_SCENE}"
@@ -121,7 +121,7 @@ def run(request: StageRequest, _recorder: Recorder) -> None:
 class _Standing:
     """A robot at rest."""
 
-    robot: RobotDescription
+    robot: Robot
     rest: dict[str, float]
     T_world_link: dict[str, FloatArray]
     top_of: dict[str, str]
@@ -133,7 +133,7 @@ class _Standing:
         return place
 
 
-def shown_model(robot: RobotDescription) -> KinematicModel:
+def shown_model(robot: Robot) -> KinematicModel:
     """Return the robot as pictures want it: at rest, links fixed together as one, frames along the world's axes."""
     rest = rest_configuration(robot)
     groups = rigid_groups(robot)
@@ -146,7 +146,7 @@ def shown_model(robot: RobotDescription) -> KinematicModel:
     )
 
 
-def _link(standing: _Standing, group: RigidGroup) -> Link:
+def _link(standing: _Standing, group: RigidGroup) -> ModelLink:
     # A link without shape still carries others: a triangle of no area at its origin stands for it.
     vertices: list[FloatArray] = [np.tile(standing.place(group.top), (3, 1))]
     faces: list[IntArray] = [np.array([[0, 1, 2]])]
@@ -158,10 +158,10 @@ def _link(standing: _Standing, group: RigidGroup) -> Link:
     if group.has_geometry:
         faces.pop(0)
     part = Part(name=group.top, vertices=np.concatenate(vertices), faces=np.concatenate(faces))
-    return Link(name=group.top, part=part, T_world_link=_at(standing.place(group.top)), inertial=_NO_INERTIAL)
+    return ModelLink(name=group.top, part=part, T_world_link=_at(standing.place(group.top)), inertial=_NO_INERTIAL)
 
 
-def _joint(standing: _Standing, joint: DescribedJoint) -> Joint:
+def _joint(standing: _Standing, joint: Joint) -> Joint:
     parent = standing.top_of[joint.parent]
     lower, upper = _range(standing, joint)
     return Joint(
@@ -173,12 +173,10 @@ def _joint(standing: _Standing, joint: DescribedJoint) -> Joint:
         axis=standing.T_world_link[joint.child][:3, :3] @ joint.axis,
         lower=lower,
         upper=upper,
-        effort=0.0,
-        velocity=0.0,
     )
 
 
-def _range(standing: _Standing, joint: DescribedJoint) -> tuple[float, float]:
+def _range(standing: _Standing, joint: Joint) -> tuple[float, float]:
     """Limits seen from rest; a follower has those that its leader gives it, so that both move by the same share."""
     at_rest = standing.rest[joint.name]
     if joint.mimic is None:

@@ -12,18 +12,17 @@ import json
 import tempfile
 import time
 from collections import Counter
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.config.validation import load_settings
-from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.copies import with_absolute_meshes, write_scaled
+from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.execute import Hold, load
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.place import object_box
@@ -31,20 +30,19 @@ from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pul
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.manipulation.sizes import sizing
-from kinematify.robot.description import parse_description
-from kinematify.robot.read import read_model, read_parsed
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
 from kinematify.robot.transforms import rotation_about
-from kinematify.robot.urdf_geometry import geometry_source
+from kinematify.robot.write import write_robot
 from kinematify.validation.run import validate
 from kinematify.validation.task.stage import motion_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from lxml.etree import _Element
-
     from kinematify.config.validation import ValidationSettings
     from kinematify.geometry.scene import Scene
+    from kinematify.robot.robot import Joint
     from kinematify.validation.finding import Finding
 
 _WAY = 0.12  # a door or drawer moves its outermost point by more [m]; buttons, knobs and levers move less
@@ -152,10 +150,10 @@ def _opened(name: str, urdf: Path, folder: Path, settings: ValidationSettings, *
 
 
 def _sized(urdf: Path, folder: Path, settings: ValidationSettings) -> Scene:
-    scene = read_scene(read_model(urdf), settings.geometry)
+    scene = read_scene(read_robot(urdf), settings.geometry)
     sized = sizing(urdf, scene.model.name, object_box(scene))
     write_scaled(urdf, sized.factor, folder / "object.urdf")
-    return read_scene(read_model(folder / "object.urdf"), settings.geometry)
+    return read_scene(read_robot(folder / "object.urdf"), settings.geometry)
 
 
 def _executed(plan: PullPlan, arm: Arm, folder: Path, settings: ValidationSettings) -> dict[str, str]:
@@ -197,33 +195,23 @@ def _opens(finding: Finding) -> bool:
 
 def _write_wrong(urdf: Path, path: Path, name: str, fault: str) -> None:
     """A copy with one wrong joint."""
-    document = parse_description(urdf)
-    with_absolute_meshes(document, read_parsed(document, urdf, geometry_source(urdf, ())))
-    joint = next(element for element in document.findall("joint") if element.get("name") == name)
+    robot = read_robot(urdf)
+    joint = robot.joint_by_name[name]
     if fault == "type swapped":
-        _swap_type(joint)
+        wrong = _swapped(joint)
     else:
-        axis = joint.find("axis")
-        if axis is None:
-            raise InputError(f"The joint {name} of {urdf} has no axis. Take another one.")
-        old = np.array([float(word) for word in str(axis.get("xyz")).split()])
-        across = np.cross(old, np.eye(3)[int(np.argmin(np.abs(old)))])
+        across = np.cross(joint.axis, np.eye(3)[int(np.argmin(np.abs(joint.axis)))])
         turn = rotation_about(across / np.linalg.norm(across), np.radians(90.0 if "90" in fault else 20.0))
-        axis.set("xyz", " ".join(f"{value:.9g}" for value in turn @ old))
-    document.getroottree().write(str(path))
+        wrong = replace(joint, axis=turn @ joint.axis)
+    write_robot(replace(robot, joints=tuple(wrong if item is joint else item for item in robot.joints)), path)
 
 
-def _swap_type(joint: _Element) -> None:
+def _swapped(joint: Joint) -> Joint:
     """A hinge slides by as many metres as fit, a slide turns by a quarter."""
-    slides = joint.get("type") == "prismatic"
-    joint.set("type", "revolute" if slides else "prismatic")
-    limit = joint.find("limit")
-    if limit is not None:
-        low, high = (float(limit.get(side) or 0.0) for side in ("lower", "upper"))
-        sign = 1.0 if abs(high) >= abs(low) else -1.0
-        far = sign * (0.5 * np.pi if slides else 0.4)
-        limit.set("lower", f"{min(0.0, far):.6g}")
-        limit.set("upper", f"{max(0.0, far):.6g}")
+    slides = joint.kind is JointType.PRISMATIC
+    far = (1.0 if abs(joint.upper) >= abs(joint.lower) else -1.0) * (0.5 * np.pi if slides else 0.4)
+    kind = JointType.REVOLUTE if slides else JointType.PRISMATIC
+    return replace(joint, kind=kind, lower=min(0.0, far), upper=max(0.0, far))
 
 
 def _command(arguments: argparse.Namespace) -> str:
