@@ -14,6 +14,8 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
+_CLOSED = 1e-6
+"""Sum of the area vectors of a closed surface, fraction of its area."""
 _GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 _KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])
 
@@ -83,6 +85,15 @@ def signed_volume(vertices: FloatArray, faces: IntArray) -> float:
     """Enclosed volume [m^3], positive where faces look outward; meaningless for open meshes."""
     a, b, c = (vertices[faces[:, k]] - vertices.mean(axis=0) for k in range(3))
     return float(np.einsum("ij,ij->", a, crossed(b, c)) / 6.0)
+
+
+def enclosed_volume(vertices: FloatArray, faces: IntArray) -> float | None:
+    """Volume inside a surface [m^3]; None where it is open or encloses nothing."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    areas = 0.5 * crossed(b - a, c - a)
+    if np.linalg.norm(areas.sum(axis=0)) > _CLOSED * float(lengths_of(areas).sum()):
+        return None
+    return abs(signed_volume(vertices, faces)) or None
 
 
 def surface_points(vertices: FloatArray, faces: IntArray, count: int) -> FloatArray:

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.pieces import connected_pieces
-from kinematify.geometry.convex import ConvexPiece, convex_piece
+from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume
 from kinematify.geometry.cut import Concave, Surface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.robot import forward_kinematics
 from kinematify.simulation.prepared import Method
-from kinematify.validation.asset.bodies import closed_volume
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -191,7 +190,7 @@ def _pieces(link: DeclaredLink, parts: Sequence[tuple[_Component, list[ConvexPie
 
 
 def _volume_error(shapes: Sequence[DeclaredShape], convex: Sequence[ConvexPiece]) -> float | None:
-    volumes = [closed_volume(shape.mesh) for shape in shapes if shape.kind not in _KEPT]
+    volumes = [enclosed_volume(shape.mesh.vertices, shape.mesh.faces) for shape in shapes if shape.kind not in _KEPT]
     known = [volume for volume in volumes if volume is not None]
     if not known or len(known) < len(volumes):
         return None

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from kinematify.geometry.convex import outermost, signed_volume
+from kinematify.geometry.convex import enclosed_volume, outermost
 from kinematify.geometry.hull import thickened
 from kinematify.robot.robot import forward_kinematics, rigid_groups
-from kinematify.robot.vectors import crossed, lengths_of
 from kinematify.validation.asset.loads import worst_loads
 
 if TYPE_CHECKING:
@@ -20,14 +19,12 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import PhysicsSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
+    from kinematify.robot.robot import Link, Robot, Shape
 
 _DIRECTIONS = 200
 """The hull of the outermost points in so many directions leaves 1 % of a ball's volume out."""
 _THINNEST = 1e-4
 """Flat geometry counts as this thick, fraction of its diagonal."""
-_CLOSED = 1e-6
-"""Sum of the area vectors of a closed surface, fraction of its area."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -70,19 +67,9 @@ def room_of(shapes: Sequence[Shape]) -> Room | None:
     if not meshes:
         return None
     points = np.concatenate([outermost(mesh.vertices[np.unique(mesh.faces)], _DIRECTIONS) for mesh in meshes])
-    volumes = [closed_volume(mesh) for mesh in meshes]
+    volumes = [enclosed_volume(mesh.vertices, mesh.faces) for mesh in meshes]
     known = [volume for volume in volumes if volume is not None]
     return Room(points=points, solid=sum(known) if len(known) == len(volumes) else None)
-
-
-def closed_volume(mesh: LinkMesh) -> float | None:
-    """Volume inside a surface [m^3]; None where it is open or encloses nothing."""
-    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
-    areas = 0.5 * crossed(b - a, c - a)
-    if np.linalg.norm(areas.sum(axis=0)) > _CLOSED * float(lengths_of(areas).sum()):
-        return None
-    volume = abs(signed_volume(mesh.vertices, mesh.faces))
-    return volume or None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -171,7 +158,7 @@ class Physics:
 
     def inflation(self, shape: Shape) -> float:
         """Volume of the hull of a closed mesh over its own; 0 for other shapes."""
-        volume = closed_volume(shape.mesh) if shape.kind == "mesh" else None
+        volume = enclosed_volume(shape.mesh.vertices, shape.mesh.faces) if shape.kind == "mesh" else None
         room = room_of([shape]) if volume is not None else None
         return 0.0 if room is None or volume is None else float(room.hull.volume) / volume
 
