@@ -11,10 +11,10 @@ import numpy as np
 from kinematify.config.validation import load_settings
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
 from kinematify.envs.reading import Reading
-from kinematify.validation.engines.configurations import GRAVITY
-from kinematify.validation.engines.mujoco_measure import measure
-from kinematify.validation.engines.mujoco_model import compiled, parse, with_allowances
-from kinematify.validation.engines.touching import touching
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.mujoco_model import measure
+from kinematify.simulation.mujoco_model import compiled, parse, with_allowances
+from kinematify.simulation.contacts import touching
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
     from kinematify.simulation.prepared import Prepared
-    from kinematify.validation.engines.mujoco_model import Source
-    from kinematify.validation.engines.touching import Touching
+    from kinematify.simulation.mujoco_model import Source
+    from kinematify.simulation.contacts import Touching
 
 PREFIX = "object "
 """Before the names of the object's links, joints and shapes."""

@@ -16,8 +16,8 @@ from scipy.spatial.transform import Rotation
 from kinematify.config.validation import load_settings
 from kinematify.envs.reading import Reading
 from kinematify.robot.robot import forward_kinematics
-from kinematify.validation.engines.pybullet_model import load
-from kinematify.validation.engines.touching import deepest, touching
+from kinematify.simulation.pybullet_world import load
+from kinematify.simulation.contacts import deepest, touching
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.contact_agreement import compare_contacts
 from kinematify.validation.engine_results import EngineResults
-from kinematify.validation.engines.configurations import GRAVITY
+from kinematify.simulation.configurations import GRAVITY
 from kinematify.validation.engines.loading import ENGINE_TITLES
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import DescribedJoint
-    from kinematify.validation.engines.configurations import EnginePoses
+    from kinematify.simulation.configurations import EnginePoses
     from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 
 REFERENCE = "pinocchio"

@@ -14,7 +14,7 @@ from kinematify.validation.engines.loading import ENGINE_TITLES
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.engine_results import EngineResults
-    from kinematify.validation.engines.configurations import EnginePoses
+    from kinematify.simulation.configurations import EnginePoses
     from kinematify.validation.stage import OpenCheck
 
 _TOLD_PAIRS = 10

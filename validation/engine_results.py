@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.robot.read import read_without_geometry
 from kinematify.robot.robot import forward_kinematics, rigid_groups
-from kinematify.validation.engines.configurations import agreement_configurations, read_poses
+from kinematify.simulation.configurations import agreement_configurations, read_poses
 from kinematify.validation.engines.loading import ENGINE_TITLES
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import AgreementSettings
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.declared import DeclaredModel
-    from kinematify.validation.engines.configurations import Configurations, EnginePoses
+    from kinematify.simulation.configurations import Configurations, EnginePoses
     from kinematify.validation.stage import OpenCheck, StageRequest
 
 EXACT = "geometry"

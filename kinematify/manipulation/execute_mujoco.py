@@ -15,8 +15,8 @@ from kinematify.manipulation.motion import timed
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import joint_values, rest_configuration
-from kinematify.validation.engines.configurations import GRAVITY
-from kinematify.validation.engines.mujoco_model import parse
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.mujoco_model import parse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

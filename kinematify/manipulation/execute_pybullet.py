@@ -15,7 +15,7 @@ from kinematify.manipulation.execute import Execution, Hold, Log, judged
 from kinematify.manipulation.motion import timed
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import joint_values, rest_configuration
-from kinematify.validation.engines.configurations import GRAVITY
+from kinematify.simulation.configurations import GRAVITY
 
 if TYPE_CHECKING:
     from kinematify.config.task import ExecutionSettings

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.arrays import read_only
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import joint_ends, joint_values, rest_configuration
 
 if TYPE_CHECKING:
@@ -137,6 +138,30 @@ def _with_followers(
 ) -> FloatArray:
     rows = [joint_values(description, dict(zip(leaders, row.tolist(), strict=True))) for row in values]
     return np.array([[row[name] for name in joints] for row in rows]).reshape(len(values), len(joints))
+
+
+def link_poses(description: RobotDescription, rows: Configurations) -> FloatArray:
+    """Return the pose of every link in every row, the root at the origin, shape (n, L, 4, 4)."""
+    index = {name: k for k, name in enumerate(rows.links)}
+    column = {name: k for k, name in enumerate(rows.joints)}
+    poses = np.tile(np.eye(4), (len(rows.q), len(rows.links), 1, 1))
+    for joint in description.joints_downward:
+        values = rows.q[:, column[joint.name]] if joint.name in column else np.zeros(len(rows.q))
+        poses[:, index[joint.child]] = poses[:, index[joint.parent]] @ joint.T_parent_child @ _motions(joint, values)
+    return poses
+
+
+def _motions(joint: DescribedJoint, values: FloatArray) -> FloatArray:
+    """Transform of the child in the joint frame for every value [rad or m], shape (n, 4, 4)."""
+    motions = np.tile(np.eye(4), (len(values), 1, 1))
+    if joint.kind is JointType.PRISMATIC:
+        motions[:, :3, 3] = values[:, None] * joint.axis
+    elif joint.kind.turns:
+        x, y, z = joint.axis
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        sine, versine = np.sin(values)[:, None, None], 1.0 - np.cos(values)[:, None, None]
+        motions[:, :3, :3] += sine * cross + versine * (cross @ cross)
+    return motions
 
 
 def write_poses(work: Path, engine: str, poses: EnginePoses) -> None:

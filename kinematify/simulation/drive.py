@@ -1,18 +1,28 @@
-"""Commands that drive one joint after the other through its range, and the servos that follow them."""
+"""One joint after the other driven through its range: servos, commands, and what became of it, whatever the engine."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.robot.mechanism import sweep_rows
+from kinematify.simulation.contacts import Contacts, touching
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
     from kinematify.config.validation import EngineSettings
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism, Travel
+    from kinematify.simulation.contacts import Touching
+    from kinematify.simulation.engine import DriveRun, PhysicsModel, Simulation
+    from kinematify.simulation.prepared import Prepared
+
+LOOKS = 16
+"""Looks at the contacts on the way to an end."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -79,9 +89,9 @@ class Drive:
     """Step at which the way and the wait are over and the push begins."""
 
     @property
-    def ramp(self) -> int:
-        """Step at which the command has reached the end."""
-        return int(np.searchsorted(np.abs(self.reference - self.reference[0]), abs(self.end - self.reference[0])))
+    def looks(self) -> IntArray:
+        """Steps after which contacts are looked at, the last when the joint has arrived, shape (LOOKS,)."""
+        return np.linspace(self.arrived / LOOKS, self.arrived, LOOKS).astype(np.int64) - 1
 
 
 def drives(mechanism: Mechanism, settings: EngineSettings, step: float) -> tuple[Drive, ...]:
@@ -120,3 +130,201 @@ def commands(drive: Drive, mechanism: Mechanism, servos: Servos, samples: int) -
     for leader in range(told.shape[1]):
         told[:, leader] += np.interp(drive.reference, places, holding[:, leader]) / servos.stiffness[leader]
     return told
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Driven:
+    """How one drive went."""
+
+    drive: Drive
+    reached: float
+    """Where the joint stands when way and wait are over [rad or m]."""
+    force: float
+    """The largest of its servo until then [N m or N]."""
+    lag: float
+    """The largest behind the command [rad or m]."""
+    beyond: float
+    """How far it gets beyond the limit at which it is pushed [rad or m]; negative if it does not get there."""
+    excess: FloatArray
+    """How much deeper than allowed each pair of `DriveSession.sweep` gets on the way [m], shape (pairs,)."""
+    at_end: FloatArray
+    """The same where the joint stands at last, shape (pairs,)."""
+    looks: FloatArray
+    """What is drawn of the way: command, value [rad or m], force [N m or N] and depth beyond what is allowed [m] at
+    each look, shape (4, LOOKS)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveEnd:
+    """How a drive ended."""
+
+    drive: Drive
+    fastest: float
+    """Largest speed of a link [m/s]."""
+    warnings: tuple[str, ...]
+    """Why the engine gave up; empty if it went on to the end."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DriveSession:
+    """All drives and what was seen on the way."""
+
+    driven: tuple[Driven, ...]
+    """Those that the engine brought to an end."""
+    sweep: Touching
+    """The sweep, followed by the looks on the way: pairs that only met there are in it too."""
+    ends: tuple[DriveEnd, ...]
+    left: int
+    """Drives for which there was no time."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Record:
+    """A drive without its contacts."""
+
+    drive: Drive
+    reached: float
+    force: float
+    lag: float
+    beyond: float
+    looks: FloatArray
+    """Values of all joints on the way, shape (LOOKS, J)."""
+    way: FloatArray
+    """Command, value [rad or m] and force of the driven joint at these looks, shape (3, LOOKS)."""
+    pressed: frozenset[tuple[int, int]]
+
+
+def drive_all(
+    simulation: Simulation,
+    model: PhysicsModel,
+    mechanism: Mechanism,
+    prepared: Prepared,
+    *,
+    seen: Contacts,
+    sweep: Touching,
+    settings: EngineSettings,
+    remaining: Callable[[], float],
+) -> DriveSession:
+    """Drive every joint to both ends.
+
+    Args:
+        simulation: Where it is driven.
+        model: Where contacts are looked at.
+        mechanism: The tree.
+        prepared: Its record.
+        seen: Contacts along `Mechanism.sweep`.
+        sweep: The same by bodies.
+        settings: Of the engines.
+        remaining: Seconds that are left.
+    """
+    planned = drives(mechanism, settings, simulation.step)
+    records: list[_Record] = []
+    ends: list[DriveEnd] = []
+    for start in range(0, len(planned), simulation.batch):
+        if remaining() <= 0.0:
+            break
+        some = planned[start : start + simulation.batch]
+        for drive, run in zip(some, simulation.drive(some), strict=True):
+            ends.append(DriveEnd(drive=drive, fastest=run.fastest, warnings=run.warnings))
+            if len(run.q) == len(drive.reference):
+                records.append(_record(mechanism, drive, run))
+    looks = np.array([record.looks for record in records]).reshape(-1, len(mechanism.joints))
+    rows = sweep.depth.shape[1]
+    together = _both(seen, model.contacts(looks), rows)
+    sweep = touching(together, mechanism, prepared, rows=rows + len(looks), tolerance=sweep.tolerance)
+    return DriveSession(
+        driven=tuple(
+            _driven(mechanism, record, sweep, sweep.excess[:, rows + k * LOOKS : rows + (k + 1) * LOOKS], model.silent)
+            for k, record in enumerate(records)
+        ),
+        sweep=sweep,
+        ends=tuple(ends),
+        left=len(planned) - len(ends),
+    )
+
+
+def _record(mechanism: Mechanism, drive: Drive, run: DriveRun) -> _Record:
+    travel = mechanism.travels[drive.leader]
+    moved = run.q[:, mechanism.joints.index(travel.joint)]
+    arrived, looks = drive.arrived, drive.looks
+    outward = 1.0 if drive.end == travel.upper else -1.0
+    return _Record(
+        drive=drive,
+        reached=float(moved[arrived - 1]),
+        force=float(np.abs(run.force[:arrived]).max()),
+        lag=float(np.abs(drive.reference - moved)[:arrived].max()),
+        beyond=float(np.max(outward * (moved[arrived:] - drive.end))),
+        looks=run.q[looks],
+        way=np.stack([drive.reference[looks], moved[looks], run.force[looks]]),
+        pressed=run.pressed,
+    )
+
+
+def _both(sweep: Contacts, looked: Contacts, rows: int) -> Contacts:
+    return Contacts(
+        row=np.concatenate([sweep.row, rows + looked.row]),
+        links=np.concatenate([sweep.links, looked.links]),
+        depth=np.concatenate([sweep.depth, looked.depth]),
+    )
+
+
+def _driven(
+    mechanism: Mechanism, record: _Record, sweep: Touching, excess: FloatArray, silent: Iterable[tuple[int, int]]
+) -> Driven:
+    """Put the contacts to a drive, which ends where a pair that does not act gets too deep.
+
+    Args:
+        mechanism: The tree.
+        record: The drive.
+        sweep: Pairs of bodies.
+        excess: Of each at each look [m], shape (pairs, LOOKS).
+        silent: Pairs of links that do not act.
+    """
+    reached, looks = record.reached, np.vstack([record.way, excess.max(axis=0, initial=0.0)])
+    pressed = np.array([(a, b) in record.pressed for a, b in sweep.bodies.tolist()], dtype=bool)
+    at_end = np.where(pressed, np.maximum(excess[:, -1], 0.0), excess[:, -1])
+    body, moved = mechanism.body_of_link, mechanism.moved[record.drive.leader]
+    quiet = {tuple(sorted((int(body[a]), int(body[b])))) for a, b in silent}
+    stops = np.array([(a, b) in quiet and moved[a] != moved[b] for a, b in sweep.bodies.tolist()], dtype=bool)
+    deep = np.flatnonzero((excess[stops] > 0.0).any(axis=0))
+    if len(deep):
+        excess = excess[:, : int(deep[0]) + 1]
+        at_end, reached = excess[:, -1], float(record.way[1, deep[0]])
+    return Driven(
+        drive=record.drive,
+        reached=reached,
+        force=record.force,
+        lag=record.lag,
+        beyond=record.beyond,
+        excess=excess.max(axis=1),
+        at_end=at_end,
+        looks=looks,
+    )
+
+
+def acting_pairs(
+    mechanism: Mechanism, sweep: Touching, drive: Drive, silent: frozenset[tuple[int, int]], samples: int
+) -> list[tuple[int, int]]:
+    """Return the pairs of links of the bodies that get too deep into each other on the way, but for silent ones.
+
+    Where an engine knows no depth that a pair may have, only these act on each other in a drive: others would stop a
+    joint that slides past them within the tolerance.
+
+    Args:
+        mechanism: The tree.
+        sweep: Along `Mechanism.sweep`.
+        drive: One of `drives`.
+        silent: Pairs of links, smaller index first.
+        samples: Of each joint in the sweep.
+    """
+    travel = mechanism.travels[drive.leader]
+    values = np.linspace(travel.lower, travel.upper, samples)
+    ahead = values >= travel.rest if drive.end == travel.upper else values <= travel.rest
+    excess = sweep.excess[:, sweep_rows(drive.leader, samples)][:, ahead]
+    body = mechanism.body_of_link
+    pairs = [
+        (int(a), int(b))
+        for first, second in sweep.bodies[(excess > 0.0).any(axis=1)].tolist()
+        for a, b in product(np.flatnonzero(body == first), np.flatnonzero(body == second))
+    ]
+    return [pair for pair in pairs if (min(pair), max(pair)) not in silent]

@@ -1,244 +1,406 @@
-"""Every joint driven through its range in MuJoCo, several at a time."""
+"""MuJoCo as an engine: several runs at a time, one per thread."""
 
 from __future__ import annotations
 
+import os
+import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
+from mujoco import rollout
 
-from kinematify.validation.engines.drive import commands, drives, servos
-from kinematify.validation.engines.mujoco_measure import measure
-from kinematify.validation.engines.mujoco_model import (
+from kinematify.simulation.drive import commands
+from kinematify.simulation.engine import (
+    FINER,
+    SLOW_SECONDS,
+    DriveRun,
+    Dropped,
+    FreeRun,
+    LoadedJoint,
+    LoadedModel,
+    Measured,
+)
+from kinematify.simulation.mujoco_model import (
+    CompiledModel,
+    ParsedModel,
     compiled,
     limited_servos,
+    measure,
+    parse,
+    released,
     set_servos,
     with_allowances,
+    with_floor,
     with_servos,
 )
-from kinematify.validation.engines.mujoco_runs import around_fastest, simulate, start_state
-from kinematify.validation.engines.outcome import Driven
-from kinematify.validation.engines.touching import Contacts, touching
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
+    from pathlib import Path
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.contacts import Contacts, Touching
+    from kinematify.simulation.drive import Drive, Servos
     from kinematify.simulation.prepared import Prepared
-    from kinematify.validation.engines.drive import Drive, Servos
-    from kinematify.validation.engines.mujoco_measure import Measured
-    from kinematify.validation.engines.mujoco_model import MujocoModel, Source
-    from kinematify.validation.engines.mujoco_runs import Trajectories
-    from kinematify.validation.engines.touching import Touching
 
-_LOOKS = 16
-"""Looks at the contacts on the way to an end."""
+_STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _NUMBERS = 20_000_000
 """Numbers in the states of runs that are kept at a time."""
+_TIME = re.compile(r" Time = ")
+
+
+def open_engine(settings: EngineSettings, log: Path) -> MujocoEngine:
+    """Return MuJoCo; its messages are kept, else they go into a file in the working directory."""
+    del log
+    said: list[str] = []
+    mujoco.set_mju_user_warning(said.append)
+    return MujocoEngine(settings=settings, threads=len(os.sched_getaffinity(0)), said=said)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Bench:
-    """The models in which runs take place, with servos of the same gains."""
+class MujocoEngine:
+    """See `kinematify.simulation.engine.Engine`."""
 
-    mechanism: Mechanism
-    prepared: Prepared
-    measuring: MujocoModel
-    """Everything collides at any depth; only looked at."""
-    sweep: Touching
-    acting: MujocoModel
-    """Only pairs that can meet while one joint moves act on each other."""
-    everything: MujocoModel
-    """All pairs act on each other, beyond what they are allowed."""
-    servos: Servos
-    inertia: FloatArray
-    """What every joint moves at rest [kg m^2 or kg], shape (J,)."""
     settings: EngineSettings
     threads: int
+    """At most; MuJoCo computes outside of Python's lock."""
+    said: list[str]
+    """Added to at any time."""
+
+    def load(self, prepared: Prepared, mechanism: Mechanism) -> MujocoModel:
+        """Load a prepared file."""
+        source = parse(prepared.urdf, mechanism, step=self.settings.time_step)
+        return MujocoModel(engine=self, source=source, measuring=compiled(source))
+
+    def messages(self) -> list[str]:
+        """MuJoCo's warnings without the time in them."""
+        return list(dict.fromkeys(_TIME.split(text)[0] for text in self.said))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MujocoModel:
+    """See `kinematify.simulation.engine.PhysicsModel`."""
+
+    engine: MujocoEngine
+    source: ParsedModel
+    measuring: CompiledModel
+    """Everything collides at any depth."""
 
     @property
-    def values_at_rest(self) -> FloatArray:
+    def loaded(self) -> LoadedModel:
+        """What became of joints and masses."""
+        model, mechanism = self.measuring.model, self.source.mechanism
+        joints = {
+            name: LoadedJoint(
+                turns=bool(model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE),
+                lower=float(model.jnt_range[joint, 0]) if model.jnt_limited[joint] else -np.inf,
+                upper=float(model.jnt_range[joint, 1]) if model.jnt_limited[joint] else np.inf,
+                axis=model.jnt_axis[joint].copy(),
+            )
+            for name, joint in zip(mechanism.joints, self.measuring.joint.tolist(), strict=True)
+            if joint >= 0
+        }
+        bodies = zip(mechanism.links, self.measuring.body.tolist(), strict=True)
+        masses = {name: float(model.body_mass[body]) for name, body in bodies if body >= 0}
+        total = float(model.body_mass.sum())
+        return LoadedModel(joints=joints, masses=masses, total_mass=total, balanced=self.measuring.balanced)
+
+    @property
+    def complete(self) -> bool:
+        """True if no link and no joint was lost."""
+        return self.measuring.complete
+
+    @property
+    def size(self) -> float:
+        """Of the model [m]."""
+        return float(max(self.measuring.model.stat.extent, 1e-9))
+
+    @property
+    def resistance(self) -> FloatArray:
+        """Damping and friction of all joints, shape (2, J)."""
+        model, dof = self.measuring.model, self.measuring.dof
+        return np.array([model.dof_damping[dof], model.dof_frictionloss[dof]])
+
+    @property
+    def silent(self) -> frozenset[tuple[int, int]]:
+        """None: MuJoCo lets each pair have the depth that it has at rest."""
+        return frozenset()
+
+    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
+        """Set the model to every row and look."""
+        return measure(self.measuring, values, dynamic=dynamic, threads=self.engine.threads)
+
+    def contacts(self, values: FloatArray) -> Contacts:
+        """Contacts in every row."""
+        contacts = self.measure(values, dynamic=0).contacts
+        assert contacts is not None
+        return contacts
+
+    def simulation(self, sweep: Touching, seen: Measured, servos: Servos) -> MujocoSimulation:
+        """Compile the models for runs."""
+        return MujocoSimulation(model=self, sweep=sweep, servos=servos, inertia=np.diag(seen.inertia[0]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MujocoSimulation:
+    """See `kinematify.simulation.engine.Simulation`."""
+
+    model: MujocoModel
+    sweep: Touching
+    servos: Servos
+    inertia: FloatArray
+    """What every joint moves at rest, by which their speeds are weighed, shape (J,)."""
+
+    @cached_property
+    def _servoed(self) -> ParsedModel:
+        return with_servos(self.model.source)
+
+    def _compiled(self, source: ParsedModel) -> CompiledModel:
+        loaded = compiled(source)
+        set_servos(loaded.model, self.servos.stiffness, self.servos.damping)
+        return loaded
+
+    @cached_property
+    def _acting(self) -> CompiledModel:
+        """Only pairs that can meet while one joint moves act on each other."""
+        return self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep, only=True))
+
+    @cached_property
+    def _everything(self) -> CompiledModel:
+        """All pairs act on each other, beyond what they are allowed."""
+        return self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep, only=False))
+
+    @property
+    def _mechanism(self) -> Mechanism:
+        return self.model.source.mechanism
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.model.source.step
+
+    @property
+    def batch(self) -> int:
+        """As many drives as there is memory for."""
+        settings = self.model.engine.settings
+        seconds = settings.drive_seconds + settings.settle_seconds + settings.push_seconds
+        numbers = round(seconds / self.step) * (2 * len(self._mechanism.joints) + 3)
+        return max(2 * self.model.engine.threads, _NUMBERS // numbers)
+
+    def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
+        """Hold the model by servos, which make up for its weight."""
+        model = limited_servos(self._everything.model, efforts)
+        steps = _steps(seconds, self.step)
+        return self._free(model, np.repeat(self._held[None], steps, axis=0))
+
+    def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
+        """Let the model go."""
+        free = released(self._everything.model)
+        steps = _steps(seconds, self.step)
+        if not fine:
+            return self._free(free, np.zeros((steps, free.nu)))
+        free.opt.timestep /= FINER
+        return self._free(free, np.zeros((FINER * steps, free.nu)), every=FINER)
+
+    def _free(self, model: mujoco.MjModel, control: FloatArray, *, every: int = 1) -> FreeRun:
+        """Run one model; values are kept of every so many steps.
+
+        Args:
+            model: A variant of `_everything`.
+            control: Shape (steps, leaders).
+            every: 1: all.
+        """
+        start = _start_state(self._everything, self._values_at_rest)
+        (run,) = _run(self._everything, [model], start, control[None], threads=1)
+        leaders = [self._mechanism.joints.index(travel.joint) for travel in self._mechanism.travels]
+        return FreeRun(
+            q=run.q[: run.whole][every - 1 :: every][:, leaders],
+            energy=run.energy[: run.whole],
+            fastest=self._fastest([run])[0] * every,
+            warnings=run.warnings,
+        )
+
+    def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
+        """Drive a joint to an end, the others held."""
+        samples = self.model.engine.settings.sweep_samples
+        models = []
+        for drive in drives:
+            forces = np.full(len(self._mechanism.travels), np.inf)
+            forces[drive.leader] = self.servos.force[drive.leader]
+            models.append(limited_servos(self._acting.model, forces))
+        control = np.stack([commands(drive, self._mechanism, self.servos, samples) for drive in drives])
+        start = _start_state(self._acting, self._values_at_rest)
+        runs = _run(self._acting, models, start, control, threads=self.model.engine.threads)
+        return [
+            DriveRun(
+                q=run.q,
+                force=self._force(drive, run, told[:, drive.leader]),
+                pressed=frozenset(),
+                fastest=fastest,
+                warnings=run.warnings,
+            )
+            for drive, run, told, fastest in zip(drives, runs, control, self._fastest(runs), strict=True)
+        ]
+
+    def _force(self, drive: Drive, run: _Run, told: FloatArray) -> FloatArray:
+        """Of the servo that drives, after every step, shape (steps,)."""
+        leader = drive.leader
+        column = self._mechanism.joints.index(self._mechanism.travels[leader].joint)
+        force = self.servos.stiffness[leader] * (told - run.q[:, column])
+        force -= self.servos.damping[leader] * run.v[:, column]
+        return np.clip(force, -self.servos.force[leader], self.servos.force[leader])
+
+    def drop(self) -> Dropped:
+        """Let the model fall on a floor."""
+        settings = self.model.engine.settings
+        measuring = self.model.measuring
+        lowest = _lowest_point(measuring.model, _data_of(measuring, _start_state(measuring, self._values_at_rest)))
+        allowed = with_allowances(self._servoed, measuring, self.sweep, only=False)
+        loaded = self._compiled(with_floor(allowed, height=lowest - settings.drop, tolerance=self.sweep.tolerance))
+        control = np.repeat(self._held[None, None], _steps(settings.drop_seconds, self.step), axis=1)
+        (run,) = _run(loaded, [loaded.model], _start_state(loaded, self._values_at_rest), control, threads=1)
+        window = _steps(SLOW_SECONDS, self.step)
+        early, late = (_data_of(loaded, state) for state in (run.state[-1 - window], run.state[-1]))
+        moved = np.linalg.norm(late.xpos[loaded.body] - early.xpos[loaded.body], axis=1)
+        return Dropped(
+            depth=lowest - settings.drop - _lowest_point(loaded.model, late),
+            speed=float(moved.max()) / SLOW_SECONDS,
+            warnings=run.warnings,
+        )
+
+    @property
+    def _values_at_rest(self) -> FloatArray:
         """Of all joints [rad or m], shape (J,)."""
-        values: FloatArray = self.mechanism.all_values(self.mechanism.rest[None])[0]
+        values: FloatArray = self._mechanism.all_values(self._mechanism.rest[None])[0]
         return values
 
+    @property
+    def _held(self) -> FloatArray:
+        """Commands that hold the joints at rest, their weight made up for, shape (leaders,)."""
+        commands: FloatArray = self._mechanism.rest + self.servos.holding[0] / self.servos.stiffness
+        return commands
 
-def set_up(
-    source: Source,
-    prepared: Prepared,
-    *,
-    measuring: MujocoModel,
-    seen: Measured,
-    sweep: Touching,
-    settings: EngineSettings,
-    threads: int,
-) -> Bench:
-    """Compile the models for runs.
+    def _fastest(self, runs: Sequence[_Run]) -> list[float]:
+        """Largest speed of a link's frame in each run, around the step with most motion [m/s]."""
+        rows = np.concatenate([_around_fastest(run, self.inertia) for run in runs])
+        places = self.model.measure(rows, dynamic=0).T_world_link[..., :3, 3]
+        moved = np.linalg.norm(places[1::2] - places[::2], axis=2)
+        return [float(most) / self.step for most in moved.max(axis=1)]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Run:
+    """States after every step; where the engine diverges, the last state stands to the end."""
+
+    q: FloatArray
+    """Values of all joints [rad or m], shape (steps, J)."""
+    v: FloatArray
+    """Their speeds, shape (steps, J)."""
+    energy: FloatArray
+    """Potential and kinetic [J], shape (steps, 2)."""
+    whole: int
+    """Steps before the engine gave up."""
+    state: FloatArray
+    """All of the engine's state, shape (steps, s)."""
+    warnings: tuple[str, ...]
+    """What the engine said when it gave up."""
+
+
+def _run(
+    loaded: CompiledModel, models: Sequence[mujoco.MjModel], start: FloatArray, control: FloatArray, *, threads: int
+) -> list[_Run]:
+    """Run each model under its commands.
 
     Args:
-        source: As parsed.
-        prepared: Its record.
-        measuring: The same, compiled.
-        seen: What was measured along `Mechanism.sweep`.
-        sweep: Its contacts.
-        settings: Of the engines.
+        loaded: Where the joints stand.
+        models: One per run, variants of `loaded.model`; the last two sensors are potential and kinetic energy.
+        start: State from `_start_state`.
+        control: Shape (runs, steps, leaders).
         threads: At most.
     """
-    dof = measuring.dof
-    gains = servos(
-        source.mechanism,
-        seen.inertia[0],
-        seen.gravity,
-        np.array([measuring.model.dof_damping[dof], measuring.model.dof_frictionloss[dof]]),
-        settings,
-    )
-    servoed = with_servos(source)
-    acting, everything = (compiled(with_allowances(servoed, measuring, sweep, only=only)) for only in (True, False))
-    for loaded in (acting, everything):
-        set_servos(loaded.model, gains.stiffness, gains.damping)
-    return Bench(
-        mechanism=source.mechanism,
-        prepared=prepared,
-        measuring=measuring,
-        sweep=sweep,
-        acting=acting,
-        everything=everything,
-        servos=gains,
-        inertia=np.diag(seen.inertia[0]),
-        settings=settings,
-        threads=threads,
-    )
+    states = np.repeat(start[None], len(models), axis=0)
+    data = [mujoco.MjData(loaded.model) for _ in range(max(1, min(threads, len(models))))]
+    with rollout.Rollout(nthread=len(data) if len(data) > 1 else 0) as pool:
+        state, sensors = pool.rollout(list(models), data, states, control, chunk_size=1)
+    first = 1 + loaded.model.nq
+    runs = []
+    for model, way, energy, told in zip(models, state, sensors[:, :, -2:], control, strict=True):
+        stopped = np.flatnonzero(np.diff(way[:, 0]) <= 0.0)  # the clock stands still
+        whole = int(stopped[0]) + 1 if len(stopped) else len(way)
+        warnings = _warnings(model, np.vstack([start, way]), told, whole) if len(stopped) else ()
+        q, v = way[:, 1 + loaded.qpos], way[:, first + loaded.dof]
+        runs.append(_Run(q=q, v=v, energy=energy, whole=whole, state=way, warnings=warnings))
+    return runs
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Session:
-    """All drives and what was seen on the way."""
-
-    driven: tuple[Driven, ...]
-    sweep: Touching
-    """The sweep, followed by the looks on the way: pairs that only met there are in it too."""
-    fastest: tuple[float, ...]
-    """Largest speed of a link's frame in each [m/s]."""
-    warnings: tuple[tuple[str, ...], ...]
-    """What MuJoCo said when it gave up, for each."""
-    left: int
-    """Drives for which there was no time."""
+def _start_state(loaded: CompiledModel, values: FloatArray) -> FloatArray:
+    """Return the state at rest with the given values of all joints, shape (J,)."""
+    data = mujoco.MjData(loaded.model)
+    data.qpos[loaded.qpos] = values
+    state = np.zeros(mujoco.mj_stateSize(loaded.model, _STATE))
+    mujoco.mj_getState(loaded.model, data, state, _STATE)
+    return state
 
 
-def drive_all(bench: Bench, seen: Measured, remaining: Callable[[], float]) -> Session:
-    """Drive every joint to both ends."""
-    step = float(bench.acting.model.opt.timestep)
-    planned = drives(bench.mechanism, bench.settings, step)
-    numbers = max((len(drive.reference) for drive in planned), default=1) * (2 * len(bench.mechanism.joints) + 3)
-    batch = max(2 * bench.threads, _NUMBERS // numbers)
-    records: list[_Record] = []
-    for start in range(0, len(planned), batch):
-        if remaining() <= 0.0:
-            break
-        records += _drive(bench, planned[start : start + batch])
-    if not records:
-        return Session(driven=(), sweep=bench.sweep, fastest=(), warnings=(), left=len(planned))
-    fastest = np.concatenate([record.fastest for record in records])
-    around = measure(bench.measuring, fastest, dynamic=0, threads=bench.threads).T_world_link[..., :3, 3]
-    looked = measure(
-        bench.measuring,
-        np.concatenate([record.looks for record in records]),
-        dynamic=0,
-        threads=bench.threads,
-    )
-    sweep = _both(bench, seen.contacts, looked.contacts, len(records))
-    rows = bench.sweep.depth.shape[1]
-    return Session(
-        driven=tuple(
-            _driven(record, sweep.excess[:, rows + k * _LOOKS : rows + (k + 1) * _LOOKS])
-            for k, record in enumerate(records)
-        ),
-        sweep=sweep,
-        fastest=tuple(
-            float(np.linalg.norm(around[2 * k + 1] - around[2 * k], axis=1).max()) / step for k in range(len(records))
-        ),
-        warnings=tuple(record.warnings for record in records),
-        left=len(planned) - len(records),
-    )
+def _warnings(model: mujoco.MjModel, states: FloatArray, control: FloatArray, whole: int) -> tuple[str, ...]:
+    """Repeat the last two steps before the engine gave up, and read its counters.
+
+    Args:
+        model: Of the run.
+        states: At the start and after every step, shape (1 + steps, s).
+        control: Shape (steps, leaders).
+        whole: Steps that it made; the last one may have ended in a state that MuJoCo had reset.
+    """
+    data = mujoco.MjData(model)
+    first = max(0, whole - 1)
+    mujoco.mj_setState(model, data, states[first], _STATE)
+    for command in control[first : first + 2]:
+        data.ctrl[:] = command
+        mujoco.mj_step(model, data)
+    kinds = {int(kind): name.removeprefix("mjWARN_") for name, kind in mujoco.mjtWarning.__members__.items()}
+    counted = tuple(kinds[k] for k, warning in enumerate(data.warning) if warning.number and k in kinds)
+    return counted or ("for no reason that it tells",)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Record:
-    """A drive without its contacts."""
-
-    drive: Drive
-    reached: float
-    force: float
-    lag: float
-    beyond: float
-    looks: FloatArray
-    """Values of all joints on the way, the last where the joint stands at last, shape (_LOOKS, J)."""
-    way: FloatArray
-    """Command, value [rad or m] and force of the driven joint at these looks, shape (3, _LOOKS)."""
-    fastest: FloatArray
-    """Values of all joints right before and after the step with most motion, shape (2, J)."""
-    warnings: tuple[str, ...]
+def _around_fastest(run: _Run, inertia: FloatArray) -> FloatArray:
+    """Return the values of all joints before and after the step with most motion, shape (2, J)."""
+    step = 1 + int(np.argmax(run.v[1 : max(2, run.whole)] ** 2 @ inertia))
+    return run.q[step - 1 : step + 1]
 
 
-def _drive(bench: Bench, planned: Sequence[Drive]) -> list[_Record]:
-    """Run some drives at a time; the servo that is driven is no stronger than its motion needs."""
-    samples = bench.settings.sweep_samples
-    models = []
-    for drive in planned:
-        forces = np.full(len(bench.mechanism.travels), np.inf)
-        forces[drive.leader] = bench.servos.force[drive.leader]
-        models.append(limited_servos(bench.acting.model, forces))
-    control = np.stack([commands(drive, bench.mechanism, bench.servos, samples) for drive in planned])
-    start = start_state(bench.acting, bench.values_at_rest)
-    runs = simulate(bench.acting, models, start, control, threads=bench.threads)
-    return [_record(bench, drive, runs, k, control[k]) for k, drive in enumerate(planned)]
+def _steps(seconds: float, step: float) -> int:
+    return max(2, round(seconds / step))
 
 
-def _record(bench: Bench, drive: Drive, runs: Trajectories, run: int, control: FloatArray) -> _Record:
-    travel = bench.mechanism.travels[drive.leader]
-    column = bench.mechanism.joints.index(travel.joint)
-    q, v = runs.q[run, :, column], runs.v[run, :, column]
-    told = control[:, drive.leader]
-    force = bench.servos.stiffness[drive.leader] * (told - q) - bench.servos.damping[drive.leader] * v
-    strongest = bench.servos.force[drive.leader]
-    arrived, way = drive.arrived, slice(0, drive.arrived)
-    outward = 1.0 if drive.end == travel.upper else -1.0
-    looks = np.linspace(arrived / _LOOKS, arrived, _LOOKS).astype(int) - 1
-    return _Record(
-        drive=drive,
-        reached=float(q[arrived - 1]),
-        force=float(np.abs(np.clip(force[way], -strongest, strongest)).max()),
-        lag=float(np.abs(drive.reference - q)[way].max()),
-        beyond=float(np.max(outward * (q[arrived:] - drive.end))),
-        looks=runs.q[run, looks],
-        way=np.stack([drive.reference[looks], q[looks], np.clip(force[looks], -strongest, strongest)]),
-        fastest=around_fastest(runs, run, bench.inertia),
-        warnings=runs.warnings[run],
-    )
+def _data_of(loaded: CompiledModel, state: FloatArray) -> mujoco.MjData:
+    data = mujoco.MjData(loaded.model)
+    mujoco.mj_setState(loaded.model, data, state, _STATE)
+    mujoco.mj_kinematics(loaded.model, data)
+    return data
 
 
-def _both(bench: Bench, sweep: Contacts, looked: Contacts, runs: int) -> Touching:
-    rows = bench.sweep.depth.shape[1]
-    together = Contacts(
-        row=np.concatenate([sweep.row, rows + looked.row]),
-        links=np.concatenate([sweep.links, looked.links]),
-        depth=np.concatenate([sweep.depth, looked.depth]),
-    )
-    return touching(
-        together, bench.mechanism, bench.prepared, rows=rows + runs * _LOOKS, tolerance=bench.sweep.tolerance
-    )
+def _lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
+    """Return the height of the lowest point of all collision shapes but planes [m]."""
+    heights = [
+        float((data.geom_xpos[geom] + _corners(model, geom) @ data.geom_xmat[geom].reshape(3, 3).T)[:, 2].min())
+        for geom in range(model.ngeom)
+        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_PLANE
+    ]
+    return min(heights)
 
 
-def _driven(record: _Record, excess: FloatArray) -> Driven:
-    return Driven(
-        drive=record.drive,
-        reached=record.reached,
-        force=record.force,
-        lag=record.lag,
-        beyond=record.beyond,
-        excess=excess.max(axis=1),
-        at_end=excess[:, -1],
-        looks=np.vstack([record.way, excess.max(axis=0, initial=0.0)]),
-    )
+def _corners(model: mujoco.MjModel, geom: int) -> FloatArray:
+    """Vertices of a mesh, corners of the box around anything else, in its own frame, shape (n, 3)."""
+    mesh = model.geom_dataid[geom]
+    if mesh >= 0:
+        first = model.mesh_vertadr[mesh]
+        vertices: FloatArray = model.mesh_vert[first : first + model.mesh_vertnum[mesh]].astype(np.float64)
+        return vertices
+    signs = np.array(np.meshgrid([-1.0, 1.0], [-1.0, 1.0], [-1.0, 1.0])).reshape(3, -1).T
+    corners: FloatArray = model.geom_aabb[geom, :3] + signs * model.geom_aabb[geom, 3:]
+    return corners

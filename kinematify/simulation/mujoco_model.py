@@ -1,7 +1,8 @@
-"""`prepared.urdf` in MuJoCo: the model for measuring, in which everything collides, and those for simulating."""
+"""Prepared files in MuJoCo: compiled models, variants of them, and what it says of a table of configurations."""
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -10,7 +11,9 @@ import mujoco
 import numpy as np
 from lxml import etree
 
-from kinematify.validation.engines.configurations import GRAVITY
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.contacts import deepest
+from kinematify.simulation.engine import Measured, Refused
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,18 +21,16 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
-    from kinematify.validation.engines.touching import Touching
+    from kinematify.simulation.contacts import Touching
 
 _RESERVED = "world"
 """MuJoCo's name of the outside; a link of this name is loaded under another one."""
-
-
-class Refused(Exception):
-    """MuJoCo does not load the file; the text is its own message."""
+_ROWS_PER_THREAD = 150
+"""Fewer rows are done before a thread has started."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MujocoModel:
+class CompiledModel:
     """A compiled model and where the links and joints of the document stand in it."""
 
     model: mujoco.MjModel
@@ -64,7 +65,7 @@ class MujocoModel:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Source:
+class ParsedModel:
     """A parsed file, from which variants are compiled."""
 
     spec: mujoco.MjSpec
@@ -75,7 +76,7 @@ class Source:
     """Time step [s]."""
 
 
-def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> Source:
+def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> ParsedModel:
     """Parse a prepared file.
 
     Raises:
@@ -102,10 +103,10 @@ def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> Source:
     for number, geom in enumerate(spec.geoms):
         geom.name = f"kinematify geom {number}"
     names = tuple(stand_in if name == _RESERVED else name for name in mechanism.links)
-    return Source(spec=spec, names=names, mechanism=mechanism, step=step)
+    return ParsedModel(spec=spec, names=names, mechanism=mechanism, step=step)
 
 
-def compiled(source: Source) -> MujocoModel:
+def compiled(source: ParsedModel) -> CompiledModel:
     """Compile a variant; where MuJoCo refuses an inertia tensor, a second time with balanced ones.
 
     Raises:
@@ -120,7 +121,7 @@ def compiled(source: Source) -> MujocoModel:
         source.spec.compiler.balanceinertia = True
         return compiled(source)
     names = source.mechanism.joints
-    return MujocoModel(
+    return CompiledModel(
         model=model,
         body=_ids(model, mujoco.mjtObj.mjOBJ_BODY, source.names),
         joint=_ids(model, mujoco.mjtObj.mjOBJ_JOINT, names),
@@ -143,7 +144,7 @@ def _sentence(error: Exception) -> str:
     return " ".join(str(error).split())
 
 
-def with_servos(source: Source) -> Source:
+def with_servos(source: ParsedModel) -> ParsedModel:
     """Return a copy with sensors of both energies, and one servo for each leading joint, in their order.
 
     The gains are set after compiling (`set_servos`).
@@ -156,10 +157,10 @@ def with_servos(source: Source) -> Source:
         servo.set_to_position(kp=1.0)
     for kind in (mujoco.mjtSensor.mjSENS_E_POTENTIAL, mujoco.mjtSensor.mjSENS_E_KINETIC):
         spec.add_sensor(type=kind)
-    return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+    return ParsedModel(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
 
 
-def with_allowances(source: Source, measured: MujocoModel, touching: Touching, *, only: bool) -> Source:
+def with_allowances(source: ParsedModel, measured: CompiledModel, touching: Touching, *, only: bool) -> ParsedModel:
     """Return a copy in which pairs of bodies act on each other only beyond what they are allowed.
 
     Args:
@@ -187,17 +188,17 @@ def with_allowances(source: Source, measured: MujocoModel, touching: Touching, *
             for second in geoms.get(pair[1], ()):
                 depth = float(deep[pair])
                 spec.add_pair(geomname1=first, geomname2=second, condim=1, margin=-depth, gap=depth)
-    return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+    return ParsedModel(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
 
 
-def with_floor(source: Source, *, height: float, tolerance: float) -> Source:
+def with_floor(source: ParsedModel, *, height: float, tolerance: float) -> ParsedModel:
     """Return a copy whose root is free, above a plane at a height [m]; the floor tolerates no depth."""
     spec = source.spec.copy()
     spec.body(source.names[source.mechanism.links.index(source.mechanism.description.root)]).add_freejoint()
     floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
     floor.size, floor.pos, floor.priority = [0.0, 0.0, 1.0], [0.0, 0.0, height], 1
     floor.margin, floor.gap = 0.5 * tolerance, -0.5 * tolerance
-    return Source(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
+    return ParsedModel(spec=spec, names=source.names, mechanism=source.mechanism, step=source.step)
 
 
 def _exclude(spec: mujoco.MjSpec, names: tuple[str, ...], bodies: IntArray, pairs: set[tuple[int, int]]) -> None:
@@ -207,7 +208,7 @@ def _exclude(spec: mujoco.MjSpec, names: tuple[str, ...], bodies: IntArray, pair
                 spec.add_exclude(bodyname1=names[first], bodyname2=names[second])
 
 
-def _geoms_of_bodies(measured: MujocoModel, bodies: IntArray) -> dict[int, list[str]]:
+def _geoms_of_bodies(measured: CompiledModel, bodies: IntArray) -> dict[int, list[str]]:
     """Names of the collision shapes of every rigid body."""
     found: dict[int, list[str]] = {}
     for geom, body in enumerate(measured.model.geom_bodyid):
@@ -241,3 +242,61 @@ def released(model: mujoco.MjModel) -> mujoco.MjModel:
     free.dof_damping[:] = 0.0
     free.dof_frictionloss[:] = 0.0
     return free
+
+
+def measure(loaded: CompiledModel, values: FloatArray, *, dynamic: int, threads: int) -> Measured:
+    """Set the model to every row and look.
+
+    Args:
+        loaded: Complete (`CompiledModel.complete`).
+        values: Values of all joints [rad or m], shape (n, J).
+        dynamic: Mass matrices are kept for the first so many rows.
+        threads: MuJoCo computes outside of Python's lock.
+    """
+    chunks = np.array_split(np.arange(len(values)), min(threads, 1 + len(values) // _ROWS_PER_THREAD))
+    if len(chunks) == 1:
+        parts = [_measure_rows(loaded, values, chunks[0], dynamic)]
+    else:
+        with ThreadPoolExecutor(len(chunks)) as pool:
+            parts = list(pool.map(lambda rows: _measure_rows(loaded, values, rows, dynamic), chunks))
+    row, links, depth = (np.concatenate([part[k] for part in parts]) for k in (1, 2, 3))
+    return Measured(
+        T_world_link=np.concatenate([part[0] for part in parts]),
+        contacts=deepest(row, links, depth),
+        gravity=np.concatenate([part[4] for part in parts]),
+        inertia=np.concatenate([part[5] for part in parts]),
+    )
+
+
+_Part = tuple["FloatArray", "IntArray", "IntArray", "FloatArray", "FloatArray", "FloatArray"]
+
+
+def _measure_rows(loaded: CompiledModel, values: FloatArray, rows: IntArray, dynamic: int) -> _Part:
+    model, data = loaded.model, mujoco.MjData(loaded.model)
+    qpos, bodies = loaded.qpos, loaded.body
+    poses = np.tile(np.eye(4), (len(rows), len(loaded.body), 1, 1))
+    gravity = np.zeros((len(rows), model.nv))
+    matrices: list[FloatArray] = []
+    found: list[tuple[IntArray, IntArray, FloatArray]] = []
+    for k, row in enumerate(rows):
+        data.qpos[qpos] = values[row]
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_rne(model, data, 0, gravity[k])
+        poses[k, :, :3, :3] = data.xmat[bodies].reshape(-1, 3, 3)
+        poses[k, :, :3, 3] = data.xpos[bodies]
+        if data.ncon:
+            found.append((np.full(data.ncon, row), data.contact.geom.copy(), -data.contact.dist))
+        if row < dynamic:
+            matrices.append(_mass_matrix(loaded, data))
+    row_of, geoms, depth = (np.concatenate([item[k] for item in found] or [np.zeros(0)]) for k in range(3))
+    links = loaded.link_of_body[model.geom_bodyid][geoms.reshape(-1, 2).astype(np.int64)]
+    size = len(loaded.joint)
+    inertia = np.array(matrices).reshape(len(matrices), size, size)
+    return poses, row_of.astype(np.int64), links, depth, gravity[:, loaded.dof], inertia
+
+
+def _mass_matrix(loaded: CompiledModel, data: mujoco.MjData) -> FloatArray:
+    matrix = np.zeros((loaded.model.nv, loaded.model.nv))
+    if loaded.model.nv:
+        mujoco.mj_fullM(loaded.model, data, matrix)
+    return matrix[np.ix_(loaded.dof, loaded.dof)]

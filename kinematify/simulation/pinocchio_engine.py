@@ -1,151 +1,143 @@
-"""Pinocchio as the analytical third opinion: where every link stands, mass matrix, gravity torques."""
+"""Pinocchio as an engine that only computes: where every link stands, mass matrix, gravity torques."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
 from lxml import etree
 
-from kinematify.robot.read import read_without_geometry
-from kinematify.simulation.prepared import load_prepared
-from kinematify.validation.engines.configurations import (
-    GRAVITY,
-    EnginePoses,
-    agreement_configurations,
-    write_poses,
-)
-from kinematify.validation.engines.loading import LoadedJoint, LoadedModel, compare_with_file
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.engine import LoadedJoint, LoadedModel, Measured, Refused
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.validation.engines.configurations import Configurations
-    from kinematify.validation.stage import Recorder, StageRequest
-
-ENGINE = "pinocchio"
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.prepared import Prepared
 
 
-def run(request: StageRequest, recorder: Recorder) -> None:
-    """Load `prepared.urdf`, compare what was loaded with the file (KV606), and leave `poses-pinocchio.npz`."""
-    model = None
-    with recorder.check("KV606", ENGINE) as check:
-        declared, prepared = read_without_geometry(request.urdf), load_prepared(request.work)
+def open_engine(settings: EngineSettings, log: Path) -> PinocchioEngine:
+    """Return Pinocchio, which has no settings and says nothing."""
+    del settings, log
+    return PinocchioEngine()
+
+
+class PinocchioEngine:
+    """See `kinematify.simulation.engine.Engine`."""
+
+    def load(self, prepared: Prepared, mechanism: Mechanism) -> PinocchioModel:
+        """Build the tree; the geometry is left out, Pinocchio would only look for the files."""
+        robot = etree.parse(prepared.urdf).getroot()
+        for link in robot.iter("link"):
+            for shape in link.findall("collision"):
+                link.remove(shape)
         try:
-            model = _load(prepared.urdf)
+            model = pin.buildModelFromXML(etree.tostring(robot, encoding="unicode"))
         except ValueError as error:
-            check.find(
-                f"Pinocchio refuses the model: {error}.",
-                "Mend the other findings first; names with unusual characters are the commonest cause.",
+            raise Refused(str(error)) from error
+        model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
+        return PinocchioModel(model=model, mechanism=mechanism)
+
+    def messages(self) -> list[str]:
+        """None."""
+        return []
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PinocchioModel:
+    """See `kinematify.simulation.engine.EngineModel`."""
+
+    model: pin.Model
+    mechanism: Mechanism
+
+    @cached_property
+    def loaded(self) -> LoadedModel:
+        """What became of joints and masses."""
+        model, joints = self.model, {}
+        for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first stands for the world
+            kind = joint.shortname()
+            bounded = joint.nq == 1
+            joints[str(name)] = LoadedJoint(
+                turns="Revolute" in kind or kind.startswith("JointModelR"),
+                lower=float(model.lowerPositionLimit[joint.idx_q]) if bounded else -np.inf,
+                upper=float(model.upperPositionLimit[joint.idx_q]) if bounded else np.inf,
             )
-            return
-        compare_with_file(check, declared, prepared, _loaded(model), request.settings.agreement.mass_error)
-    if model is not None and recorder.wants("KV601", "KV602", "KV603", "KV605"):
-        rows = agreement_configurations(declared.kinematics, request.settings.agreement, request.settings.seed)
-        write_poses(request.work, ENGINE, poses(model, rows))
+        total = sum(inertia.mass for inertia in model.inertias)
+        return LoadedModel(joints=joints, masses=self._masses, total_mass=float(total))
 
+    @property
+    def _masses(self) -> dict[str, float]:
+        """Of each link: the frame of a fixed joint holds that of the link below; a body's first link has the rest."""
+        model = self.model
+        masses: dict[str, float] = {}
+        rest = [float(inertia.mass) for inertia in model.inertias]
+        first: dict[int, str] = {}
+        for frame in model.frames:
+            if frame.type != pin.FrameType.BODY:
+                continue
+            carrier = model.frames[frame.parentFrame]
+            if frame.parentJoint not in first:
+                first[frame.parentJoint] = str(frame.name)
+            else:
+                masses[str(frame.name)] = float(carrier.inertia.mass)
+                rest[frame.parentJoint] -= float(carrier.inertia.mass)
+        return masses | {name: rest[joint] for joint, name in first.items()}
 
-def _load(urdf: Path) -> pin.Model:
-    """Build the tree; the geometry is left out, Pinocchio would only look for the files."""
-    robot = etree.parse(urdf).getroot()
-    for link in robot.iter("link"):
-        for shape in link.findall("collision"):
-            link.remove(shape)
-    model = pin.buildModelFromXML(etree.tostring(robot, encoding="unicode"))
-    model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
-    return model
+    @property
+    def complete(self) -> bool:
+        """True if no link and no joint was lost."""
+        model, mechanism = self.model, self.mechanism
+        links = all(model.existFrame(name, pin.FrameType.BODY) for name in mechanism.links)
+        return links and all(model.existJointName(name) for name in mechanism.joints)
 
-
-def _loaded(model: pin.Model) -> LoadedModel:
-    joints = {}
-    for name, joint in list(zip(model.names, model.joints, strict=True))[1:]:  # the first stands for the world
-        kind = joint.shortname()
-        bounded = joint.nq == 1
-        joints[str(name)] = LoadedJoint(
-            turns="Revolute" in kind or kind.startswith("JointModelR"),
-            lower=float(model.lowerPositionLimit[joint.idx_q]) if bounded else -np.inf,
-            upper=float(model.upperPositionLimit[joint.idx_q]) if bounded else np.inf,
+    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
+        """Set the model to every row and look; what it has lost is NaN."""
+        model, data, mechanism = self.model, self.model.createData(), self.mechanism
+        frames = {
+            link: model.getFrameId(name, pin.FrameType.BODY)
+            for link, name in enumerate(mechanism.links)
+            if model.existFrame(name, pin.FrameType.BODY)
+        }
+        velocity = np.array(
+            [
+                model.joints[model.getJointId(name)].idx_v if model.existJointName(name) else -1
+                for name in mechanism.joints
+            ],
+            dtype=np.int64,
         )
-    total = sum(inertia.mass for inertia in model.inertias)
-    return LoadedModel(joints=joints, masses=_link_masses(model), total_mass=float(total))
-
-
-def _link_masses(model: pin.Model) -> dict[str, float]:
-    """Mass of each link. The frame of a fixed joint holds that of the link below; a body's first link has the rest."""
-    masses: dict[str, float] = {}
-    rest = [float(inertia.mass) for inertia in model.inertias]
-    first: dict[int, str] = {}
-    for frame in model.frames:
-        if frame.type != pin.FrameType.BODY:
-            continue
-        carrier = model.frames[frame.parentFrame]
-        if frame.parentJoint not in first:
-            first[frame.parentJoint] = str(frame.name)
-        else:
-            masses[str(frame.name)] = float(carrier.inertia.mass)
-            rest[frame.parentJoint] -= float(carrier.inertia.mass)
-    return masses | {name: rest[joint] for joint, name in first.items()}
-
-
-def poses(model: pin.Model, rows: Configurations) -> EnginePoses:
-    """Return what Pinocchio says of the rows."""
-    data = model.createData()
-    frames = [_body_frame(model, name) for name in rows.links]
-    velocity = np.array([_velocity_index(model, name) for name in rows.joints], dtype=np.int64)
-    T_world_link = np.full((len(rows.q), len(rows.links), 4, 4), np.nan)
-    count = len(rows.joints)
-    mass_matrix = np.full((rows.dynamic, count, count), np.nan)
-    gravity = np.full((rows.dynamic, count), np.nan)
-    for row, values in enumerate(rows.q):
-        q = _configuration(model, rows.joints, values)
-        pin.framesForwardKinematics(model, data, q)
-        for link, frame in enumerate(frames):
-            if frame is not None:
+        T_world_link = np.full((len(values), len(mechanism.links), 4, 4), np.nan)
+        gravity = np.zeros_like(values)
+        matrices = []
+        for row, q_joints in enumerate(values):
+            q = self._configuration(q_joints)
+            pin.framesForwardKinematics(model, data, q)
+            for link, frame in frames.items():
                 T_world_link[row, link] = data.oMf[frame].homogeneous
-        if row < rows.dynamic:
-            upper = np.triu(pin.crba(model, data, q))
-            mass_matrix[row] = _picked_matrix(upper + np.triu(upper, 1).T, velocity)
-            gravity[row] = _picked(pin.computeGeneralizedGravity(model, data, q), velocity)
-    masses = _link_masses(model)
-    return EnginePoses(
-        links=rows.links,
-        joints=rows.joints,
-        q=rows.q,
-        T_world_link=T_world_link,
-        masses=np.array([masses.get(name, np.nan) for name in rows.links]),
-        total_mass=float(sum(inertia.mass for inertia in model.inertias)),
-        mass_matrix=mass_matrix,
-        gravity=gravity,
-    )
+            gravity[row] = np.append(pin.computeGeneralizedGravity(model, data, q), np.nan)[velocity]
+            if row < dynamic:
+                upper = np.triu(pin.crba(model, data, q))
+                matrices.append(_picked(upper + np.triu(upper, 1).T, velocity))
+        inertia = np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1])
+        return Measured(T_world_link=T_world_link, contacts=None, gravity=gravity, inertia=inertia)
+
+    def _configuration(self, values: FloatArray) -> FloatArray:
+        q = pin.neutral(self.model)
+        for name, value in zip(self.mechanism.joints, values, strict=True):
+            if self.model.existJointName(name):
+                joint = self.model.joints[self.model.getJointId(name)]
+                # A joint that turns without end is a point on the unit circle.
+                q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
+        return np.asarray(q)
 
 
-def _body_frame(model: pin.Model, link: str) -> int | None:
-    return model.getFrameId(link, pin.FrameType.BODY) if model.existFrame(link, pin.FrameType.BODY) else None
-
-
-def _velocity_index(model: pin.Model, joint: str) -> int:
-    return model.joints[model.getJointId(joint)].idx_v if model.existJointName(joint) else -1
-
-
-def _configuration(model: pin.Model, joints: tuple[str, ...], values: FloatArray) -> FloatArray:
-    q = pin.neutral(model)
-    for name, value in zip(joints, values, strict=True):
-        if model.existJointName(name):
-            joint = model.joints[model.getJointId(name)]
-            # A joint that turns without end is a point on the unit circle.
-            q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
-    return np.asarray(q)
-
-
-def _picked(vector: FloatArray, indices: IntArray) -> FloatArray:
-    """Entries in the order of the document, NaN for joints that the engine lost."""
-    padded: FloatArray = np.append(vector, np.nan)[indices]
-    return padded
-
-
-def _picked_matrix(matrix: FloatArray, indices: IntArray) -> FloatArray:
+def _picked(matrix: FloatArray, indices: IntArray) -> FloatArray:
+    """Rows and columns in the order of the document, NaN for joints that the engine lost."""
     padded = np.pad(matrix, (0, 1), constant_values=np.nan)
     picked: FloatArray = padded[np.ix_(indices, indices)]
     return picked

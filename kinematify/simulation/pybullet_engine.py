@@ -1,304 +1,409 @@
-"""`prepared.urdf` in PyBullet: a world of its own per purpose, and what it says of single configurations.
-
-PyBullet speaks in indices of its own and in tuples; nothing of either leaves this module.
-"""
+"""PyBullet as an engine: a world of its own per purpose."""
 
 from __future__ import annotations
 
 import ctypes
-from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
+from scipy.spatial.transform import Rotation
 
-from kinematify.simulation.prepared import Method
-from kinematify.validation.engines.configurations import GRAVITY
-from kinematify.validation.engines.loading import LoadedJoint, LoadedModel
-from kinematify.validation.engines.touching import Contacts, deepest
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.contacts import Contacts
+from kinematify.simulation.drive import acting_pairs
+from kinematify.simulation.engine import (
+    FINER,
+    SLOW_SECONDS,
+    DriveRun,
+    Dropped,
+    FreeRun,
+    LoadedJoint,
+    LoadedModel,
+    Measured,
+    Refused,
+)
+from kinematify.simulation.pybullet_world import PybulletWorld, load, text_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.contacts import Touching
+    from kinematify.simulation.drive import Drive, Servos
     from kinematify.simulation.prepared import Prepared
 
-_FLAGS = (
-    bullet.URDF_USE_SELF_COLLISION
-    | bullet.URDF_USE_SELF_COLLISION_INCLUDE_PARENT  # else neighbours pass through each other
-    | bullet.URDF_USE_INERTIA_FROM_FILE  # else inertias are made up from the collision shapes
-)
-_HULL_MARGIN = 1e-3
-"""Bullet inflates convex hulls of meshes by it [m]; primitives keep their size."""
-_LARGE_INERTIA = 0.1
-"""Principal moments [kg m^2] below it are never refused."""
 _CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
-_BASE = -1
+_DECIMALS = 6
+"""Of joint values [rad or m] at which contacts are looked at."""
+_FREE_LOOKS = 24
+"""Times at which speeds and energies of a free run are measured."""
+_POSITION_GAIN = 0.2
+"""Share of the error that a motor takes back per step: fast, and without overshoot."""
+_UNLIMITED = 1e9
+"""Force [N m or N] that no motion needs."""
+_DIVERGED = ("a value is not finite",)
 
 
-class Refused(Exception):
-    """PyBullet does not load the file; the text is the cause that it printed."""
+def open_engine(settings: EngineSettings, log: Path) -> PybulletEngine:
+    """Return PyBullet, which says what it has to say in the log of its process."""
+    return PybulletEngine(settings=settings, log=log)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PybulletEngine:
+    """See `kinematify.simulation.engine.Engine`."""
+
+    settings: EngineSettings
+    log: Path
+
+    def load(self, prepared: Prepared, mechanism: Mechanism) -> PybulletModel:
+        """Load a prepared file; a second time with a free base, because a fixed one has no mass."""
+        step = self.settings.pybullet_time_step
+        try:
+            fixed = load(prepared.urdf, mechanism, prepared, step=step, looking=True)
+            free = load(prepared.urdf, mechanism, prepared, step=step, fixed=False)
+        except Refused as refusal:
+            said = self._printed() or [str(refusal)]
+            raise Refused(" ".join(said[-3:])[:400].rstrip(".")) from refusal
+        masses = free.masses()
+        free.disconnect()
+        return PybulletModel(engine=self, prepared=prepared, looking=fixed, masses=masses)
+
+    def messages(self) -> list[str]:
+        """What it has printed, without what it always prints."""
+        return list(dict.fromkeys(self._printed()))
+
+    def _printed(self) -> list[str]:
+        ctypes.CDLL(None).fflush(None)
+        try:
+            lines = self.log.readtext_of(encoding="utf-8", errors="replace").splitlines()
+        except OSError:
+            return []
+        return [line.strip() for line in lines if line.strip() and not any(word in line for word in _CHATTER)]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PybulletModel:
-    """A body in a world of its own, and where the links and joints of the document stand in it."""
+    """See `kinematify.simulation.engine.PhysicsModel`."""
 
-    client: int
-    body: int
-    mechanism: Mechanism
-    link: IntArray
-    """PyBullet's index of each link, -1 for the root, -2 for lost ones, shape (L,)."""
-    joint: IntArray
-    """PyBullet's index of each of `Mechanism.joints`, -2 for lost ones, shape (J,)."""
-    margin: FloatArray
-    """By which each link's shapes are inflated [m], shape (L,)."""
-    mass_scale: float
-    """Of all masses in this world over those of the file, see `load`."""
+    engine: PybulletEngine
+    prepared: Prepared
+    looking: PybulletWorld
+    """Everything collides in it."""
+    masses: dict[str, float]
+    """[kg], keyed by link."""
+
+    @cached_property
+    def loaded(self) -> LoadedModel:
+        """What became of joints and masses."""
+        joints = {}
+        for info in self.looking.joint_infos:
+            if info[2] in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
+                unlimited = info[8] > info[9]
+                joints[text_of(info[1])] = LoadedJoint(
+                    turns=info[2] == bullet.JOINT_REVOLUTE,
+                    lower=-np.inf if unlimited else info[8],
+                    upper=np.inf if unlimited else info[9],
+                )
+        return LoadedModel(joints=joints, masses=self.masses, total_mass=sum(self.masses.values()))
 
     @property
     def complete(self) -> bool:
         """True if no link and no joint was lost."""
-        return bool((self.link >= _BASE).all() and (self.joint >= 0).all())
+        return self.looking.complete
 
-    @cached_property
-    def indices(self) -> list[int]:
-        """`joint` as PyBullet wants it."""
-        return [int(index) for index in self.joint]
-
-    @cached_property
-    def order(self) -> IntArray:
-        """Place of each joint among PyBullet's degrees of freedom, which follow its indices, shape (J,)."""
-        return np.argsort(np.argsort(self.joint))
-
-    @cached_property
-    def link_of(self) -> dict[int, int]:
-        """Link of the document by PyBullet's index."""
-        return {index: link for link, index in enumerate(self.link.tolist())}
-
-    @cached_property
+    @property
     def size(self) -> float:
-        """Largest side of the box around all collision shapes at zero [m], at least 1 mm."""
-        self.place(np.zeros(len(self.joint)))
-        boxes = [
-            bullet.getAABB(self.body, index, physicsClientId=self.client)
-            for index in self.link.tolist()
-            if bullet.getCollisionShapeData(self.body, index, physicsClientId=self.client)
-        ]
-        corners = np.array(boxes).reshape(-1, 3)
-        return float(max(np.ptp(corners, axis=0).max(), 1e-3)) if len(corners) else 1.0
+        """Of the model [m]."""
+        return self.looking.size
 
-    def place(self, values: FloatArray) -> None:
-        """Set all joints, shape (J,) [rad or m], and stop them."""
-        if self.indices:
-            bullet.resetJointStatesMultiDof(
-                self.body,
-                self.indices,
-                [[value] for value in values.tolist()],
-                [[0.0]] * len(values),
-                physicsClientId=self.client,
-            )
+    @property
+    def resistance(self) -> FloatArray:
+        """Damping and friction of all joints, shape (2, J)."""
+        infos = [self.looking.joint_infos[index] for index in self.looking.indices]
+        return np.array([[info[6] for info in infos], [info[7] for info in infos]]).reshape(2, -1)
 
-    def state(self) -> tuple[list[float], list[float], list[float]]:
-        """Return values, speeds and motor torques of all joints."""
-        states = bullet.getJointStates(self.body, self.indices, physicsClientId=self.client)
-        return [s[0] for s in states], [s[1] for s in states], [s[3] for s in states]
+    @cached_property
+    def silent(self) -> frozenset[tuple[int, int]]:
+        """Pairs of links whose inflated shapes touch at rest; how deep they get is measured beside."""
+        self.looking.place(self.values_at_rest)
+        return frozenset((min(a, b), max(a, b)) for _, a, b, depth in self.looking.contacts(0) if depth > 0.0)
 
-    def link_states(self) -> list[tuple[tuple[float, ...], ...]]:
-        """Return PyBullet's state of every link but the root, by its index.
+    @property
+    def values_at_rest(self) -> FloatArray:
+        """Of all joints [rad or m], shape (J,)."""
+        mechanism = self.looking.mechanism
+        values: FloatArray = mechanism.all_values(mechanism.rest[None])[0]
+        return values
 
-        Of each, [0] is the centre of mass, [4] and [5] are the frame, [6] is the speed of the centre of mass.
-        """
-        count = bullet.getNumJoints(self.body, physicsClientId=self.client)
-        states = bullet.getLinkStates(
-            self.body, range(count), computeLinkVelocity=1, computeForwardKinematics=1, physicsClientId=self.client
+    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
+        """Set the model to every row and look."""
+        looking = self.looking
+        gravity = np.zeros_like(values)
+        matrices: list[FloatArray] = []
+        found: list[tuple[int, int, int, float]] = []
+        states: list[list[tuple[tuple[float, ...], ...]]] = []
+        for row, q in enumerate(values):
+            looking.place(q)
+            found += looking.contacts(row)
+            if row < dynamic:
+                matrices.append(looking.mass_matrix(q) if len(q) else np.zeros((0, 0)))
+            states.append(looking.link_states())
+            gravity[row] = looking.gravity(q) if len(q) else 0.0
+        return Measured(
+            T_world_link=_link_transforms(looking, states),
+            contacts=looking.corrected(found),
+            gravity=gravity,
+            inertia=np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1]),
         )
-        return list(states or ())
 
-    def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
-        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set.
+    def contacts(self, values: FloatArray) -> Contacts:
+        """Contacts in every row.
 
-        PyBullet keeps contacts from step to step as points that move with the bodies. Where a body was set to another
-        place they are wrong, so all pairs are made to be found anew.
+        PyBullet finds boxes metres deep in each other where their edges are parallel but for the noise of a motor.
         """
-        for index in self.link.tolist():
-            bullet.setCollisionFilterGroupMask(self.body, index, 1, 1, physicsClientId=self.client)
-        bullet.performCollisionDetection(physicsClientId=self.client)
-        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
-        link_of = self.link_of
-        return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
+        found: list[tuple[int, int, int, float]] = []
+        for row, q in enumerate(np.round(values, _DECIMALS)):
+            self.looking.place(q)
+            found += self.looking.contacts(row)
+        return self.looking.corrected(found)
 
-    def touching_bodies(self) -> frozenset[tuple[int, int]]:
-        """Return pairs of bodies that pushed each other in the last step, smaller index first."""
-        body, link_of = self.mechanism.body_of_link, self.link_of
-        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
-        pairs = ((int(body[link_of[p[3]]]), int(body[link_of[p[4]]])) for p in points if p[9] > 0.0)
-        return frozenset((min(pair), max(pair)) for pair in pairs)
+    def simulation(self, sweep: Touching, seen: Measured, servos: Servos) -> PybulletSimulation:
+        """Choose the forces of the motors."""
+        # A leader and its follower may balance each other's weight; here each is moved by a motor of its own.
+        mechanism, margin = self.looking.mechanism, self.engine.settings.servo_margin
+        own = seen.gravity[:, [mechanism.joints.index(travel.joint) for travel in mechanism.travels]]
+        unbalanced = np.abs(own - servos.holding).max(axis=0, initial=0.0)
+        return PybulletSimulation(model=self, sweep=sweep, force=servos.force + margin * unbalanced)
 
-    def corrected(self, found: Sequence[tuple[int, int, int, float]]) -> Contacts:
-        """Return the contacts without the inflation of hulls: only those in which the shapes themselves meet."""
-        table = np.array(found, dtype=np.float64).reshape(-1, 4)
-        links = table[:, 1:3].astype(np.int64)
-        depth = table[:, 3] - self.margin[links].sum(axis=1)
-        kept = depth > 0.0
-        return deepest(table[kept, 0].astype(np.int64), links[kept], depth[kept])
-
-    def gravity(self, values: FloatArray) -> FloatArray:
-        """Return the torques and forces that hold the model still [N m or N], shape (J,)."""
-        q = np.zeros(len(values))
-        q[self.order] = values
-        zero = [0.0] * len(values)
-        torques = bullet.calculateInverseDynamics(self.body, q.tolist(), zero, zero, physicsClientId=self.client)
-        held: FloatArray = np.array(torques)[self.order] / self.mass_scale
-        return held
-
-    def mass_matrix(self, values: FloatArray) -> FloatArray:
-        """Return the joint-space inertia, shape (J, J)."""
-        q = np.zeros(len(values))
-        q[self.order] = values
-        matrix = bullet.calculateMassMatrix(self.body, q.tolist(), physicsClientId=self.client)
-        ordered: FloatArray = np.array(matrix).reshape(len(values), len(values))[np.ix_(self.order, self.order)]
-        return ordered / self.mass_scale
-
-    def release(self, *, ideal: bool = False) -> None:
-        """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
-        for index in self.indices:
-            bullet.setJointMotorControl2(
-                self.body, index, bullet.VELOCITY_CONTROL, force=0.0, physicsClientId=self.client
-            )
-        if ideal:
-            for index in self.link.tolist():
-                bullet.changeDynamics(
-                    self.body, index, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0,
-                    physicsClientId=self.client,
-                )  # fmt: skip
-
-    def silence(self) -> None:
-        """Let no two links act on each other but those that `act` names."""
-        for index in self.link.tolist():
-            bullet.setCollisionFilterGroupMask(self.body, index, 0, 0, physicsClientId=self.client)
-
-    def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
-        """Let the links of these pairs (indices in the document) act on each other, or not."""
-        for first, second in pairs:
-            bullet.setCollisionFilterPair(
-                self.body, self.body, int(self.link[first]), int(self.link[second]), int(on),
-                physicsClientId=self.client,
-            )  # fmt: skip
-
-    def disconnect(self) -> None:
-        """Free the world."""
-        bullet.disconnect(physicsClientId=self.client)
+    def world(self, *, fixed: bool = True) -> PybulletWorld:
+        """Load into a new world, see `load`."""
+        step = self.engine.settings.pybullet_time_step
+        return load(self.prepared.urdf, self.looking.mechanism, self.prepared, step=step, fixed=fixed)
 
 
-def load(
-    urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True, looking: bool = False
-) -> PybulletModel:
-    """Load a prepared file into a new world; links that fixed joints join do not collide with each other.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PybulletSimulation:
+    """See `kinematify.simulation.engine.Simulation`."""
 
-    Args:
-        urdf: The file.
-        mechanism: Its tree.
-        prepared: Its record.
-        step: Time step [s].
-        fixed: False: the base is free.
-        looking: The model is set to configurations and never simulated. Large inertias are then scaled down, because
-            the inverse dynamics refuses tensors that differ from symmetric ones by 2e-16 kg m^2.
+    model: PybulletModel
+    sweep: Touching
+    force: FloatArray
+    """What the motor of each leader may exert while it is driven [N m or N], shape (leaders,)."""
+    batch: int = 1
+    """Drives take place one after the other."""
 
-    Raises:
-        Refused: PyBullet cannot.
-    """
-    client = bullet.connect(bullet.DIRECT)
-    bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client)
-    bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
-    try:
-        body = bullet.loadURDF(str(urdf), useFixedBase=fixed, flags=_FLAGS, physicsClientId=client)
-    except bullet.error as error:
-        bullet.disconnect(physicsClientId=client)
-        raise Refused(str(error)) from error
-    infos = [bullet.getJointInfo(body, k, physicsClientId=client) for k in range(bullet.getNumJoints(body, client))]
-    links = {_text(info[12]): info[0] for info in infos}
-    links.setdefault(mechanism.description.root, _BASE)
-    joints = {_text(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
-    methods = [prepared.link_by_name[name].method for name in mechanism.links]
-    scale = _scaled_down(client, body, len(infos)) if looking else 1.0
-    loaded = PybulletModel(
-        client=client,
-        body=body,
-        mechanism=mechanism,
-        link=np.array([links.get(name, -2) for name in mechanism.links], dtype=np.int64),
-        joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
-        margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
-        mass_scale=scale,
-    )
-    if loaded.complete:
-        loaded.act(welded_pairs(mechanism), on=False)
-    return loaded
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.model.engine.settings.pybullet_time_step
+
+    @cached_property
+    def _free_world(self) -> PybulletWorld:
+        """Where nothing is driven."""
+        world = self.model.world()
+        world.act(self.model.silent, on=False)
+        return world
+
+    @cached_property
+    def _drive_world(self) -> PybulletWorld:
+        """Pairs act on each other in it only in drives in which they get too deep."""
+        world = self.model.world()
+        world.silence()
+        return world
+
+    def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
+        """Hold the model by motors."""
+        _Motors(self._free_world, self.model.values_at_rest).hold(efforts)
+        return self._free(_steps(seconds, self.step))
+
+    def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
+        """Let the model go."""
+        world, finer = self._free_world, FINER if fine else 1
+        bullet.setPhysicsEngineParameter(fixedTimeStep=self.step / finer, physicsClientId=world.client)
+        world.place(self.model.values_at_rest)
+        world.release(ideal=True)
+        run = self._free(finer * _steps(seconds, self.step))
+        bullet.setPhysicsEngineParameter(fixedTimeStep=self.step, physicsClientId=world.client)
+        return replace(run, q=run.q[finer - 1 :: finer])
+
+    def _free(self, steps: int) -> FreeRun:
+        world, mechanism = self._free_world, self.model.looking.mechanism
+        leaders = [mechanism.joints.index(travel.joint) for travel in mechanism.travels]
+        looks = set(np.linspace(0, steps - 1, _FREE_LOOKS).astype(int).tolist())
+        values: list[list[float]] = []
+        energies = [self._energy(*world.state()[:2])]
+        fastest = 0.0
+        for step in range(steps):
+            bullet.stepSimulation(physicsClientId=world.client)
+            q, v, _ = world.state()
+            if not np.isfinite([q, v]).all():
+                break
+            values.append([q[column] for column in leaders])
+            if step in looks:
+                energies.append(self._energy(q, v))
+                fastest = max(fastest, world.fastest_link())
+        return FreeRun(
+            q=np.array(values).reshape(-1, len(leaders)),
+            energy=np.array(energies),
+            fastest=fastest,
+            warnings=_DIVERGED if len(values) < steps else (),
+        )
+
+    def _energy(self, q: list[float], v: list[float]) -> tuple[float, float]:
+        """Potential energy of all links but the root, and kinetic energy [J]."""
+        world = self._free_world
+        states, speeds = world.link_states(), np.array(v)
+        links = zip(world.mechanism.links, world.link.tolist(), strict=True)
+        weights = [
+            (GRAVITY * self.model.prepared.link_by_name[name].mass, states[index][0][2])
+            for name, index in links
+            if index >= 0
+        ]
+        inertia = self.model.looking.mass_matrix(np.array(q))
+        return sum(weight * height for weight, height in weights), float(0.5 * speeds @ inertia @ speeds)
+
+    def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
+        """Drive a joint to an end, the others held."""
+        return [self._drive(drive) for drive in drives]
+
+    def _drive(self, drive: Drive) -> DriveRun:
+        world, mechanism = self._drive_world, self.model.looking.mechanism
+        column = mechanism.joints.index(mechanism.travels[drive.leader].joint)
+        force = float(self.force[drive.leader])
+        samples = self.model.engine.settings.sweep_samples
+        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.silent, samples)
+        world.act(pairs, on=True)
+        motors = _Motors(world, self.model.values_at_rest)
+        motors.hold(_UNLIMITED)
+        looks = set(drive.looks.tolist())
+        values, forces, fastest = [], [], 0.0
+        pressed: frozenset[tuple[int, int]] = frozenset()
+        for step, (target, speed) in enumerate(zip(drive.reference.tolist(), drive.speed.tolist(), strict=True)):
+            motors.command(column, target, speed, force)
+            bullet.stepSimulation(physicsClientId=world.client)
+            q, _, torques = world.state()
+            if not np.isfinite(q).all():
+                break
+            motors.follow(q)
+            values.append(q)
+            forces.append(torques[column])
+            if step in looks:
+                fastest = max(fastest, world.fastest_link())
+            if step == drive.arrived - 1:
+                pressed = world.touching_bodies()
+        world.act(pairs, on=False)
+        return DriveRun(
+            q=np.array(values).reshape(-1, len(mechanism.joints)),
+            force=np.array(forces),
+            pressed=pressed,
+            fastest=fastest,
+            warnings=_DIVERGED if len(values) < len(drive.reference) else (),
+        )
+
+    def drop(self) -> Dropped:
+        """Let the model fall on a floor."""
+        world, settings = self.model.world(fixed=False), self.model.engine.settings
+        client = world.client
+        world.act(self.model.silent, on=False)
+        _Motors(world, self.model.values_at_rest).hold(np.inf)
+        height = _lowest(world) - settings.drop
+        shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
+        floor = bullet.createMultiBody(0.0, shape, basePosition=[0.0, 0.0, height], physicsClientId=client)
+        steps, window = _steps(settings.drop_seconds, self.step), _steps(SLOW_SECONDS, self.step)
+        early = _centres(world)
+        for step in range(steps):
+            bullet.stepSimulation(physicsClientId=client)
+            if step == steps - 1 - window:
+                early = _centres(world)
+        late = _centres(world)
+        near = bullet.getClosestPoints(world.body, floor, 1e-3, physicsClientId=client)
+        world.disconnect()
+        if not np.isfinite(late).all():
+            return Dropped(depth=np.inf, speed=np.inf, warnings=_DIVERGED)
+        margins = {index: float(world.margin[link]) for link, index in enumerate(world.link.tolist())}
+        return Dropped(
+            depth=max((-point[8] - margins[point[3]] for point in near), default=-1e-3),
+            speed=float(np.linalg.norm(late - early, axis=1).max()) / (window * self.step),
+            warnings=(),
+        )
 
 
-def _scaled_down(client: int, body: int, count: int) -> float:
-    """Scale masses and inertias by a power of two, which changes no digit, so that all moments are small."""
-    infos = {index: bullet.getDynamicsInfo(body, index, physicsClientId=client) for index in range(-1, count)}
-    largest = max(max(info[2]) for info in infos.values())
-    scale = 2.0 ** min(0.0, np.floor(np.log2(_LARGE_INERTIA / max(largest, _LARGE_INERTIA))))
-    if scale < 1.0:
-        for index, info in infos.items():
-            moments = [moment * scale for moment in info[2]]
-            bullet.changeDynamics(
-                body, index, mass=info[0] * scale, localInertiaDiagonal=moments, physicsClientId=client
-            )
-    return float(scale)
+class _Motors:
+    """Position motors on all joints; followers follow what their leaders do, which PyBullet does not care for."""
+
+    def __init__(self, world: PybulletWorld, rest: FloatArray) -> None:
+        """Place the model at rest, values of all joints, shape (J,)."""
+        self._world, self._rest = world, rest
+        mechanism = world.mechanism
+        self._leaders = [mechanism.joints.index(travel.joint) for travel in mechanism.travels]
+        self._followers = [k for k in range(len(mechanism.joints)) if k not in self._leaders]
+        world.place(rest)
+
+    def hold(self, force: float | FloatArray) -> None:
+        """Hold all joints at rest, with one force or one for each leader [N m or N]; followers without limit."""
+        forces = np.full(len(self._rest), _UNLIMITED)
+        forces[self._leaders] = np.minimum(force, _UNLIMITED)
+        for column, value in enumerate(self._rest.tolist()):
+            self.command(column, value, 0.0, float(forces[column]))
+
+    def follow(self, q: list[float]) -> None:
+        """Command the followers to where their leaders stand."""
+        if self._followers:
+            values = self._world.mechanism.all_values(np.array(q)[None, self._leaders])[0]
+            for column in self._followers:
+                self.command(column, float(values[column]), 0.0, _UNLIMITED)
+
+    def command(self, column: int, target: float, speed: float, force: float) -> None:
+        """Command one of `Mechanism.joints`."""
+        bullet.setJointMotorControl2(
+            self._world.body,
+            self._world.indices[column],
+            bullet.POSITION_CONTROL,
+            targetPosition=target,
+            targetVelocity=speed,
+            force=force,
+            positionGain=_POSITION_GAIN,
+            velocityGain=1.0,
+            physicsClientId=self._world.client,
+        )
 
 
-def welded_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:
-    """Pairs of links that fixed joints join."""
-    members: dict[int, list[int]] = defaultdict(list)
-    for link, body in enumerate(mechanism.body_of_link.tolist()):
-        members[body].append(link)
-    return [pair for group in members.values() for pair in combinations(group, 2)]
+def _steps(seconds: float, step: float) -> int:
+    return max(2, round(seconds / step))
 
 
-def loaded_model(fixed: PybulletModel, free: PybulletModel) -> LoadedModel:
-    """Return what PyBullet made of the file.
-
-    Args:
-        fixed: With a fixed base.
-        free: With a free base: a fixed one has no mass.
-    """
-    joints = {}
-    for k in range(bullet.getNumJoints(fixed.body, fixed.client)):
-        info = bullet.getJointInfo(fixed.body, k, physicsClientId=fixed.client)
-        if info[2] in {bullet.JOINT_REVOLUTE, bullet.JOINT_PRISMATIC}:
-            unlimited = info[8] > info[9]
-            joints[_text(info[1])] = LoadedJoint(
-                turns=info[2] == bullet.JOINT_REVOLUTE,
-                lower=-np.inf if unlimited else info[8],
-                upper=np.inf if unlimited else info[9],
-            )
-    masses = link_masses(free)
-    return LoadedModel(joints=joints, masses=masses, total_mass=sum(masses.values()))
+def _link_transforms(loaded: PybulletWorld, states: list[list[tuple[tuple[float, ...], ...]]]) -> FloatArray:
+    """Return the pose of every link's frame in every row, the fixed root at the origin, shape (n, L, 4, 4)."""
+    transforms = np.tile(np.eye(4), (len(states), len(loaded.link), 1, 1))
+    moving = np.flatnonzero(loaded.link >= 0)
+    picked = loaded.link[moving].tolist()
+    if picked and states:
+        placed = transforms[:, moving]
+        placed[..., :3, 3] = [[row[index][4] for index in picked] for row in states]
+        turned = np.array([row[index][5] for row in states for index in picked])
+        placed[..., :3, :3] = Rotation.from_quat(turned).as_matrix().reshape(len(states), len(picked), 3, 3)
+        transforms[:, moving] = placed
+    return transforms
 
 
-def link_masses(free: PybulletModel) -> dict[str, float]:
-    """Mass of each link that is there [kg]; the base must be free."""
-    there = [(name, index) for name, index in zip(free.mechanism.links, free.link.tolist(), strict=True) if index >= -1]
-    return {name: bullet.getDynamicsInfo(free.body, index, physicsClientId=free.client)[0] for name, index in there}
+def _lowest(world: PybulletWorld) -> float:
+    """Height of the lowest point of all collision shapes [m]; the boxes around them are a little too large."""
+    heights: list[float] = [
+        bullet.getAABB(world.body, index, physicsClientId=world.client)[0][2]
+        for index in world.link.tolist()
+        if bullet.getCollisionShapeData(world.body, index, physicsClientId=world.client)
+    ]
+    return min(heights)
 
 
-def printed(log: Path) -> list[str]:
-    """What PyBullet has printed into the log of its process, without what it always prints."""
-    ctypes.CDLL(None).fflush(None)
-    try:
-        lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        return []
-    return [line.strip() for line in lines if line.strip() and not any(word in line for word in _CHATTER)]
-
-
-def _text(name: bytes) -> str:
-    return name.decode("utf-8", errors="replace")
+def _centres(world: PybulletWorld) -> FloatArray:
+    """Centres of mass of all links, shape (L, 3)."""
+    base, _ = bullet.getBasePositionAndOrientation(world.body, physicsClientId=world.client)
+    return np.array([base, *(state[0] for state in world.link_states())])

@@ -18,7 +18,7 @@ from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.validation import agreement
 from kinematify.validation.engines import mujoco_stage, pinocchio_stage, pybullet_stage
-from kinematify.validation.engines.configurations import (
+from kinematify.simulation.configurations import (
     Configurations,
     EnginePoses,
     agreement_configurations,

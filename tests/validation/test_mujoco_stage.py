@@ -15,7 +15,7 @@ from kinematify.robot.read import read_model
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.validation.catalogue.engines import CHECKS
-from kinematify.validation.engines.configurations import agreement_configurations, read_poses
+from kinematify.simulation.configurations import agreement_configurations, read_poses
 from kinematify.validation.engines.freely import find_drop, find_growth
 from kinematify.validation.engines.mujoco_stage import run
 from kinematify.validation.engines.placed import link_poses

@@ -14,10 +14,10 @@ from kinematify.robot.read import read_model
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.validation.catalogue.engines import CHECKS
-from kinematify.validation.engines.configurations import agreement_configurations, read_poses
+from kinematify.simulation.configurations import agreement_configurations, read_poses
 from kinematify.validation.engines.placed import link_poses
 from kinematify.validation.engines.pybullet_measure import measure
-from kinematify.validation.engines.pybullet_model import load
+from kinematify.simulation.pybullet_world import load
 from kinematify.validation.engines.pybullet_stage import run
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from tests.places import BENCH

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
-from kinematify.validation.engines.configurations import spread_rows
+from kinematify.simulation.configurations import spread_rows
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray

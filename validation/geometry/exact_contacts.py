@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.scene import relative
-from kinematify.validation.engines.configurations import EnginePoses, agreement_configurations
+from kinematify.simulation.configurations import EnginePoses, agreement_configurations
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings

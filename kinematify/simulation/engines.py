@@ -1,0 +1,81 @@
+"""The engines that Kinematify knows, by the names that users write."""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from kinematify.errors import EnvironmentFault
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.config.validation import EngineSettings
+    from kinematify.simulation.engine import Engine
+
+
+@dataclass(frozen=True, kw_only=True)
+class EngineEntry:
+    """What is known of an engine without loading it."""
+
+    name: str
+    """As users write it; ``kinematify.simulation.NAME_engine`` holds a function ``open_engine(settings, log)``."""
+    title: str
+    """As it is written in messages."""
+    package: str
+    """Distribution that brings it."""
+    extra: str | None = None
+    """Extra of Kinematify that installs it; None: every installation has it."""
+    family: str
+    """First characters of the ids of its checks."""
+    runs: bool = True
+    """False: it only computes; it sees no contacts and never runs."""
+    most_joints: int | None = None
+    """Larger models are not given to it."""
+    inflation: float = 0.0
+    """By which it makes meshes thicker [m]."""
+    keeps_energy: bool = True
+    """False: its integrator gains energy with its usual step, so energy is looked at with smaller ones."""
+    stops_late: bool = False
+    """True: a joint is stopped one step after it has passed its limit, and left where it stands then."""
+
+
+_ENTRIES = (
+    EngineEntry(name="mujoco", title="MuJoCo", package="mujoco", family="KV4"),
+    EngineEntry(
+        name="pybullet",
+        title="PyBullet",
+        package="pybullet",
+        family="KV5",
+        most_joints=120,  # its tables end at 128 degrees of freedom per body; larger models overwrite its memory
+        inflation=1e-3,
+        keeps_energy=False,
+        stops_late=True,
+    ),
+    EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
+)
+ENGINES = {entry.name: entry for entry in _ENTRIES}
+"""Keyed by name."""
+
+
+def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
+    """Load an engine's library.
+
+    Args:
+        name: Of `ENGINES`.
+        settings: Time step, servos and how long it runs.
+        log: File that this process prints into, where an engine speaks by printing.
+
+    Raises:
+        EnvironmentFault: It is not installed.
+    """
+    entry = ENGINES[name]
+    try:
+        module = importlib.import_module(f"kinematify.simulation.{name}_engine")
+    except ImportError as error:
+        install = f'pip install "kinematify[{entry.extra}]"' if entry.extra else "pip install kinematify"
+        raise EnvironmentFault(
+            f"{entry.title} was asked for and cannot be loaded ({error}). Install it: {install}"
+        ) from error
+    return cast("Engine", module.open_engine(settings, log))

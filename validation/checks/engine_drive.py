@@ -1,0 +1,266 @@
+"""KV405 and their like: each joint driven through its range, in whatever engine."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.validation.left_model import model_of
+from kinematify.simulation.contacts import stand_in_error, stand_in_reason
+from kinematify.validation.check import FeedbackRow, engine_check
+from kinematify.validation.engine_context import late, not_driven, nothing_moves
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.surfaces import surfaces_meet
+from kinematify.validation.report import JointCurve
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.robot.mechanism import Travel
+    from kinematify.simulation.drive import Driven
+    from kinematify.validation.engine_context import EngineContext
+    from kinematify.validation.stage import OpenCheck
+
+
+@engine_check(
+    "05",
+    title="driven through its range, each joint reaches both ends",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.NOT_REACHED,
+    needs=(nothing_moves, late),
+)
+def reaches_both_ends(check: OpenCheck, context: EngineContext) -> None:
+    """One joint after the other is driven from rest to both ends by a position servo, the others held. Each must
+    arrive within engines.reach of its range. A joint that its own base stops is an error if their collision geometry
+    is what the file declares; where other neighbours or convex stand-ins are in the way it is a warning, and a note
+    where parts are in the way that can move themselves: a robot reaches itself within its ranges. A tracking error
+    above engines.tracking is a note.
+
+    PyBullet: Pairs that touch at rest once meshes are inflated by 1 mm do not act on each other, since PyBullet would
+    push them apart; the joint counts as stopped where they get deeper than allowed.
+
+    Why it matters: A drawer that does not open in the simulator is of no use, whatever its file says.
+
+    Remedy: Correct axis, pivot or limit of the joint, so that the pair that is named stays clear; where convex
+    stand-ins meet, write convex pieces as collision geometry.
+    """
+    driven = context.drives.driven
+    check.measured["drives"] = float(len(driven))
+    check.measured["arrived"] = float(sum(context.arrived(item) for item in driven))
+    for item in driven:
+        if not context.arrived(item):
+            _find_blocked(check, context, item)
+        elif item.lag > context.settings.tracking * context.travel(item).range:
+            _find_lag(check, context, item)
+    _say_left(check, context)
+
+
+@engine_check(
+    "06",
+    title="little penetration while driven",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    feedback=FeedbackRow.COLLISION,
+    needs=(not_driven,),
+)
+def little_penetration(check: OpenCheck, context: EngineContext) -> None:
+    """While a joint is driven to an end that it reaches, no pair of links gets deeper into each other than at rest by
+    more than twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their meshes by.
+
+    Why it matters: Parts that pass through each other teach a policy what reality does not allow.
+
+    Remedy: Correct the joint, or the collision geometry of the pair.
+    """
+    driven = context.drives.driven
+    worst: dict[int, tuple[float, Driven]] = {}
+    arrived = [item for item in driven if context.arrived(item)]
+    for item in arrived:
+        # What is allowed gives way without force; a stop is then as soft as any contact of the engine.
+        for pair in np.flatnonzero(item.excess > context.drives.sweep.tolerance).tolist():
+            if item.excess[pair] > worst.get(pair, (0.0, item))[0]:
+                worst[pair] = (float(item.excess[pair]), item)
+    deepest = max((float(item.excess.max(initial=0.0)) for item in arrived), default=0.0)
+    check.measured["deepest_beyond_rest"] = deepest + context.drives.sweep.tolerance if deepest > 0.0 else 0.0
+    for pair, (excess, item) in sorted(worst.items()):
+        _find_penetration(check, context, pair, excess, item)
+    _say_left(check, context)
+
+
+@engine_check(
+    "09",
+    title="limits hold",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    feedback=FeedbackRow.UNSTABLE,
+    needs=(not_driven,),
+)
+def limits_hold(check: OpenCheck, context: EngineContext) -> None:
+    """At its end, a joint whose servo pulls on past the limit (by engines.push of the range) gets no farther beyond it
+    than engines.escape of the range.
+
+    Why it matters: A door that is pushed through its stop ends up in its frame.
+
+    Remedy: Write a range that is not much smaller than the part's motion, and a plausible inertia: very light parts
+    slip through soft stops.
+    """
+    driven = context.drives.driven
+    pushed = [item for item in driven if context.travel(item).limited and context.arrived(item)]
+    if not pushed:
+        check.skip("no joint with limits got to one of them")
+    for item in pushed:
+        travel = context.travel(item)
+        share = item.beyond / travel.range
+        check.measured["farthest_of_range"] = max(0.0, share, check.measured.get("farthest_of_range", 0.0))
+        if share > context.settings.escape:
+            check.find(
+                f"Pushed on at its limit {item.drive.end:.4g} {travel.unit}, joint {travel.joint} gets "
+                f"{item.beyond:.3g} {travel.unit} beyond it, {share:.1%} of its range.",
+                "Give the part a plausible inertia, and limits that fit its motion.",
+                joint=travel.joint,
+                value=item.beyond,
+                limit=context.settings.escape * travel.range,
+                unit=travel.unit,
+            )
+    _say_left(check, context)
+
+
+def _say_left(check: OpenCheck, context: EngineContext) -> None:
+    if context.drives.left:
+        check.skip(f"time ran out before {context.drives.left} of the drives")
+
+
+def curves(context: EngineContext) -> Iterator[JointCurve]:
+    """Yield how the joints were driven, for whoever draws it."""
+    for item in context.drives.driven:
+        commanded, reached, force, depth = (tuple(map(float, row)) for row in item.looks)
+        yield JointCurve(
+            joint=context.travel(item).joint,
+            engine=context.entry.name,
+            upper=bool(item.drive.end == context.travel(item).upper),
+            commanded=commanded,
+            reached=reached,
+            force=force,
+            depth=depth,
+        )
+
+
+def _find_blocked(check: OpenCheck, context: EngineContext, driven: Driven) -> None:
+    travel = context.travel(driven)
+    where = f"Driven from {travel.rest:.4g} towards {driven.drive.end:.4g} {travel.unit}"
+    stops = f"{where}, joint {travel.joint} stops at {driven.reached:.4g} {travel.unit}"
+    facts = {
+        "joint": travel.joint,
+        "q": {travel.joint: driven.reached},
+        "value": driven.reached,
+        "limit": driven.drive.end,
+        "unit": travel.unit,
+    }
+    index = _blocking_pair(context, driven)
+    if index is None:
+        check.find(
+            f"{stops} without contact, at a force of {driven.force:.3g} {_force_unit(travel)}.",
+            "Check damping, friction and inertia of the joint, and the limits of joints that follow it.",
+            severity=Severity.WARNING,
+            blame=Blame.PHYSICS,
+            **facts,  # type: ignore[arg-type]
+        )
+        return
+    first, second = pair = context.drives.sweep.pair(index, context.mechanism.links)
+    excess, values = context.excess_towards(driven)
+    deepest = int(np.argmax(excess[index]))
+    beyond = excess[index, deepest] > stand_in_error(context.prepared, pair)
+    real = bool(beyond) and _stopped_by_surfaces(context, driven, pair, until=float(values[deepest]))
+    why = (
+        f"there {first} and {second} collide; moved on without physics, they get {excess[index, deepest] * 1e3:.3g} mm "
+        f"deeper into each other than at rest (at {values[deepest]:.4g} {travel.unit})"
+    )
+    if real:
+        remedy = f"Correct axis, pivot or limit of {travel.joint} so that {first} and {second} stay clear."
+    else:
+        reason = stand_in_reason(context.prepared, pair) if not beyond else "while their declared surfaces stay clear"
+        why += f", {reason}"
+        remedy = f"Write convex pieces as collision geometry of {first} and {second}."
+    check.find(
+        f"{stops}: {why}.",
+        remedy,
+        severity=_severity(context, index, real=real, limited=travel.limited),
+        blame=Blame.KINEMATICS if real else Blame.PHYSICS,
+        pair=pair,
+        **facts,  # type: ignore[arg-type]
+    )
+
+
+def _stopped_by_surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, until: float) -> bool:
+    """Whether the declared surfaces of two links meet as well, on the way from rest to where the pieces are deepest."""
+    leader, (_, values) = driven.drive.leader, context.excess_towards(driven)
+    away = np.abs(values - context.travel(driven).rest)
+    way = np.argsort(away)[: 1 + int(np.count_nonzero(away < abs(until - context.travel(driven).rest)))]
+    rows = np.tile(context.mechanism.rest, (1 + len(way), 1))
+    rows[1:, leader] = values[way]
+    declared = model_of(context.request)  # the engines themselves do without surfaces
+    geometry = context.request.settings.geometry
+    return surfaces_meet(declared, pair, rows, tolerance=context.drives.sweep.tolerance, settings=geometry)
+
+
+def _severity(context: EngineContext, index: int, *, real: bool, limited: bool) -> Severity:
+    """How bad it is that a pair stops a joint.
+
+    Neighbours above the root pass each other in engines unless one asks for their contacts, and parts that both move
+    can get out of each other's way: a robot reaches itself within its ranges.
+    """
+    pair = tuple(sorted(context.drives.sweep.bodies[index].tolist()))
+    if real and limited and pair in context.mechanism.neighbours and pair[0] == 0:
+        return Severity.ERROR
+    return Severity.WARNING if pair in context.mechanism.neighbours or (real and pair[0] == 0) else Severity.NOTE
+
+
+def _blocking_pair(context: EngineContext, driven: Driven) -> int | None:
+    """Return the pair of the sweep that stops a joint: the deepest where it stands, else the deepest ahead of it."""
+    parted = context.separates(driven.drive.leader)
+    if not parted.any():
+        return None
+    # A servo at its limit of force presses a contact in by less than the tolerance.
+    pressed = np.where(parted, driven.at_end, -np.inf)
+    if pressed.max() > -0.5 * context.drives.sweep.tolerance:
+        return int(np.argmax(pressed))
+    excess, _ = context.excess_towards(driven)
+    ahead = np.where(parted, excess.max(axis=1), -np.inf)
+    return int(np.argmax(ahead)) if ahead.max() > 0.0 else None
+
+
+def _find_lag(check: OpenCheck, context: EngineContext, driven: Driven) -> None:
+    travel = context.travel(driven)
+    check.find(
+        f"On its way to {driven.drive.end:.4g} {travel.unit}, joint {travel.joint} lags {driven.lag:.3g} {travel.unit} "
+        f"behind its command.",
+        "Check damping, friction and inertia of the joint.",
+        severity=Severity.NOTE,
+        blame=Blame.PHYSICS,
+        joint=travel.joint,
+        value=driven.lag,
+        limit=context.settings.tracking * travel.range,
+        unit=travel.unit,
+    )
+
+
+def _find_penetration(check: OpenCheck, context: EngineContext, pair: int, excess: float, driven: Driven) -> None:
+    first, second = names = context.drives.sweep.pair(pair, context.mechanism.links)
+    travel = context.travel(driven)
+    real = excess > stand_in_error(context.prepared, names)
+    check.find(
+        f"While {travel.joint} is driven to {driven.drive.end:.4g} {travel.unit}, {first} and {second} get "
+        f"{(excess + context.drives.sweep.tolerance) * 1e3:.3g} mm deeper into each other than at rest.",
+        f"Correct the joint, or the collision geometry of {first} and {second}.",
+        blame=Blame.KINEMATICS if real else Blame.PHYSICS,
+        joint=travel.joint,
+        pair=names,
+        value=excess + context.drives.sweep.tolerance,
+        limit=context.drives.sweep.tolerance,
+        unit="m",
+    )
+
+
+def _force_unit(travel: Travel) -> str:
+    return "N m" if travel.turns else "N"

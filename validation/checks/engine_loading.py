@@ -1,0 +1,256 @@
+"""KV401, KV402 and their like: does an engine have what the file says, and does it put every link where it belongs?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.simulation.configurations import link_poses
+from kinematify.simulation.engine import Refused
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.check import FeedbackRow, check, engine_check
+from kinematify.validation.finding import Blame, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import DescribedJoint
+    from kinematify.simulation.configurations import Configurations
+    from kinematify.simulation.engine import LoadedJoint, LoadedModel
+    from kinematify.simulation.prepared import Prepared
+    from kinematify.validation.engine_context import EngineContext
+    from kinematify.validation.stage import OpenCheck
+
+_LIMIT_SLACK = 1e-6
+"""Difference of a limit [rad or m] that no decimal number in a file explains."""
+
+
+@engine_check(
+    "01",
+    title="loads with the same joints, masses and limits",
+    severity=Severity.ERROR,
+    blame=Blame.ENGINE,
+    feedback=FeedbackRow.EXPORTER,
+)
+def loads(check: OpenCheck, context: EngineContext) -> None:
+    """{engine} loads the model; every link and joint is there, with the type, axis, limits, mass and inertia of the
+    file, within engines.same of each value.
+
+    MuJoCo: Links joined by fixed joints are kept apart.
+
+    Why it matters: Importers drop, merge and replace silently: a lost limit or a mass of 1 kg out of nothing changes
+    every simulation.
+
+    Remedy: Mend what the engine's message names; write limits, masses and inertias in full.
+    """
+    _load(check, context, context.settings.same)
+
+
+@check(
+    "KV606",
+    title="Pinocchio loads the same model",
+    severity=Severity.ERROR,
+    blame=Blame.ENGINE,
+    engines=("pinocchio",),
+)
+def pinocchio_loads(check: OpenCheck, context: EngineContext) -> None:
+    """Pinocchio reads the file and has the same moving joints with the same types and limits, and the same masses.
+
+    Why it matters: It is the analytical reference for the engines, and what many planners and controllers use.
+
+    Remedy: Write the joint or link that is named with plain decimal numbers and a unique name.
+    """
+    _load(check, context, context.request.settings.agreement.mass_error)
+
+
+def _load(check: OpenCheck, context: EngineContext, same: float) -> None:
+    title = context.entry.title
+    try:
+        loaded = context.model.loaded
+    except Refused as refusal:
+        check.find(
+            f"{title} refuses the model: {refusal}.",
+            f"Mend what {title}'s message names, and the other findings of the file.",
+        )
+        return
+    compare_with_file(check, context.declared, context.prepared, loaded, same)
+    _compare_axes(check, context, loaded, same)
+    if loaded.balanced:
+        check.find(
+            f"{title} refuses an inertia tensor whose largest principal moment exceeds the sum of the others, even "
+            "by a rounding error; all tensors were balanced for the other checks.",
+            "Write the tensors with more digits, or make the largest moment a little smaller.",
+            severity=Severity.WARNING,
+            blame=Blame.PHYSICS,
+        )
+
+
+def _compare_axes(check: OpenCheck, context: EngineContext, loaded: LoadedModel, same: float) -> None:
+    for name, joint in loaded.joints.items():
+        declared = context.declared.kinematics.joint_by_name[name].axis
+        if joint.axis is not None and np.abs(joint.axis - declared).max() > same:
+            check.find(
+                f"The axis of the joint {name} is {_vector(declared)} in the file and {_vector(joint.axis)} in "
+                f"{context.entry.title}.",
+                "Write the axis as a unit vector with plain decimal numbers.",
+                joint=name,
+                value=np.abs(joint.axis - declared).max(),
+                limit=same,
+            )
+
+
+def _vector(values: FloatArray) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in values) + ")"
+
+
+def compare_with_file(
+    check: OpenCheck, model: DeclaredModel, prepared: Prepared, loaded: LoadedModel, mass_error: float
+) -> None:
+    """Add a finding for every joint or mass that an engine has otherwise than it was given.
+
+    Args:
+        check: Open, of the engine.
+        model: The file, with or without geometry.
+        prepared: What the engine was given.
+        loaded: What it made of it.
+        mass_error: Relative difference that is an error.
+    """
+    engine = ENGINES[check.engine or ""].title
+    for described in model.kinematics.joints:
+        if described.kind != "fixed":
+            _compare_joint(check, engine, described, loaded.joints.get(described.name))
+    for link in prepared.links:
+        mass = loaded.masses.get(link.link, link.mass)
+        if not link.mass_added and not np.isclose(mass, link.mass, rtol=mass_error, atol=1e-9):
+            check.find(
+                f"{engine} gives the link {link.link} {mass:.6g} kg; the file says {link.mass:.6g} kg.",
+                "Write mass and inertia in an <inertial> element with plain decimal numbers.",
+                link=link.link,
+                value=mass,
+                limit=link.mass,
+                unit="kg",
+                line=model.link_by_name[link.link].line,
+            )
+    check.measured["joints"] = float(len(loaded.joints))
+    check.measured["mass"] = loaded.total_mass
+    if not check.findings and not np.isclose(loaded.total_mass, prepared.total_mass, rtol=mass_error):
+        check.find(
+            f"The model weighs {loaded.total_mass:.6g} kg in {engine}; its links weigh {prepared.total_mass:.6g} kg in "
+            "the file.",
+            "Give every link a mass of its own; an engine has dropped or made up one.",
+            value=loaded.total_mass,
+            limit=prepared.total_mass,
+            unit="kg",
+        )
+
+
+def _compare_joint(check: OpenCheck, engine: str, joint: DescribedJoint, loaded: LoadedJoint | None) -> None:
+    said = _difference(engine, joint, loaded)
+    if said:
+        check.find(
+            said,
+            f"Write the joint {joint.name} with a type, axis and limits that {engine} reads as they are meant.",
+            # Importers take an empty range for none; that the range is empty is told where limits are checked.
+            severity=Severity.WARNING if joint.lower >= joint.upper else None,
+            joint=joint.name,
+        )
+
+
+def _difference(engine: str, joint: DescribedJoint, loaded: LoadedJoint | None) -> str:
+    if loaded is None:
+        return (
+            f"The joint {joint.name} ({joint.kind}) does not move in {engine}, which has lost it or taken it for fixed."
+        )
+    if loaded.turns != joint.kind.turns:
+        now = "turns" if loaded.turns else "slides"
+        return f"The joint {joint.name} is {joint.kind} in the file and {now} in {engine}."
+    ends = list(_ends(joint, loaded))
+    if any(not _same(declared, found) for declared, found in ends):
+        unit = "rad" if joint.kind.turns else "m"
+        declared, found = ([f"{end[side]:.6g}" for end in ends] for side in (0, 1))
+        return (
+            f"The joint {joint.name} has the limits {' to '.join(declared)} {unit} in the file and "
+            f"{' to '.join(found)} {unit} in {engine}."
+        )
+    return ""
+
+
+def _ends(joint: DescribedJoint, loaded: LoadedJoint) -> Iterator[tuple[float, float]]:
+    yield joint.lower, loaded.lower
+    yield joint.upper, loaded.upper
+
+
+def _same(declared: float, found: float) -> bool:
+    return declared == found or abs(declared - found) <= _LIMIT_SLACK * max(1.0, abs(declared))
+
+
+@engine_check(
+    "02",
+    title="poses agree over the range",
+    severity=Severity.ERROR,
+    blame=Blame.ENGINE,
+    feedback=FeedbackRow.EXPORTER,
+)
+def poses_agree(check: OpenCheck, context: EngineContext) -> None:
+    """At zero, at rest, at both ends of every joint and in quasi-random configurations every link stands where the
+    file's kinematics put it, within engines.pose_distance of the model's size and engines.pose_deg.
+
+    Why it matters: A frame that the engine reads differently moves a part to another place without a message.
+
+    Remedy: Write origins and axes as plain numbers, the axis as a unit vector; compare the frames of the link that
+    the message names.
+    """
+    seen = context.model.measure(context.rows.q, dynamic=context.rows.dynamic)
+    find_misplaced(
+        check,
+        context.rows,
+        ours=link_poses(context.declared.kinematics, context.rows),
+        theirs=seen.T_world_link,
+        size=context.physics.size,
+        settings=context.settings,
+    )
+    context.leave_poses(seen)
+
+
+def find_misplaced(
+    check: OpenCheck,
+    rows: Configurations,
+    *,
+    ours: FloatArray,
+    theirs: FloatArray,
+    size: float,
+    settings: EngineSettings,
+) -> None:
+    """Add a finding for every link that an engine puts elsewhere.
+
+    Args:
+        check: Open, of the engine.
+        rows: The configurations.
+        ours: From `link_poses`.
+        theirs: The engine's, of the same shape.
+        size: Of the model [m].
+        settings: The differences that are errors.
+    """
+    distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1)
+    # Frobenius norm of a difference of rotations: 2 sqrt(2) sin(angle / 2); exact for small angles, unlike the trace.
+    chord = np.linalg.norm(ours[..., :3, :3] - theirs[..., :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
+    angle = np.degrees(2.0 * np.arcsin(np.clip(chord, 0.0, 1.0)))
+    check.measured |= {"rows": float(len(rows.q)), "distance": float(distance.max()), "angle_deg": float(angle.max())}
+    share = np.maximum(distance / (settings.pose_distance * size), angle / settings.pose_deg)
+    worst = np.argmax(share, axis=0)
+    for link in np.flatnonzero(share.max(axis=0) > 1.0).tolist():
+        row = int(worst[link])
+        check.find(
+            f"{ENGINES[check.engine or ''].title} puts the link {rows.links[link]} {distance[row, link] * 1e3:.3g} mm "
+            f"and {angle[row, link]:.3g} deg from where the file's kinematics put it.",
+            f"Write origins and axes on the way to {rows.links[link]} as plain numbers, axes as unit vectors.",
+            link=rows.links[link],
+            q=rows.named(row),
+            value=distance[row, link],
+            limit=settings.pose_distance * size,
+            unit="m",
+        )

@@ -1,0 +1,272 @@
+"""What the checks of one engine look at, computed when one of them first asks for it and kept for the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from kinematify.robot.mechanism import Mechanism, sweep_rows
+from kinematify.robot.read import read_without_geometry
+from kinematify.simulation.configurations import EnginePoses, agreement_configurations, write_poses
+from kinematify.simulation.contacts import touching
+from kinematify.simulation.drive import drive_all, servos
+from kinematify.simulation.engines import open_engine
+from kinematify.simulation.prepared import Method, load_prepared
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.mechanism import Travel
+    from kinematify.simulation.configurations import Configurations
+    from kinematify.simulation.contacts import Contacts, Touching
+    from kinematify.simulation.drive import Driven, DriveSession, Servos
+    from kinematify.simulation.engine import Dropped, Engine, EngineModel, FreeRun, Measured, PhysicsModel, Simulation
+    from kinematify.simulation.engines import EngineEntry
+    from kinematify.simulation.prepared import Prepared
+    from kinematify.validation.stage import StageRequest
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunEnd:
+    """How a run went on the whole."""
+
+    when: str
+    """As words that follow "while"."""
+    speed: float
+    """The largest of a link [m/s]."""
+    warnings: tuple[str, ...]
+    """Those of the engine that ended it; empty if it went on to the end."""
+    joint: str | None = None
+    """The one that was driven."""
+    told: float = 0.0
+    """The largest speed that it was commanded to give a link [m/s]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EngineContext:
+    """A model in an engine, and its runs."""
+
+    request: StageRequest
+    entry: EngineEntry
+    ends: list[RunEnd] = field(default_factory=list)
+    """Of the runs that took place so far."""
+
+    @property
+    def settings(self) -> EngineSettings:
+        """Thresholds, servos and times."""
+        return self.request.settings.engines
+
+    @cached_property
+    def declared(self) -> DeclaredModel:
+        """The file without its geometry."""
+        return read_without_geometry(self.request.urdf)
+
+    @cached_property
+    def prepared(self) -> Prepared:
+        """What the engine is given."""
+        return load_prepared(self.request.work)
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The tree."""
+        return Mechanism(description=self.declared.kinematics)
+
+    @cached_property
+    def engine(self) -> Engine:
+        """Loaded into this process."""
+        return open_engine(self.entry.name, self.settings, self.request.work / f"{self.entry.name}.log")
+
+    @cached_property
+    def model(self) -> EngineModel:
+        """The model as the engine has it.
+
+        Raises:
+            Refused: It has not.
+        """
+        return self.engine.load(self.prepared, self.mechanism)
+
+    @property
+    def physics(self) -> PhysicsModel:
+        """The same, in an engine that runs (`EngineEntry.runs`)."""
+        return cast("PhysicsModel", self.model)
+
+    @cached_property
+    def rows(self) -> Configurations:
+        """Where all engines are compared."""
+        return agreement_configurations(
+            self.declared.kinematics, self.request.settings.agreement, self.request.settings.seed
+        )
+
+    @cached_property
+    def seen(self) -> Measured:
+        """What the engine says along the sweep of every joint."""
+        rows = self.mechanism.sweep(self.settings.sweep_samples)
+        return self.model.measure(self.mechanism.all_values(rows), dynamic=1)
+
+    @property
+    def seen_contacts(self) -> Contacts:
+        """Contacts of links along the sweep of every joint."""
+        return cast("Contacts", self.seen.contacts)
+
+    @cached_property
+    def sweep(self) -> Touching:
+        """Contacts of bodies along the sweep of every joint."""
+        return touching(
+            self.seen_contacts,
+            self.mechanism,
+            self.prepared,
+            rows=1 + len(self.mechanism.travels) * self.settings.sweep_samples,
+            tolerance=self.settings.contact_depth * self.physics.size,
+        )
+
+    @cached_property
+    def servos(self) -> Servos:
+        """One for each leader."""
+        seen, resistance = self.seen, self.physics.resistance
+        return servos(self.mechanism, seen.inertia[0], seen.gravity, resistance, self.settings)
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """Where runs take place."""
+        return self.physics.simulation(self.sweep, self.seen, self.servos)
+
+    @cached_property
+    def efforts(self) -> FloatArray:
+        """Declared effort of every leader [N m or N]; infinite where none is declared or masses are made up."""
+        efforts = np.full(len(self.mechanism.travels), np.inf)
+        for leader, travel in enumerate(self.mechanism.travels):
+            effort = self.declared.joint_by_name[travel.joint].effort
+            carried = self.mechanism.moved[leader][self.mechanism.body_of_link]
+            links = [self.prepared.link_by_name[name] for name in self.mechanism.links]
+            made_up = any(
+                link.mass_added and link.method is not Method.NONE
+                for link, moves in zip(links, carried, strict=True)
+                if moves
+            )
+            if effort is not None and effort > 0.0 and not made_up:
+                efforts[leader] = effort
+        return efforts
+
+    @cached_property
+    def held(self) -> FreeRun:
+        """Held at rest by servos no stronger than `efforts`."""
+        return self._kept("it was held at rest", self.simulation.hold(self.efforts, self.settings.passive_seconds))
+
+    @cached_property
+    def released(self) -> FreeRun:
+        """Without servos, damping and friction."""
+        return self._kept("it was released", self.simulation.release(self.settings.passive_seconds))
+
+    @cached_property
+    def released_finely(self) -> FreeRun:
+        """The same with smaller time steps, as long as it is looked at."""
+        long = self.settings.step_seconds if self.entry.keeps_energy else self.settings.passive_seconds
+        return self.simulation.release(long, fine=True)
+
+    def _kept(self, when: str, run: FreeRun) -> FreeRun:
+        self.ends.append(RunEnd(when=when, speed=run.fastest, warnings=run.warnings))
+        return run
+
+    @cached_property
+    def drives(self) -> DriveSession:
+        """Every joint driven to both ends."""
+        session = drive_all(
+            self.simulation,
+            self.physics,
+            self.mechanism,
+            self.prepared,
+            seen=self.seen_contacts,
+            sweep=self.sweep,
+            settings=self.settings,
+            remaining=lambda: self.request.remaining,
+        )
+        for end in session.ends:
+            travel = self.mechanism.travels[end.drive.leader]
+            self.ends.append(
+                RunEnd(
+                    when=f"{travel.joint} was driven to {end.drive.end:.4g} {travel.unit}",
+                    speed=end.fastest,
+                    warnings=end.warnings,
+                    joint=travel.joint,
+                    told=float(np.abs(end.drive.speed).max()) * (self.physics.size if travel.turns else 1.0),
+                )
+            )
+        return session
+
+    @cached_property
+    def dropped(self) -> Dropped:
+        """On a floor."""
+        end = self.simulation.drop()
+        self.ends.append(RunEnd(when="it was dropped", speed=end.speed, warnings=end.warnings))
+        return end
+
+    def leave_poses(self, seen: Measured) -> None:
+        """Leave what the engine says of `rows` for the checks that compare engines."""
+        rows, loaded, contacts = self.rows, self.model.loaded, seen.contacts
+        write_poses(
+            self.request.work,
+            self.entry.name,
+            EnginePoses(
+                links=rows.links,
+                joints=rows.joints,
+                q=rows.q,
+                T_world_link=seen.T_world_link,
+                masses=np.array([loaded.masses.get(name, np.nan) for name in rows.links]),
+                total_mass=loaded.total_mass,
+                mass_matrix=seen.inertia,
+                gravity=seen.gravity[: rows.dynamic],
+                contacts=None if contacts is None else np.column_stack([contacts.row, contacts.links]),
+                contact_depth=None if contacts is None else contacts.depth,
+            ),
+        )
+
+    def travel(self, driven: Driven) -> Travel:
+        """Return the way of the joint that is driven."""
+        return self.mechanism.travels[driven.drive.leader]
+
+    def arrived(self, driven: Driven) -> bool:
+        """True if the joint got to its end."""
+        return abs(driven.drive.end - driven.reached) <= self.settings.reach * self.travel(driven).range
+
+    def separates(self, leader: int) -> NDArray[np.bool_]:
+        """Which pairs of `drives.sweep` a joint moves against each other, shape (pairs,)."""
+        moved = self.mechanism.moved[leader]
+        first, second = self.drives.sweep.bodies.T
+        result: NDArray[np.bool_] = moved[first] != moved[second]
+        return result
+
+    def excess_towards(self, driven: Driven) -> tuple[FloatArray, FloatArray]:
+        """Excess of each pair between rest and the end by kinematics alone (pairs, n), and the joint's values (n,)."""
+        travel, count = self.travel(driven), self.settings.sweep_samples
+        values = np.linspace(travel.lower, travel.upper, count)
+        side = values >= travel.rest if driven.drive.end == travel.upper else values <= travel.rest
+        rows = sweep_rows(driven.drive.leader, count)
+        return self.drives.sweep.excess[:, rows][:, side], values[side]
+
+
+def nothing_moves(context: EngineContext) -> str | None:
+    """Return the reason why there is nothing to move."""
+    return None if context.mechanism.travels else "no joint moves"
+
+
+def no_geometry(context: EngineContext) -> str | None:
+    """Return the reason why there is nothing that can touch a floor."""
+    return None if any(link.pieces for link in context.prepared.links) else "no link has geometry"
+
+
+def late(context: EngineContext) -> str | None:
+    """Return the reason why there is no time."""
+    return "time ran out before it" if context.request.remaining <= 0.0 else None
+
+
+def not_driven(context: EngineContext) -> str | None:
+    """Return the reason why joints were not driven and will not be."""
+    return None if "drives" in vars(context) else nothing_moves(context) or late(context)

@@ -1,0 +1,69 @@
+"""The stage of one engine: load, pose, contacts at rest, hold, drive, push, release, drop; and `poses-ENGINE.npz`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.checks.engine_drive import curves
+from kinematify.validation.engine_context import EngineContext
+
+if TYPE_CHECKING:
+    from kinematify.validation.stage import Recorder, StageRequest
+
+_LOAD, _POSES, _REST = "01", "02", "03"
+_GATHERING = ("07", "10")
+"""Numbers of the checks that look at all runs; these come last."""
+_ORDER = (_LOAD, _POSES, _REST, "04", "08", "12", "05", "06", "09", "11", *_GATHERING)
+_PINOCCHIO = "KV606"
+
+
+def run(request: StageRequest, recorder: Recorder, *, engine: str) -> None:
+    """Tell all checks of an engine; see `kinematify.validation.stage`.
+
+    Args:
+        request: Of the run; `prepared.urdf` is read from its folder.
+        recorder: Told the results.
+        engine: Of `ENGINES`.
+    """
+    context = EngineContext(request=request, entry=ENGINES[engine])
+    if context.entry.runs:
+        _run(context, recorder)
+    else:
+        _compute(context, recorder)
+
+
+def _compute(context: EngineContext, recorder: Recorder) -> None:
+    """Load the model into an engine that only computes, and leave its poses."""
+    with recorder.check(_PINOCCHIO, context.entry.name) as result:
+        CHECKS[_PINOCCHIO].run(result, context)
+    if "model" in vars(context) and recorder.wants("KV601", "KV602", "KV603", "KV605"):
+        context.leave_poses(context.model.measure(context.rows.q, dynamic=context.rows.dynamic))
+
+
+def _run(context: EngineContext, recorder: Recorder) -> None:
+    entry = context.entry
+    checks = {number: CHECKS[entry.family + number] for number in _ORDER}
+    joints, most = len(context.mechanism.joints), entry.most_joints
+    too_many = None if most is None or joints <= most else f"{entry.title} handles {most} moving joints"
+    gathering = recorder.wants(*(checks[number].id for number in _GATHERING))
+    obstacle: str | None = None
+    for number, check in checks.items():
+        # What is wanted of none is not told; the poses are always left, and those that gather need all runs.
+        if number not in {_LOAD, _POSES} and not gathering and not recorder.wants(check.id):
+            continue
+        with recorder.check(check.id, entry.name) as result:
+            if too_many:
+                result.skip(f"{too_many}; the model has {joints}")
+            elif obstacle:
+                result.block(obstacle)
+            else:
+                check.run(result, context)
+        if number == _LOAD and not ("model" in vars(context) and context.model.complete):
+            obstacle = f"{entry.title} does not load the model as it is in the file ({check.id})"
+        if number == _REST and "sweep" not in vars(context):
+            obstacle = f"the contacts at rest could not be measured ({check.id})"
+        if number == "05" and "drives" in vars(context):
+            for curve in curves(context):
+                recorder.summarise(curve)

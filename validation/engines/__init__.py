@@ -1,1 +1,0 @@
-"""Behaviour in physics engines, each in its own process."""
