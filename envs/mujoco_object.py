@@ -12,9 +12,8 @@ from kinematify.config.validation import load_settings
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
 from kinematify.envs.reading import Reading
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.mujoco_model import measure
-from kinematify.simulation.mujoco_model import compiled, parse, with_allowances
 from kinematify.simulation.contacts import touching
+from kinematify.simulation.mujoco_model import compiled, measure, parse, with_allowances
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
@@ -22,9 +21,9 @@ if TYPE_CHECKING:
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
-    from kinematify.simulation.prepared import Prepared
-    from kinematify.simulation.mujoco_model import Source
     from kinematify.simulation.contacts import Touching
+    from kinematify.simulation.mujoco_model import ParsedModel
+    from kinematify.simulation.prepared import Prepared
 
 PREFIX = "object "
 """Before the names of the object's links, joints and shapes."""
@@ -42,7 +41,7 @@ _STIFF = 0.999  # share of its creep that friction takes away
 class ObjectSource:
     """A parsed object whose contacts are settled; worlds are compiled from copies of it."""
 
-    source: Source
+    source: ParsedModel
     touching: Touching
 
 

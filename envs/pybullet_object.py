@@ -16,8 +16,8 @@ from scipy.spatial.transform import Rotation
 from kinematify.config.validation import load_settings
 from kinematify.envs.reading import Reading
 from kinematify.robot.robot import forward_kinematics
-from kinematify.simulation.pybullet_world import load
 from kinematify.simulation.contacts import deepest, touching
+from kinematify.simulation.pybullet_world import load
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.prepared import load_prepared
 from kinematify.validation.contact_agreement import compare_contacts
 from kinematify.validation.engine_results import EngineResults
-from kinematify.simulation.configurations import GRAVITY
-from kinematify.validation.engines.loading import ENGINE_TITLES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -61,7 +61,7 @@ def _compare_poses(check: OpenCheck, left: EngineResults) -> None:
     for engine, poses in left.engines.items():
         for link in _lost(poses, left.rows.links):
             check.find(
-                f"{ENGINE_TITLES[engine]} has lost the link {link}: it has no pose.",
+                f"{ENGINES[engine].title} has lost the link {link}: it has no pose.",
                 "Give the link a mass and a name that is not used twice.",
                 link=link,
                 engine=engine,
@@ -127,7 +127,7 @@ def _tell_pose(
     excess = np.nan_to_num(error / limits)
     row, what = (int(index) for index in np.unravel_index(int(np.argmax(excess)), excess.shape))
     value, unit = float(error[row, what]), ("m", "rad")[what]
-    who = "All engines have" if engine is None else f"{ENGINE_TITLES[engine]} has"
+    who = "All engines have" if engine is None else f"{ENGINES[engine].title} has"
     check.find(
         f"{who} the link {joint.child} {value:.3g} {unit} away from where the {joint.kind} joint {joint.name} of the "
         f"file puts it relative to {joint.parent}.",
@@ -225,7 +225,7 @@ def _tell_dynamics(
         row = int(np.argmax(column))
         child = left.model.kinematics.joint_by_name[name].child
         check.find(
-            f"{ENGINE_TITLES[engine]} and {ENGINE_TITLES[REFERENCE]} differ in {what.format(joint=name)} by "
+            f"{ENGINES[engine].title} and {ENGINES[REFERENCE].title} differ in {what.format(joint=name)} by "
             f"{column[row]:.2%} of it.",
             f"Check mass, centre of mass and inertia of {child} and of what is fixed to it: a body can have no moment "
             "above the sum of the two others, and engines repair such values differently.",
@@ -265,7 +265,7 @@ def _compare_mass(
     if np.isclose(found, expected, rtol=left.settings.mass_error, atol=1e-9):
         return
     check.find(
-        f"{'The model' if link is None else f'The link {link}'} weighs {found:.6g} kg in {ENGINE_TITLES[engine]} and "
+        f"{'The model' if link is None else f'The link {link}'} weighs {found:.6g} kg in {ENGINES[engine].title} and "
         f"{expected:.6g} kg in the file.",
         "Give every link an <inertial> element with a mass above zero, written as a plain decimal number.",
         link=link,

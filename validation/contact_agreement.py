@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.prepared import load_prepared
-from kinematify.validation.engines.loading import ENGINE_TITLES
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
-    from kinematify.validation.engine_results import EngineResults
     from kinematify.simulation.configurations import EnginePoses
+    from kinematify.validation.engine_results import EngineResults
     from kinematify.validation.stage import OpenCheck
 
 _TOLD_PAIRS = 10
@@ -84,7 +84,7 @@ def _views(left: EngineResults, poses: EnginePoses, engine: str | None) -> list[
         row, first, second = poses.contacts[index].tolist()
         overlap = _Overlap(links=(first, second), depth=float(poses.contact_depth[index]))
         overlaps[row, int(bodies[index, 0]), int(bodies[index, 1])] = overlap
-    title = "the exact geometry" if engine is None else ENGINE_TITLES[engine]
+    title = "the exact geometry" if engine is None else ENGINES[engine].title
     return [_View(engine=engine, title=title, overlaps=overlaps)]
 
 

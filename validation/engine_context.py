@@ -17,16 +17,14 @@ from kinematify.simulation.engines import open_engine
 from kinematify.simulation.prepared import Method, load_prepared
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
     from kinematify.robot.mechanism import Travel
+    from kinematify.robot.robot import Robot
     from kinematify.simulation.configurations import Configurations
-    from kinematify.simulation.contacts import Contacts, Touching
+    from kinematify.simulation.contacts import Touching
     from kinematify.simulation.drive import Driven, DriveSession, Servos
     from kinematify.simulation.engine import Dropped, Engine, EngineModel, FreeRun, Measured, PhysicsModel, Simulation
     from kinematify.simulation.engines import EngineEntry
@@ -65,7 +63,7 @@ class EngineContext:
         return self.request.settings.engines
 
     @cached_property
-    def declared(self) -> DeclaredModel:
+    def declared(self) -> Robot:
         """The file without its geometry."""
         return read_without_geometry(self.request.urdf)
 
@@ -111,16 +109,11 @@ class EngineContext:
         rows = self.mechanism.sweep(self.settings.sweep_samples)
         return self.model.measure(self.mechanism.all_values(rows), dynamic=1)
 
-    @property
-    def seen_contacts(self) -> Contacts:
-        """Contacts of links along the sweep of every joint."""
-        return cast("Contacts", self.seen.contacts)
-
     @cached_property
     def sweep(self) -> Touching:
         """Contacts of bodies along the sweep of every joint."""
         return touching(
-            self.seen_contacts,
+            self.seen.contacts,
             self.mechanism,
             self.prepared,
             rows=1 + len(self.mechanism.travels) * self.settings.sweep_samples,
@@ -183,7 +176,7 @@ class EngineContext:
             self.physics,
             self.mechanism,
             self.prepared,
-            seen=self.seen_contacts,
+            seen=self.seen.contacts,
             sweep=self.sweep,
             settings=self.settings,
             remaining=lambda: self.request.remaining,
@@ -210,7 +203,7 @@ class EngineContext:
 
     def leave_poses(self, seen: Measured) -> None:
         """Leave what the engine says of `rows` for the checks that compare engines."""
-        rows, loaded, contacts = self.rows, self.model.loaded, seen.contacts
+        rows, loaded, contacts = self.rows, self.model.loaded, seen.contacts if self.entry.runs else None
         write_poses(
             self.request.work,
             self.entry.name,

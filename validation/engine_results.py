@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.robot.read import read_without_geometry
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.simulation.configurations import agreement_configurations, read_poses
-from kinematify.validation.engines.loading import ENGINE_TITLES
+from kinematify.simulation.engines import ENGINES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -104,6 +104,6 @@ class EngineResults:
         missing = [engine for engine in wanted if engine in self.chosen and engine not in there]
         if missing:
             reasons = (
-                f"{ENGINE_TITLES[e]} {self.failures.get(e, 'left no figures, see its own checks')}" for e in missing
+                f"{ENGINES[e].title} {self.failures.get(e, 'left no figures, see its own checks')}" for e in missing
             )
             check.block(f"not everything could be compared: {'; '.join(reasons)}")

@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.checks.engine_drive import curves
 from kinematify.validation.engine_context import EngineContext
+from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from kinematify.validation.stage import Recorder, StageRequest
 
 _LOAD, _POSES, _REST = "01", "02", "03"
@@ -65,5 +67,20 @@ def _run(context: EngineContext, recorder: Recorder) -> None:
         if number == _REST and "sweep" not in vars(context):
             obstacle = f"the contacts at rest could not be measured ({check.id})"
         if number == "05" and "drives" in vars(context):
-            for curve in curves(context):
+            for curve in _curves(context):
                 recorder.summarise(curve)
+
+
+def _curves(context: EngineContext) -> Iterator[JointCurve]:
+    """Yield how the joints were driven, for whoever draws it."""
+    for item in context.drives.driven:
+        commanded, reached, force, depth = (tuple(map(float, row)) for row in item.looks)
+        yield JointCurve(
+            joint=context.travel(item).joint,
+            engine=context.entry.name,
+            upper=bool(item.drive.end == context.travel(item).upper),
+            commanded=commanded,
+            reached=reached,
+            force=force,
+            depth=depth,
+        )

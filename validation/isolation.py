@@ -43,9 +43,10 @@ _PRELOADED = (
     "kinematify.config.validation",
     "kinematify.manipulation.request",
     "kinematify.validation.asset.stage",
-    "kinematify.simulation.prepare",
+    "kinematify.validation.prepare_stage",
     "kinematify.validation.geometry.stage",
     "kinematify.validation.evidence.stage",
+    "kinematify.validation.engine_stage",
     "kinematify.validation.agreement",
 )
 """What requests hold and stages need, imported once for all of them; not the libraries of engines, one for each."""
@@ -56,8 +57,8 @@ class Stage:
     """A group of checks that runs in one process."""
 
     name: str
-    function: str
-    """``module:function`` with the signature ``(request, recorder)``."""
+    function: str | Callable[[StageRequest, Recorder], None]
+    """What runs; as ``module:function`` where its module is not to be imported here."""
     checks: tuple[tuple[str, str | None], ...]
     """Every (id, engine) that it tells if nothing goes wrong."""
     after: tuple[str, ...] = ()
@@ -151,8 +152,12 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     # Imported here, and by the server: the sooner the caller starts that, the sooner everything ends.
     from kinematify.validation.stage import Recorder  # noqa: PLC0415
 
-    module, function = stage.function.split(":")
-    run: Callable[[StageRequest, Recorder], None] = getattr(importlib.import_module(module), function)
+    run: Callable[[StageRequest, Recorder], None]
+    if isinstance(stage.function, str):
+        module, function = stage.function.split(":")
+        run = getattr(importlib.import_module(module), function)
+    else:
+        run = stage.function
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
         run(request, Recorder(sender.send, request.selected))
         sender.send(None)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import agreement, engines, evidence, meshes, task
-from kinematify.validation.checks import checks_of
+from kinematify.simulation import engines
+from kinematify.validation import engine_stage
+from kinematify.validation.catalogue import agreement, evidence, meshes, task
+from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.isolation import Stage
 
 if TYPE_CHECKING:
@@ -13,8 +16,8 @@ if TYPE_CHECKING:
 
     from kinematify.validation.catalogue import Check
 
-ENGINES = ("mujoco", "pybullet", "pinocchio")
-"""Engines that can be chosen; FCL and the exact geometry are always there."""
+ENGINES = tuple(name for name, entry in engines.ENGINES.items() if entry.extra is None)
+"""Engines that every installation has; FCL and the exact geometry are always there."""
 
 CheckKey = tuple[str, str | None]
 """Id of a check and the engine it runs in."""
@@ -30,7 +33,7 @@ def asset_stage() -> Stage:
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
     """Everything that moves the model, the longest first; engines that were not chosen are left out."""
     stages = [
-        Stage(name="prepare", function="kinematify.simulation.prepare:run", checks=()),
+        Stage(name="prepare", function="kinematify.validation.prepare_stage:run", checks=()),
         Stage(
             name="geometry",
             function="kinematify.validation.geometry.stage:run",
@@ -39,8 +42,8 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(evidence.CHECKS)),
     ]
     for engine in chosen:
-        checks = tuple(key for key in keys(engines.CHECKS + agreement.CHECKS) if key[1] == engine)
-        function = f"kinematify.validation.engines.{engine}_stage:run"
+        checks = tuple(key for key in keys(tuple(CHECKS.values())) if key[1] == engine)
+        function = partial(engine_stage.run, engine=engine)
         stages.append(Stage(name=engine, function=function, checks=checks, after=("prepare",)))
     return stages
 

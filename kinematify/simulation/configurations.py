@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import AgreementSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import RobotDescription
+    from kinematify.robot.robot import Joint, Robot
 
 GRAVITY = 9.81
 """Along -z of the root link's frame [m/s^2]; every engine is set to it."""
@@ -83,11 +83,11 @@ class EnginePoses:
     """Deepest point of each of `contacts` [m], positive where they overlap, shape (c,)."""
 
 
-def agreement_configurations(description: RobotDescription, settings: AgreementSettings, seed: int) -> Configurations:
+def agreement_configurations(description: Robot, settings: AgreementSettings, seed: int) -> Configurations:
     """Return the same rows in every process: zero, rest, quasi-random ones, and both ends of every joint.
 
     Args:
-        description: The tree; meshes play no part (`DeclaredModel.kinematics`).
+        description: The tree; meshes play no part (`Robot.kinematics`).
         settings: How many rows.
         seed: Of the run (`ValidationSettings.seed`).
     """
@@ -133,14 +133,12 @@ def _at_ends(middle: FloatArray, lower: FloatArray, upper: FloatArray, rows: int
     return values
 
 
-def _with_followers(
-    description: RobotDescription, leaders: list[str], joints: tuple[str, ...], values: FloatArray
-) -> FloatArray:
+def _with_followers(description: Robot, leaders: list[str], joints: tuple[str, ...], values: FloatArray) -> FloatArray:
     rows = [joint_values(description, dict(zip(leaders, row.tolist(), strict=True))) for row in values]
     return np.array([[row[name] for name in joints] for row in rows]).reshape(len(values), len(joints))
 
 
-def link_poses(description: RobotDescription, rows: Configurations) -> FloatArray:
+def link_poses(description: Robot, rows: Configurations) -> FloatArray:
     """Return the pose of every link in every row, the root at the origin, shape (n, L, 4, 4)."""
     index = {name: k for k, name in enumerate(rows.links)}
     column = {name: k for k, name in enumerate(rows.joints)}
@@ -151,7 +149,7 @@ def link_poses(description: RobotDescription, rows: Configurations) -> FloatArra
     return poses
 
 
-def _motions(joint: DescribedJoint, values: FloatArray) -> FloatArray:
+def _motions(joint: Joint, values: FloatArray) -> FloatArray:
     """Transform of the child in the joint frame for every value [rad or m], shape (n, 4, 4)."""
     motions = np.tile(np.eye(4), (len(values), 1, 1))
     if joint.kind is JointType.PRISMATIC:

@@ -64,8 +64,8 @@ class Measured:
 
     T_world_link: FloatArray
     """The root's frame is the world, shape (n, L, 4, 4); NaN for links that the engine lost."""
-    contacts: Contacts | None
-    """None: the engine sees none."""
+    contacts: Contacts
+    """None in an engine that only computes."""
     gravity: FloatArray
     """Torques and forces that hold the model still [N m or N], shape (n, J)."""
     inertia: FloatArray

@@ -137,9 +137,7 @@ class MujocoModel:
 
     def contacts(self, values: FloatArray) -> Contacts:
         """Contacts in every row."""
-        contacts = self.measure(values, dynamic=0).contacts
-        assert contacts is not None
-        return contacts
+        return self.measure(values, dynamic=0).contacts
 
     def simulation(self, sweep: Touching, seen: Measured, servos: Servos) -> MujocoSimulation:
         """Compile the models for runs."""
@@ -253,7 +251,7 @@ class MujocoSimulation:
         column = self._mechanism.joints.index(self._mechanism.travels[leader].joint)
         force = self.servos.stiffness[leader] * (told - run.q[:, column])
         force -= self.servos.damping[leader] * run.v[:, column]
-        return np.clip(force, -self.servos.force[leader], self.servos.force[leader])
+        return np.asarray(np.clip(force, -self.servos.force[leader], self.servos.force[leader]))
 
     def drop(self) -> Dropped:
         """Let the model fall on a floor."""

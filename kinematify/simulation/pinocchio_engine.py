@@ -11,6 +11,7 @@ import pinocchio as pin
 from lxml import etree
 
 from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.contacts import NO_CONTACTS
 from kinematify.simulation.engine import LoadedJoint, LoadedModel, Measured, Refused
 
 if TYPE_CHECKING:
@@ -124,7 +125,7 @@ class PinocchioModel:
                 upper = np.triu(pin.crba(model, data, q))
                 matrices.append(_picked(upper + np.triu(upper, 1).T, velocity))
         inertia = np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1])
-        return Measured(T_world_link=T_world_link, contacts=None, gravity=gravity, inertia=inertia)
+        return Measured(T_world_link=T_world_link, contacts=NO_CONTACTS, gravity=gravity, inertia=inertia)
 
     def _configuration(self, values: FloatArray) -> FloatArray:
         q = pin.neutral(self.model)

@@ -1,4 +1,4 @@
-"""The stage `prepare`: it tells no checks, it writes what the engine stages load."""
+"""Write what engines load: convex pieces, masses and inertias that they can use, names and joints as in the file."""
 
 from __future__ import annotations
 
@@ -12,24 +12,15 @@ from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
 from kinematify.robot.write import write_robot
 from kinematify.simulation.prepared import URDF_FILE, Prepared, PreparedLink, write_record
-from kinematify.validation.left_model import model_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config.validation import PrepareSettings
     from kinematify.model.masses import PreparedInertial
-    from kinematify.validation.stage import Recorder, StageRequest
 
 _MESH_FOLDER = "prepared_meshes"
 _NAME = "prepared"  # short, because PyBullet crashes on long names
-
-
-def run(request: StageRequest, recorder: Recorder) -> None:
-    """Write `prepared.urdf` and `prepared.json` (`kinematify.simulation.prepared`)."""
-    del recorder  # what was changed is told by the checks that look at it
-    model = model_of(request)
-    prepare(model, request.work, request.settings.prepare)
 
 
 def prepare(model: Robot, work: Path, settings: PrepareSettings) -> Prepared:

@@ -82,7 +82,7 @@ class PybulletEngine:
     def _printed(self) -> list[str]:
         ctypes.CDLL(None).fflush(None)
         try:
-            lines = self.log.readtext_of(encoding="utf-8", errors="replace").splitlines()
+            lines = self.log.read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:
             return []
         return [line.strip() for line in lines if line.strip() and not any(word in line for word in _CHATTER)]

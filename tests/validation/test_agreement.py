@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,10 +15,6 @@ from hypothesis import strategies as st
 
 from kinematify.config.validation import load_settings
 from kinematify.robot.read import read_model
-from kinematify.simulation.prepare import prepare
-from kinematify.simulation.prepared import URDF_FILE, load_prepared
-from kinematify.validation import agreement
-from kinematify.validation.engines import mujoco_stage, pinocchio_stage, pybullet_stage
 from kinematify.simulation.configurations import (
     Configurations,
     EnginePoses,
@@ -25,7 +22,11 @@ from kinematify.simulation.configurations import (
     read_poses,
     write_poses,
 )
-from kinematify.validation.engines.loading import LoadedJoint, LoadedModel, compare_with_file
+from kinematify.simulation.engine import LoadedJoint, LoadedModel
+from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import URDF_FILE, load_prepared
+from kinematify.validation import agreement, engine_stage
+from kinematify.validation.checks.engine_loading import compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
 from tests.places import BENCH
@@ -60,8 +61,8 @@ def arm() -> Model:
 def ran(tmp_path_factory: pytest.TempPathFactory) -> StageRequest:
     """The request of an arm that all engines have seen."""
     request = prepared_request(arm(), tmp_path_factory.mktemp("arm"), seconds=10_000.0)
-    for stage in (mujoco_stage, pybullet_stage, pinocchio_stage):
-        tell(stage.run, request)
+    for engine in ENGINES:
+        tell(partial(engine_stage.run, engine=engine), request)
     return request
 
 
@@ -247,7 +248,7 @@ def test_pinocchio_tells_other_limits_and_masses(tmp_path: Path) -> None:
     request = prepared_request(arm(), tmp_path)
     path = request.work / URDF_FILE
     path.write_text(path.read_text().replace('upper="0.2"', 'upper="0.3"').replace('value="0.1"', 'value="0.2"'))
-    found = {(f.joint, f.link): f for f in tell(pinocchio_stage.run, request).results["KV606"].findings}
+    found = {(f.joint, f.link): f for f in tell(partial(engine_stage.run, engine="pinocchio"), request).results["KV606"].findings}
     assert set(found) == {("tool_joint", None), (None, "tip")}
     assert found[None, "tip"].value == pytest.approx(0.2)
 
@@ -256,7 +257,7 @@ def test_pinocchio_that_refuses_is_a_finding(tmp_path: Path) -> None:
     request = prepared_request(arm(), tmp_path)
     path = request.work / URDF_FILE
     path.write_text(path.read_text().replace('<child link="lower"/>', '<child link="upper"/>'))
-    (finding,) = tell(pinocchio_stage.run, request).results["KV606"].findings
+    (finding,) = tell(partial(engine_stage.run, engine="pinocchio"), request).results["KV606"].findings
     assert "refuses" in finding.message
     assert not (request.work / "poses-pinocchio.npz").exists()
 
@@ -316,8 +317,8 @@ def test_configurations_stay_within_limits_and_caps(
 def test_engines_agree_on_panda(tmp_path: Path) -> None:
     request = replace(prepared_request(cabinet(), tmp_path), urdf=PANDA.resolve())
     prepare(read_model(PANDA), tmp_path, request.settings.prepare)
-    for stage in (mujoco_stage, pybullet_stage, pinocchio_stage):
-        tell(stage.run, request)
+    for engine in ENGINES:
+        tell(partial(engine_stage.run, engine=engine), request)
     results = compared(request)
     assert {name: (r.status, r.reason) for name, r in results.items() if r.status is not Status.PASS} == {}
 

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from kinematify.config.validation import load_settings
+from kinematify.simulation.configurations import read_poses
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.checks import checks_of
 from kinematify.validation.engine_results import EXACT
-from kinematify.simulation.configurations import read_poses
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.geometry.stage import run
 from kinematify.validation.report import JointSummary, PairTable

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,14 @@ import pytest
 from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import Mechanism, sweep_rows
 from kinematify.robot.read import read_model
+from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
-from kinematify.validation.catalogue.engines import CHECKS
-from kinematify.simulation.configurations import agreement_configurations, read_poses
-from kinematify.validation.engines.freely import find_drop, find_growth
-from kinematify.validation.engines.mujoco_stage import run
-from kinematify.validation.engines.placed import link_poses
-from kinematify.validation.engines.run_end import RunEnd, find_unstable
+from kinematify.validation import engine_stage
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.checks.engine_rest import find_drop, find_growth
+from kinematify.validation.checks.engine_stability import find_unstable
+from kinematify.validation.engine_context import RunEnd
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from kinematify.validation.stage import OpenCheck, StageRequest
 from tests.places import BENCH
@@ -34,7 +35,8 @@ from tests.validation.engine_models import (
     tell,
 )
 
-IDS = {check.id for check in CHECKS if "mujoco" in check.engines}
+IDS = {check.id for check in CHECKS.values() if "mujoco" in check.engines}
+run = partial(engine_stage.run, engine="mujoco")
 PANDA = BENCH / "robots/panda/model.urdf"
 
 

@@ -27,9 +27,9 @@ from kinematify.model.masses import lifted
 from kinematify.robot.read import read_model
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rpy_of
-from kinematify.simulation.prepare import run
 from kinematify.simulation.prepared import Method, Prepared, load_prepared
 from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.prepare_stage import run
 from kinematify.validation.stage import Recorder, StageRequest
 from tests.engines import quiet
 

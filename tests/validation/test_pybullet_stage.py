@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,19 +12,18 @@ import trimesh
 from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_model
+from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
-from kinematify.validation.catalogue.engines import CHECKS
-from kinematify.simulation.configurations import agreement_configurations, read_poses
-from kinematify.validation.engines.placed import link_poses
-from kinematify.validation.engines.pybullet_measure import measure
-from kinematify.simulation.pybullet_world import load
-from kinematify.validation.engines.pybullet_stage import run
+from kinematify.simulation.pybullet_engine import PybulletEngine
+from kinematify.validation import engine_stage
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from tests.places import BENCH
 from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
 
-IDS = {check.id for check in CHECKS if "pybullet" in check.engines}
+IDS = {check.id for check in CHECKS.values() if "pybullet" in check.engines}
+run = partial(engine_stage.run, engine="pybullet")
 PANDA = BENCH / "robots/panda/model.urdf"
 
 
@@ -189,10 +189,9 @@ def test_more_joints_than_pybullet_has_room_for_are_not_given_to_it(tmp_path: Pa
 def test_contacts_do_not_depend_on_what_was_looked_at_before(tmp_path: Path) -> None:
     request = prepared_request(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
     mechanism, prepared = Mechanism(description=read_model(request.urdf).kinematics), load_prepared(tmp_path)
-    loaded = load(prepared.urdf, mechanism, prepared, step=0.004, looking=True)
+    loaded = PybulletEngine(settings=load_settings().engines, log=tmp_path / "log").load(prepared, mechanism)
     values = mechanism.all_values(mechanism.sweep(15))
-    forth, back = (measure(loaded, rows, dynamic=0, poses=False).contacts for rows in (values, values[::-1]))
-    loaded.disconnect()
+    forth, back = (loaded.contacts(rows) for rows in (values, values[::-1]))
     last = len(values) - 1
     there = {(r, *pair): d for r, pair, d in zip(forth.row.tolist(), forth.links.tolist(), forth.depth, strict=True)}
     again = {
@@ -212,9 +211,8 @@ def test_margin_of_hulls_is_not_counted(tmp_path: Path, offset: float, depth: fl
     path.write_text(f'<robot name="two">{links}{joint}</robot>')
     model = read_model(path)
     prepared = prepare(model, tmp_path, load_settings().prepare)
-    loaded = load(prepared.urdf, Mechanism(description=model.kinematics), prepared, step=0.004, looking=True)
-    contacts = measure(loaded, np.array([[offset]]), dynamic=0).contacts
-    loaded.disconnect()
+    engine = PybulletEngine(settings=load_settings().engines, log=tmp_path / "log")
+    contacts = engine.load(prepared, Mechanism(description=model.kinematics)).contacts(np.array([[offset]]))
     assert np.max(contacts.depth, initial=0.0) == pytest.approx(depth, abs=2e-4)
 
 

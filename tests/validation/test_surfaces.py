@@ -16,8 +16,8 @@ from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_model, read_without_geometry
-from kinematify.validation.geometry.surfaces import surfaces_meet
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.surfaces import surfaces_meet
 from kinematify.validation.run import validate
 from tests.known import known_object, sliding
 from tests.validation.planted import write

@@ -59,15 +59,4 @@ CHECKS: tuple[Check, ...] = (
         matters="A mass that an engine drops or makes up changes every motion, and no message tells.",
         remedy="Give every link an <inertial> element with a mass above zero.",
     ),
-    Check(
-        id="KV606",
-        title="Pinocchio loads the same model",
-        severity=Severity.ERROR,
-        blame=Blame.ENGINE,
-        engines=("pinocchio",),
-        verifies="Pinocchio reads the file and has the same moving joints with the same types and limits, and the same "
-        "masses.",
-        matters="It is the analytical reference for the engines, and what many planners and controllers use.",
-        remedy="Write the joint or link that is named with plain decimal numbers and a unique name.",
-    ),
 )

@@ -9,6 +9,10 @@ from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (
     collision,
     drives,
+    engine_drive,
+    engine_loading,
+    engine_rest,
+    engine_stability,
     file_joints,
     file_names,
     file_numbers,
@@ -30,6 +34,7 @@ _FAMILIES = (
     file_text, file_names, file_tree, file_joints, file_numbers, file_shapes, file_references,
     masses, inertias, limits, drives, collision,
     rest, motion, together,
+    engine_loading, engine_rest, engine_drive, engine_stability,
 )  # fmt: skip
 """Read for the checks that they register."""
 

@@ -6,17 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.validation.left_model import model_of
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import FeedbackRow, engine_check
 from kinematify.validation.engine_context import late, not_driven, nothing_moves
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.geometry.surfaces import surfaces_meet
-from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from kinematify.robot.mechanism import Travel
     from kinematify.simulation.drive import Driven
     from kinematify.validation.engine_context import EngineContext
@@ -131,21 +126,6 @@ def _say_left(check: OpenCheck, context: EngineContext) -> None:
         check.skip(f"time ran out before {context.drives.left} of the drives")
 
 
-def curves(context: EngineContext) -> Iterator[JointCurve]:
-    """Yield how the joints were driven, for whoever draws it."""
-    for item in context.drives.driven:
-        commanded, reached, force, depth = (tuple(map(float, row)) for row in item.looks)
-        yield JointCurve(
-            joint=context.travel(item).joint,
-            engine=context.entry.name,
-            upper=bool(item.drive.end == context.travel(item).upper),
-            commanded=commanded,
-            reached=reached,
-            force=force,
-            depth=depth,
-        )
-
-
 def _find_blocked(check: OpenCheck, context: EngineContext, driven: Driven) -> None:
     travel = context.travel(driven)
     where = f"Driven from {travel.rest:.4g} towards {driven.drive.end:.4g} {travel.unit}"
@@ -194,6 +174,9 @@ def _find_blocked(check: OpenCheck, context: EngineContext, driven: Driven) -> N
 
 def _stopped_by_surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, until: float) -> bool:
     """Whether the declared surfaces of two links meet as well, on the way from rest to where the pieces are deepest."""
+    from kinematify.validation.geometry.surfaces import surfaces_meet  # noqa: PLC0415 - exact geometry takes a while
+    from kinematify.validation.left_model import model_of  # noqa: PLC0415 - as above
+
     leader, (_, values) = driven.drive.leader, context.excess_towards(driven)
     away = np.abs(values - context.travel(driven).rest)
     way = np.argsort(away)[: 1 + int(np.count_nonzero(away < abs(until - context.travel(driven).rest)))]

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
-    from kinematify.robot.robot import DescribedJoint
+    from kinematify.robot.robot import Joint, Robot
     from kinematify.simulation.configurations import Configurations
     from kinematify.simulation.engine import LoadedJoint, LoadedModel
     from kinematify.simulation.prepared import Prepared
@@ -108,7 +107,7 @@ def _vector(values: FloatArray) -> str:
 
 
 def compare_with_file(
-    check: OpenCheck, model: DeclaredModel, prepared: Prepared, loaded: LoadedModel, mass_error: float
+    check: OpenCheck, model: Robot, prepared: Prepared, loaded: LoadedModel, mass_error: float
 ) -> None:
     """Add a finding for every joint or mass that an engine has otherwise than it was given.
 
@@ -148,7 +147,7 @@ def compare_with_file(
         )
 
 
-def _compare_joint(check: OpenCheck, engine: str, joint: DescribedJoint, loaded: LoadedJoint | None) -> None:
+def _compare_joint(check: OpenCheck, engine: str, joint: Joint, loaded: LoadedJoint | None) -> None:
     said = _difference(engine, joint, loaded)
     if said:
         check.find(
@@ -160,7 +159,7 @@ def _compare_joint(check: OpenCheck, engine: str, joint: DescribedJoint, loaded:
         )
 
 
-def _difference(engine: str, joint: DescribedJoint, loaded: LoadedJoint | None) -> str:
+def _difference(engine: str, joint: Joint, loaded: LoadedJoint | None) -> str:
     if loaded is None:
         return (
             f"The joint {joint.name} ({joint.kind}) does not move in {engine}, which has lost it or taken it for fixed."
@@ -179,7 +178,7 @@ def _difference(engine: str, joint: DescribedJoint, loaded: LoadedJoint | None) 
     return ""
 
 
-def _ends(joint: DescribedJoint, loaded: LoadedJoint) -> Iterator[tuple[float, float]]:
+def _ends(joint: Joint, loaded: LoadedJoint) -> Iterator[tuple[float, float]]:
     yield joint.lower, loaded.lower
     yield joint.upper, loaded.upper
 

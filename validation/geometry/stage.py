@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from kinematify.geometry.scene import read_scene
 from kinematify.robot.joint_type import JointType
+from kinematify.simulation.configurations import write_poses
 from kinematify.validation.checks import checks_of
 from kinematify.validation.engine_results import EXACT
-from kinematify.simulation.configurations import write_poses
 from kinematify.validation.geometry.exact_contacts import exact_contacts
 from kinematify.validation.geometry.look import GeometryLook
 from kinematify.validation.left_model import model_of

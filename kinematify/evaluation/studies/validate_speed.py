@@ -26,14 +26,17 @@ from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import find_objects
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_model
+from kinematify.simulation.mujoco_engine import MujocoEngine
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import load_prepared
-from kinematify.validation.engines import mujoco_measure, mujoco_model, pybullet_measure, pybullet_model
+from kinematify.simulation.pybullet_engine import PybulletEngine
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.mujoco_model import CompiledModel
+    from kinematify.simulation.pybullet_world import PybulletWorld
 
 GOALS = {"panda": 6.0, "cabinet_41083": 3.0, "h1": 20.0}
 """Seconds on two cores for all checks."""
@@ -105,17 +108,10 @@ def _ratios(urdf: Path, folder: Path) -> tuple[int, float, float]:
     prepare(model, folder, settings.prepare)
     prepared, mechanism = load_prepared(folder), Mechanism(description=model.kinematics)
     values = mechanism.all_values(mechanism.sweep(settings.engines.sweep_samples))
-    source = mujoco_model.parse(prepared.urdf, mechanism, step=settings.engines.time_step)
-    ours = mujoco_model.compiled(source)
-    by_mujoco = _ratio(
-        lambda: mujoco_measure.measure(ours, values, dynamic=1, threads=1), lambda: _bare_mujoco(ours, values)
-    )
-    theirs = pybullet_model.load(
-        prepared.urdf, mechanism, prepared, step=settings.engines.pybullet_time_step, looking=True
-    )
-    by_pybullet = _ratio(
-        lambda: pybullet_measure.measure(theirs, values, dynamic=1), lambda: _bare_pybullet(theirs, values)
-    )
+    ours = MujocoEngine(settings=settings.engines, threads=1, said=[]).load(prepared, mechanism)
+    by_mujoco = _ratio(lambda: ours.measure(values, dynamic=1), lambda: _bare_mujoco(ours.measuring, values))
+    theirs = PybulletEngine(settings=settings.engines, log=folder / "pybullet.log").load(prepared, mechanism)
+    by_pybullet = _ratio(lambda: theirs.measure(values, dynamic=1), lambda: _bare_pybullet(theirs.looking, values))
     return len(values), by_mujoco, by_pybullet
 
 
@@ -131,14 +127,14 @@ def _timed(work: Callable[[], object]) -> float:
     return time.perf_counter() - start
 
 
-def _bare_mujoco(loaded: mujoco_model.MujocoModel, values: FloatArray) -> None:
+def _bare_mujoco(loaded: CompiledModel, values: FloatArray) -> None:
     data = mujoco.MjData(loaded.model)
     for row in values:
         data.qpos[loaded.qpos] = row
         mujoco.mj_fwdPosition(loaded.model, data)
 
 
-def _bare_pybullet(loaded: pybullet_model.PybulletModel, values: FloatArray) -> None:
+def _bare_pybullet(loaded: PybulletWorld, values: FloatArray) -> None:
     joints = loaded.joint.tolist()
     links = [index for index in loaded.link.tolist() if index >= 0]
     for row in values:
