@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from kinematify.model.collision_pieces import Method
 from kinematify.robot.mechanism import Mechanism, sweep_rows
 from kinematify.robot.read import read_without_geometry
 from kinematify.simulation.configurations import EnginePoses, agreement_configurations, write_poses
 from kinematify.simulation.contacts import touching
 from kinematify.simulation.drive import drive_all, servos
 from kinematify.simulation.engines import open_engine
-from kinematify.simulation.prepared import Method, load_prepared
+from kinematify.simulation.prepared import load_prepared
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,6 @@ from kinematify.geometry.cut import Concave, Surface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.robot import forward_kinematics
-from kinematify.simulation.prepared import Method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +29,25 @@ _WELD = 1e-6
 """Vertices nearer than this fraction of the diagonal are one."""
 _FILLED = 3.0
 """A surface that was not cut is said to be filled if its hull reaches so many times beyond what is tolerated."""
+
+
+class Method(StrEnum):
+    """How the collision geometry of a link became convex pieces, the least work first."""
+
+    NONE = "none"
+    """The link has no geometry."""
+    PRIMITIVES = "primitives"
+    """Boxes, cylinders and spheres, as they are."""
+    CONVEX = "convex"
+    """The meshes are convex within the tolerance: their hulls are they."""
+    COMPONENTS = "components"
+    """Each connected component is convex within the tolerance."""
+    CUT = "cut"
+    """Concave meshes were cut into nearly convex pieces."""
+    HULL = "hull"
+    """A part of the mesh with a hollow was not cut, since cuts did not help or were spent on worse ones."""
+
+
 _EFFORT = list(Method)
 
 

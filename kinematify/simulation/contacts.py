@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.simulation.prepared import Method
+from kinematify.model.collision_pieces import Method
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray

@@ -4,32 +4,16 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
-from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
+
+from kinematify.model.collision_pieces import Method
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 URDF_FILE = "prepared.urdf"
 RECORD_FILE = "prepared.json"
-
-
-class Method(StrEnum):
-    """How the collision geometry of a link became convex pieces, the least work first."""
-
-    NONE = "none"
-    """The link has no geometry."""
-    PRIMITIVES = "primitives"
-    """Boxes, cylinders and spheres, as they are."""
-    CONVEX = "convex"
-    """The meshes are convex within the tolerance: their hulls are they."""
-    COMPONENTS = "components"
-    """Each connected component is convex within the tolerance."""
-    CUT = "cut"
-    """Concave meshes were cut into nearly convex pieces."""
-    HULL = "hull"
-    """A part of the mesh with a hollow was not cut, since cuts did not help or were spent on worse ones."""
 
 
 @dataclass(frozen=True, kw_only=True)

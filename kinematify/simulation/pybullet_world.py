@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pybullet as bullet
 
+from kinematify.model.collision_pieces import Method
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts, deepest
 from kinematify.simulation.engine import Refused
-from kinematify.simulation.prepared import Method
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

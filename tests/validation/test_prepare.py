@@ -23,11 +23,12 @@ from kinematify.geometry.boards import convex_chunks, taken_apart
 from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 from kinematify.geometry.cut import Concave, Surface, cut_worst_first, split
 from kinematify.geometry.cut_cache import cache_folder
+from kinematify.model.collision_pieces import Method
 from kinematify.model.masses import lifted
 from kinematify.robot.read import read_model
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rpy_of
-from kinematify.simulation.prepared import Method, Prepared, load_prepared
+from kinematify.simulation.prepared import Prepared, load_prepared
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.prepare_stage import run
 from kinematify.validation.stage import Recorder, StageRequest
