@@ -248,7 +248,10 @@ def test_pinocchio_tells_other_limits_and_masses(tmp_path: Path) -> None:
     request = prepared_request(arm(), tmp_path)
     path = request.work / URDF_FILE
     path.write_text(path.read_text().replace('upper="0.2"', 'upper="0.3"').replace('value="0.1"', 'value="0.2"'))
-    found = {(f.joint, f.link): f for f in tell(partial(engine_stage.run, engine="pinocchio"), request).results["KV606"].findings}
+    found = {
+        (f.joint, f.link): f
+        for f in tell(partial(engine_stage.run, engine="pinocchio"), request).results["KV606"].findings
+    }
     assert set(found) == {("tool_joint", None), (None, "tip")}
     assert found[None, "tip"].value == pytest.approx(0.2)
 
