@@ -125,7 +125,7 @@ def test_every_import_of_the_package_is_declared() -> None:
                 names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
                 names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
                 for top in {name.partition(".")[0] for name in names} - sys.stdlib_module_names - {"kinematify"}:
-                    if not providers.get(top, set()) & allowed:
+                    if not providers.get(top, {normalised(top)}) & allowed:  # an extra that is absent: by its name
                         missing.add(f"{path.relative_to(ROOT)}: {top}")
     assert missing == set()
 
