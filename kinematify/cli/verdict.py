@@ -16,11 +16,11 @@ from kinematify.cli.table import format_table
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
+    JOINT_HEADINGS,
     NEXT_BEST_HEADINGS,
-    alternative,
     configuration,
     family_rows,
-    joint_range,
+    joint_rows,
     measure,
     next_best_rows,
     printable,
@@ -195,18 +195,8 @@ def _suppressed(finding: Finding) -> list[str]:
 
 
 def _joint_table(report: ValidationReport) -> str:
-    rows = [
-        (
-            printable(joint.joint),
-            joint.kind,
-            joint_range(joint, joint.declared_limits),
-            joint_range(joint, joint.free_travel),
-            alternative(joint),
-        )
-        for joint in report.joints
-    ]
-    headings = ("joint", "type", "declared limits", "free travel", "better alternative")
-    return format_table(headings, rows) if rows else ""
+    rows = [tuple(map(printable, row)) for row in joint_rows(report)]
+    return format_table(JOINT_HEADINGS, rows) if rows else ""
 
 
 def _next_best(report: ValidationReport) -> str:

@@ -15,12 +15,12 @@ from kinematify.validation.formats.html_motion import curves, show_button, viewe
 from kinematify.validation.formats.html_pairs import pair_matrix
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
+    JOINT_HEADINGS,
     NEXT_BEST_HEADINGS,
-    alternative,
     configuration,
     family_rows,
     figures,
-    joint_range,
+    joint_rows,
     measure,
     next_best_rows,
     title,
@@ -213,23 +213,8 @@ def _finding(finding: Finding, anchor: str, button: str) -> str:
 def _joints(index: int, report: ValidationReport) -> str:
     if not report.joints:
         return ""
-    rows = [
-        tuple(
-            map(
-                text,
-                (
-                    joint.joint,
-                    joint.kind,
-                    joint_range(joint, joint.declared_limits),
-                    joint_range(joint, joint.free_travel),
-                    alternative(joint),
-                ),
-            )
-        )
-        for joint in report.joints
-    ]
-    headings = ("joint", "type", "declared limits", "free travel", "better alternative")
-    return "<h3>Joints</h3>" + table(headings, rows, name=f"joints-{index}")
+    rows = [tuple(map(text, row)) for row in joint_rows(report)]
+    return "<h3>Joints</h3>" + table(JOINT_HEADINGS, rows, name=f"joints-{index}")
 
 
 def _next_best(index: int, report: ValidationReport) -> str:

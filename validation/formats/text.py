@@ -69,6 +69,24 @@ def joint_range(joint: JointSummary, limits: tuple[float, float] | None) -> str:
     return f"{low} to {high} {'deg' if turning else 'mm'}"
 
 
+JOINT_HEADINGS = ("joint", "type", "declared limits", "free travel", "better alternative")
+"""Headings of `joint_rows`."""
+
+
+def joint_rows(report: ValidationReport) -> list[tuple[str, ...]]:
+    """A row per joint with its ranges and what would explain the geometry better."""
+    return [
+        (
+            joint.joint,
+            joint.kind,
+            joint_range(joint, joint.declared_limits),
+            joint_range(joint, joint.free_travel),
+            alternative(joint),
+        )
+        for joint in report.joints
+    ]
+
+
 NEXT_BEST_HEADINGS = ("joint", "next best by the inference", "from")
 """Headings of `next_best_rows`."""
 
