@@ -20,7 +20,7 @@ from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.model.output import MODEL_FILE
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.simulation.prepare import prepare
 
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from kinematify.envs.settings import HandSettings
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
     from kinematify.robot.mechanism import Travel
+    from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
 
 AUTO = "auto"
@@ -46,7 +46,7 @@ class ArticulatedObject:
     source: str
     """The `model` keyword."""
     urdf: Path
-    declared: DeclaredModel
+    declared: Robot
     scene: Scene
     prepared: Prepared
     T_world_root: FloatArray
@@ -157,7 +157,7 @@ def _read(source: str, folder: Path, *, fine: bool) -> ArticulatedObject:
         urdf = urdf_of(source)
     settings, names = load_settings(), ("link_gap", "model_gap", "cuts", "cuts_per_link")
     finer = {name: getattr(load_env_settings().robot, name) for name in names} if fine else {}
-    declared = read_model(urdf)
+    declared = read_robot(urdf)
     scene = read_scene(declared, settings.geometry)
     if not scene.travels:
         raise InputError(
@@ -212,7 +212,7 @@ def find_target(articulated_object: ArticulatedObject, joint: str, hand: HandSet
         joint = articulated_object.suggested if articulated_object.suggested != AUTO else articulated_object.farthest
     leader = articulated_object.leader(joint)
     opened = open_end(articulated_object.travels[leader])
-    link = articulated_object.declared.kinematics.joint_by_name[joint].child
+    link = articulated_object.declared.joint_by_name[joint].child
     point = _hold(articulated_object, joint, opened, hand)
     way = 0.0 if point is None else _length(_path(articulated_object, joint, opened, point))
     if point is None or way < _LEAST_WAY:
@@ -235,9 +235,7 @@ def find_target(articulated_object: ArticulatedObject, joint: str, hand: HandSet
 
 def held_links(articulated_object: ArticulatedObject, target: Target) -> tuple[str, ...]:
     """Links of the rigid body that the joint moves."""
-    return next(
-        group.links for group in rigid_groups(articulated_object.declared.kinematics) if target.link in group.links
-    )
+    return next(group.links for group in rigid_groups(articulated_object.declared) if target.link in group.links)
 
 
 def open_end(travel: Travel) -> float:
@@ -303,8 +301,8 @@ def _longest_way(articulated_object: ArticulatedObject, joint: str) -> float:
 def _link_pose(articulated_object: ArticulatedObject, joint: str, value: float) -> FloatArray:
     """Child link of a joint while the others rest, frame of the root link, shape (4, 4)."""
     values = {travel.joint: travel.rest for travel in articulated_object.travels} | {joint: value}
-    kinematics = articulated_object.declared.kinematics
-    return forward_kinematics(kinematics, values)[kinematics.joint_by_name[joint].child]
+    declared = articulated_object.declared
+    return forward_kinematics(declared, values)[declared.joint_by_name[joint].child]
 
 
 def _path(articulated_object: ArticulatedObject, joint: str, opened: float, point: FloatArray) -> FloatArray:

@@ -253,13 +253,13 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         return None if self._painter is None else self._painter.kind
 
     def _pieces(self) -> Sequence[Piece]:
-        kinematics = self.articulated_object.declared.kinematics
+        declared = self.articulated_object.declared
         held = held_links(self.articulated_object, self.target)
         colors = {name: _HELD if name in held else _OTHERS for name in self.articulated_object.scene.mechanism.links}
-        colors[kinematics.root] = _BODY
+        colors[declared.root] = _BODY
         return [
             Piece(link=link.name, vertices=mesh.vertices, faces=mesh.faces, color=np.array(colors[link.name]))
-            for link in kinematics.links
+            for link in declared.links
             for mesh in link.meshes
             if len(mesh.faces)
         ]
@@ -311,4 +311,4 @@ def one_of(name: str, value: object, choices: Sequence[object]) -> None:
 def _pose_at_rest(articulated_object: ArticulatedObject, target: Target) -> FloatArray:
     """Link that is moved, frame of the root link, shape (4, 4)."""
     values = {travel.joint: travel.rest for travel in articulated_object.travels}
-    return forward_kinematics(articulated_object.declared.kinematics, values)[target.link]
+    return forward_kinematics(articulated_object.declared, values)[target.link]

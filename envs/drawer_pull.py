@@ -292,7 +292,7 @@ class DrawerPullEnv(OpeningEnv):
                 link=ROBOT + link.name, vertices=mesh.vertices, faces=mesh.faces,
                 color=np.array(_HAND_COLOR if link.name in hand else _ARM_COLOR),
             )
-            for link in self.robot.arm.declared.kinematics.links
+            for link in self.robot.arm.declared.links
             for mesh in link.meshes
             if len(mesh.faces)
         ]  # fmt: skip
@@ -310,7 +310,7 @@ class DrawerPullEnv(OpeningEnv):
             return ()
         box = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-1.0, 0.0)])
         vertices, faces = convex_hull(box * [_COLUMN_WIDTH, _COLUMN_WIDTH, height])
-        root = ROBOT + self.robot.mechanism.description.root
+        root = ROBOT + self.robot.mechanism.robot.root
         return (Piece(link=root, vertices=vertices, faces=faces, color=np.array(_COLUMN_COLOR)),)
 
     @property

@@ -128,7 +128,7 @@ class ArmExpert:
     def _posture(self, share: float, guess: FloatArray) -> FloatArray:
         """Arm joints where a share of the way is open, near a guess."""
         env = self._env
-        root = env.link_poses[env.articulated_object.declared.kinematics.root]
+        root = env.link_poses[env.articulated_object.declared.root]
         return self._solved(root @ self._link_at(env.target.value(share)) @ env.plan.T_link_tool, guess)
 
     def _solved(self, target: FloatArray, guess: FloatArray) -> FloatArray:
@@ -151,8 +151,8 @@ class ArmExpert:
         """Link that is opened, frame of the object's root, shape (4, 4)."""
         env = self._env
         leaders = {travel.joint: travel.rest for travel in env.articulated_object.travels} | env.plan.first
-        kinematics = env.articulated_object.declared.kinematics
-        return forward_kinematics(kinematics, {**leaders, env.target.joint: value})[env.target.link]
+        declared = env.articulated_object.declared
+        return forward_kinematics(declared, {**leaders, env.target.joint: value})[env.target.link]
 
 
 def _paced(rows: FloatArray, step: float, least: float = 1e-9) -> FloatArray:

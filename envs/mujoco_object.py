@@ -107,7 +107,7 @@ def add_object(
     names = dict(zip(articulated_object.scene.mechanism.links, found.source.names, strict=True))
     body = spec.body(PREFIX + names[target.link])
     body.add_site(name=HOLD, pos=target.point)
-    axis = articulated_object.declared.kinematics.joint_by_name[target.joint].axis
+    axis = articulated_object.declared.joint_by_name[target.joint].axis
     body.add_site(name=AXIS, quat=_quaternion_to(axis))
     for kind, site in (
         (mujoco.mjtSensor.mjSENS_FRAMEPOS, HOLD),
@@ -142,7 +142,7 @@ class MujocoObject:
         names = list(mechanism.joints)
         self._leaders = np.array([names.index(joint) for joint in articulated_object.joints], dtype=np.int64)
         self.leader_qpos, self.leader_dof = self.qpos[self._leaders], self.dof[self._leaders]
-        self._root = int(self.body[mechanism.links.index(mechanism.description.root)])
+        self._root = int(self.body[mechanism.links.index(mechanism.robot.root)])
         self._geoms = np.flatnonzero(np.isin(model.geom_bodyid, self.body))
 
     def set_up(self, settings: EnvSettings) -> JointDynamics:

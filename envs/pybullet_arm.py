@@ -62,12 +62,12 @@ class PybulletArm:
         )  # fmt: skip
         infos = [bullet.getJointInfo(self.body, k, client) for k in range(bullet.getNumJoints(self.body, client))]
         joints = {info[1].decode(): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
-        self._links = {self._robot.mechanism.description.root: _BASE, **{info[12].decode(): info[0] for info in infos}}
+        self._links = {self._robot.mechanism.robot.root: _BASE, **{info[12].decode(): info[0] for info in infos}}
         driven = (*names.arm_joints, *names.finger_joints)
         self._joints = [joints[name] for name in driven]
         for index in self._links.values():
             bullet.changeDynamics(self.body, index, lateralFriction=settings.robot.friction, physicsClientId=client)
-        rest = rest_configuration(self._robot.mechanism.description)
+        rest = rest_configuration(self._robot.mechanism.robot)
         for name, index in joints.items():
             if name not in driven:
                 bullet.resetJointState(self.body, index, rest.get(name, 0.0), physicsClientId=client)

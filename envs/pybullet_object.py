@@ -60,7 +60,7 @@ class PybulletObject:
         self._leader_indices = [self._indices[k] for k in self._leaders]
         self._followers = [k for k in range(len(names)) if k not in self._leaders]
         self._link = int(self._loaded.link[mechanism.links.index(target.link)])
-        self._axis = articulated_object.declared.kinematics.joint_by_name[target.joint].axis
+        self._axis = articulated_object.declared.joint_by_name[target.joint].axis
         self._T_base = pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
         self._links = {index: self._info(index) for index in self._loaded.link.tolist()}
         self._T_usual = self._T_root = T_world_root
@@ -205,7 +205,7 @@ class PybulletObject:
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the links, shape (4, 4) each."""
         values = dict(zip(self.articulated_object.joints, self._reading.values.tolist(), strict=True))
-        poses = forward_kinematics(self.articulated_object.declared.kinematics, values)
+        poses = forward_kinematics(self.articulated_object.declared, values)
         return {name: self._T_root @ T for name, T in poses.items()}
 
 

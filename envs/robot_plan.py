@@ -49,7 +49,7 @@ class EnvRobot:
     @property
     def finger_links(self) -> tuple[str, ...]:
         """Links of the fingers."""
-        return tuple(self.arm.declared.kinematics.joint_by_name[name].child for name in self.robot.finger_joints)
+        return tuple(self.arm.declared.joint_by_name[name].child for name in self.robot.finger_joints)
 
     def finger_values(self, share: float) -> FloatArray:
         """Values of the finger joints, 0 with the pads together, 1 apart, shape (fingers,)."""
@@ -100,7 +100,7 @@ def env_robot(articulated_object: ArticulatedObject, robot: str | None, tool: st
     settings = load_settings()
     arm = Arm(found, settings.task.plan)
     prepared = prepare(arm.declared, folder / "prepared", settings.prepare)
-    return EnvRobot(robot=found, arm=arm, prepared=prepared, mechanism=Mechanism(description=arm.declared.kinematics))
+    return EnvRobot(robot=found, arm=arm, prepared=prepared, mechanism=Mechanism(robot=arm.declared))
 
 
 @lru_cache(maxsize=16)

@@ -15,7 +15,7 @@ from kinematify.evaluation.nightly.pages.trends import trend_page
 from kinematify.evaluation.nightly.record import Problem, Run
 from kinematify.evaluation.nightly.settings import load_nightly
 from kinematify.evaluation.nightly.store import Night, earlier_runs
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.view_data import view_data
 from kinematify.validation.report import JointCurve, PairSummary, PairTable
@@ -49,7 +49,7 @@ def _known_checks() -> Iterator[None]:
 def report_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("page")
     (folder / "door.urdf").write_text(_URDF)
-    scene = view_data(read_description(folder / "door.urdf"), faces=1000)
+    scene = view_data(read_robot(folder / "door.urdf", geometry="shown"), faces=1000)
     way = tuple(0.1 * k for k in range(16))
     curves = tuple(
         JointCurve(joint="hinge_1", engine=engine, upper=True, commanded=way, reached=way, force=way, depth=way)
@@ -200,7 +200,7 @@ def test_night_and_trend_pages(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["</script><script>document.title='x'</script>", '"><img src=x onerror=alert(1)>'])
 def test_names_cannot_break_out_of_the_viewer(tmp_path: Path, name: str) -> None:
     (tmp_path / "door.urdf").write_text(_URDF)
-    scene = view_data(read_description(tmp_path / "door.urdf"), faces=1000)
+    scene = view_data(read_robot(tmp_path / "door.urdf", geometry="shown"), faces=1000)
     assert scene is not None
     scene["joints"][0]["name"] = name
     page = tmp_path / "report.html"

@@ -76,7 +76,7 @@ class EngineContext:
     @cached_property
     def mechanism(self) -> Mechanism:
         """The tree."""
-        return Mechanism(description=self.declared.kinematics)
+        return Mechanism(robot=self.declared.kinematics)
 
     @cached_property
     def engine(self) -> Engine:

@@ -1,4 +1,4 @@
-"""Erasing the kinematics of a robot description: anonymous rigid parts in one pose, and the truth beside them.
+"""Erasing the kinematics of a robot: anonymous rigid parts in one pose, and the truth beside them.
 
 The protocol of the benchmark: links joined by fixed joints are one part, vertices are baked into world coordinates,
 order and names are shuffled. A part is a rigid group that has geometry. Movable links without geometry (the hidden
@@ -20,7 +20,7 @@ from kinematify.assembly.truth import GroundTruth, TrueJoint
 from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import (
-    RobotDescription,
+    Robot,
     forward_kinematics,
     joint_values,
     rest_configuration,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mesh_file import RawMesh
-    from kinematify.robot.robot import DescribedJoint, RigidGroup
+    from kinematify.robot.robot import Joint, RigidGroup
 
 __all__ = ["ErasedModel", "GroundTruth", "TrueJoint", "erase", "truth_path", "write_erased"]
 
@@ -74,13 +74,13 @@ class _Way:
 class _Step:
     """One joint on the way from one part to another."""
 
-    joint: DescribedJoint
+    joint: Joint
     downward: bool
     """False where the way leads from the child link to the parent link."""
 
 
 def erase(
-    description: RobotDescription, *, pose: str = "rest", seed: int = 0, yaw_deg: float = 0.0, shuffle: bool = True
+    robot: Robot, *, pose: str = "rest", seed: int = 0, yaw_deg: float = 0.0, shuffle: bool = True
 ) -> ErasedModel:
     """Turn a description into anonymous rigid parts and the ground truth about their joints.
 
@@ -88,7 +88,7 @@ def erase(
     anything and are listed in the truth as dropped, as are joints that carry no geometry.
 
     Args:
-        description: The robot.
+        robot: The robot.
         pose: ``rest`` (`rest_configuration`), or ``random``: each joint moved by up to 30 % of half its range
             around rest, within its limits, followers following.
         seed: Draws the random pose and the order of parts, vertices and faces.
@@ -99,21 +99,21 @@ def erase(
         DescriptionError: `pose` is unknown, or no link has geometry.
     """
     pose_random, order_random = (np.random.default_rng([seed, stream]) for stream in range(2))
-    q = _configuration(description, pose, pose_random)
-    T_world_link = _turned(forward_kinematics(description, q), np.deg2rad(yaw_deg))
-    groups = [group for group in rigid_groups(description) if group.has_geometry]
+    q = _configuration(robot, pose, pose_random)
+    T_world_link = _turned(forward_kinematics(robot, q), np.deg2rad(yaw_deg))
+    groups = [group for group in rigid_groups(robot) if group.has_geometry]
     if not groups:
-        raise DescriptionError(f"No link of {description.name} has geometry, so there is no part to erase it to.")
+        raise DescriptionError(f"No link of {robot.name} has geometry, so there is no part to erase it to.")
     order = order_random.permutation(len(groups)) if shuffle else np.arange(len(groups))
     shown = [groups[k] for k in order]
-    parts = [_part(baked(description, group, T_world_link), f"part_{k:03d}") for k, group in enumerate(shown)]
+    parts = [_part(baked(robot, group, T_world_link), f"part_{k:03d}") for k, group in enumerate(shown)]
     if shuffle:
         parts = [_scrambled(part, order_random) for part in parts]
     index = {group.top: k for k, group in enumerate(shown)}
-    joints = _true_joints(_ways(description, groups), index, q, T_world_link)
+    joints = _true_joints(_ways(robot, groups), index, q, T_world_link)
     used = {joint.source for joint in joints}
     truth = GroundTruth(
-        name=description.name,
+        name=robot.name,
         part_names=tuple(part.name for part in parts),
         part_links=tuple(group.links for group in shown),
         joints=joints,
@@ -138,18 +138,18 @@ def write_erased(erased: ErasedModel, folder: Path) -> Path:
     return write_parts(erased.parts, erased.truth, folder)
 
 
-def _configuration(description: RobotDescription, pose: str, random: Generator) -> dict[str, float]:
+def _configuration(robot: Robot, pose: str, random: Generator) -> dict[str, float]:
     """Value of every movable joint."""
     if pose not in POSES:
         raise DescriptionError(f"The pose {pose!r} is unknown. Choose one of {', '.join(POSES)}.")
-    values = rest_configuration(description)
+    values = rest_configuration(robot)
     if pose == "random":
-        leaders = [j for j in description.joints if j.mimic is None and j.kind is not JointType.FIXED]
-        values = joint_values(description, {j.name: _moved(j, values[j.name], random) for j in leaders})
-    return {j.name: values[j.name] for j in description.joints if j.kind is not JointType.FIXED}
+        leaders = [j for j in robot.joints if j.mimic is None and j.kind is not JointType.FIXED]
+        values = joint_values(robot, {j.name: _moved(j, values[j.name], random) for j in leaders})
+    return {j.name: values[j.name] for j in robot.joints if j.kind is not JointType.FIXED}
 
 
-def _moved(joint: DescribedJoint, rest: float, random: Generator) -> float:
+def _moved(joint: Joint, rest: float, random: Generator) -> float:
     half_range = np.pi if joint.kind is JointType.CONTINUOUS else 0.5 * (joint.upper - joint.lower)
     step = RANDOM_SHARE * half_range * random.uniform(-1.0, 1.0)
     return float(np.clip(rest + step, joint.lower, joint.upper))
@@ -219,26 +219,26 @@ def _true_joint(step: _Step, value: float, T_world_link: Mapping[str, FloatArray
     )
 
 
-def _ways(description: RobotDescription, groups: Sequence[RigidGroup]) -> dict[str, _Way]:
+def _ways(robot: Robot, groups: Sequence[RigidGroup]) -> dict[str, _Way]:
     """The way to every group with geometry but the first, from its parent group; keyed by the group's top link."""
-    top_of = {link: group.top for group in rigid_groups(description) for link in group.links}
-    upward = {group.top: _movable_upward(description, top_of, group.top) for group in groups}
+    top_of = {link: group.top for group in rigid_groups(robot) for link in group.links}
+    upward = {group.top: _movable_upward(robot, top_of, group.top) for group in groups}
     root = groups[0].top
     return {group.top: _way(upward[group.top], upward[root], root, top_of, set(upward)) for group in groups[1:]}
 
 
-def _movable_upward(description: RobotDescription, top_of: Mapping[str, str], top: str) -> list[DescribedJoint]:
+def _movable_upward(robot: Robot, top_of: Mapping[str, str], top: str) -> list[Joint]:
     """Movable joints from a rigid group up to the root link, nearest first."""
-    found: list[DescribedJoint] = []
-    while top in description.joint_above:
-        found.append(description.joint_above[top])
+    found: list[Joint] = []
+    while top in robot.joint_above:
+        found.append(robot.joint_above[top])
         top = top_of[found[-1].parent]
     return found
 
 
 def _way(
-    upward: Sequence[DescribedJoint],
-    root_upward: Sequence[DescribedJoint],
+    upward: Sequence[Joint],
+    root_upward: Sequence[Joint],
     root: str,
     top_of: Mapping[str, str],
     solid: Container[str],

@@ -17,9 +17,10 @@ from kinematify.assembly.names import natural_key
 from kinematify.assembly.pieces import connected_pieces, labelled_parts
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
-from kinematify.robot.description import forward_kinematics, read_description, rest_configuration, rigid_groups
 from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
@@ -200,13 +201,13 @@ def _unpacked(archive: Path, folder: Path, reading: _Reading) -> _Given:
 
 def _description(path: Path, reading: _Reading) -> _Given:
     """Rigid groups of links at rest; everything else that the description says is dropped."""
-    description = read_description(path)
-    poses = forward_kinematics(description, rest_configuration(description))
-    groups = [group for group in rigid_groups(description) if group.has_geometry]
+    robot = read_robot(path, geometry="shown")
+    poses = forward_kinematics(robot, rest_configuration(robot))
+    groups = [group for group in rigid_groups(robot) if group.has_geometry]
     meshes = tuple(
-        _upright(baked(description, group, poses), "z" if reading.up == "auto" else reading.up) for group in groups
+        _upright(baked(robot, group, poses), "z" if reading.up == "auto" else reading.up) for group in groups
     )
-    return _Given(meshes=meshes, warnings=description.notes)
+    return _Given(meshes=meshes, warnings=robot.notes)
 
 
 def _single_file(path: Path, reading: _Reading) -> _Given:

@@ -39,12 +39,12 @@ def command(*, model: Path, out: Path, pose: str, seed: int, yaw: float, package
     `kinematify infer`; the truth is written beside it as OUT.truth.json and is never read by `infer`.
     """
     from kinematify.assembly.erase import erase, write_erased
-    from kinematify.robot.description import read_description
+    from kinematify.robot.read import read_robot
 
-    description = read_description(model, package_dirs=package_dirs)
-    erased = erase(description, pose=pose, seed=seed, yaw_deg=yaw)
+    robot = read_robot(model, package_dirs=package_dirs, geometry="shown")
+    erased = erase(robot, pose=pose, seed=seed, yaw_deg=yaw)
     truth = write_erased(erased, out)
-    for note in description.notes:
+    for note in robot.notes:
         click.echo(f"Note: {note}", err=True)
     click.echo(f"{len(erased.parts)} parts in {out}, {len(erased.truth.joints)} joints erased. The truth: {truth}")
     click.echo(f"Next: kinematify infer {shlex.quote(str(out))} -o {shlex.quote(f'{out}-model')}")

@@ -85,12 +85,12 @@ def command(
 def _scene(urdf: Path, package_dirs: Sequence[Path]) -> ViewScene:
     from kinematify.config.validation import load_settings
     from kinematify.errors import InputError
-    from kinematify.robot.read import read_model
+    from kinematify.robot.read import read_robot
     from kinematify.view.scene import ViewScene
 
     if not urdf.is_file():
         raise InputError(f"There is no file {urdf}. Give a URDF, or a model folder that `kinematify infer` wrote.")
-    return ViewScene(read_model(urdf, package_dirs=package_dirs), load_settings())
+    return ViewScene(read_robot(urdf, package_dirs=package_dirs), load_settings())
 
 
 def _alternatives(record: Path) -> dict[tuple[str, str], tuple[Alternative, ...]]:

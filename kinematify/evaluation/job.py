@@ -20,7 +20,7 @@ from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import ObjectScore, score_object
 from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
 from kinematify.evaluation.prediction import NOTHING_PREDICTED, prediction_of
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -131,9 +131,9 @@ def run_job(job: Job, *, key: str, failure: Failure | None = None) -> JobResult:
 
 def erased_model(job: Job) -> ErasedModel:
     """The object in the pose of its condition, without its kinematics."""
-    description = read_description(job.item.urdf, package_dirs=job.item.package_dirs)
+    robot = read_robot(job.item.urdf, package_dirs=job.item.package_dirs, geometry="shown")
     condition = job.condition
-    return erase(description, pose=condition.pose, seed=condition.seed, yaw_deg=condition.yaw_deg)
+    return erase(robot, pose=condition.pose, seed=condition.seed, yaw_deg=condition.yaw_deg)
 
 
 @dataclass(frozen=True, kw_only=True)

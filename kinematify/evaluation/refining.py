@@ -25,7 +25,7 @@ from kinematify.evaluation.prediction import prediction_of
 from kinematify.evaluation.run import selected_conditions, selected_objects
 from kinematify.pipeline import infer
 from kinematify.refinement import refine
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -121,9 +121,9 @@ def run_refining(jobs: Sequence[tuple[str, RefiningJob]], *, workers: int) -> It
 def run_one(job: RefiningJob, key: str) -> RefiningResult:
     """Infer and refine one object; an exception becomes a result."""
     try:
-        description = read_description(job.item.urdf, package_dirs=job.item.package_dirs)
+        robot = read_robot(job.item.urdf, package_dirs=job.item.package_dirs, geometry="shown")
         condition = job.condition
-        erased = erase(description, pose=condition.pose, seed=condition.seed, yaw_deg=condition.yaw_deg)
+        erased = erase(robot, pose=condition.pose, seed=condition.seed, yaw_deg=condition.yaw_deg)
         given = perturbed(
             job.perturbation, Assembly(parts=erased.parts, source="benchmark"), job.config, seed=condition.seed
         )

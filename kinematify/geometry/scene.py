@@ -19,9 +19,8 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import GeometrySettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredLink, DeclaredModel, DeclaredShape
     from kinematify.robot.mechanism import Travel
-    from kinematify.robot.robot import DescribedJoint, RigidGroup
+    from kinematify.robot.robot import Joint, Link, RigidGroup, Robot, Shape
 
 Pair = tuple[int, int]
 """Two bodies, the smaller index first."""
@@ -62,7 +61,7 @@ class Connection:
 class Scene:
     """A model as geometry in motion."""
 
-    model: DeclaredModel
+    model: Robot
     mechanism: Mechanism
     bodies: tuple[Body, ...]
     """In the order of the tree, parents before children; only those with geometry."""
@@ -149,13 +148,13 @@ class Scene:
 
     @cached_property
     def _groups(self) -> tuple[RigidGroup, ...]:
-        return rigid_groups(self.model.kinematics)
+        return rigid_groups(self.model)
 
     @cached_property
     def _above(self) -> list[tuple[str, int] | None]:
         """Joint above each group and the group that it hangs on."""
         group_of = {link: index for index, group in enumerate(self._groups) for link in group.links}
-        above = self.model.kinematics.joint_above
+        above = self.model.joint_above
         joints = [above.get(group.top) for group in self._groups]
         return [None if joint is None else (joint.name, group_of[joint.parent]) for joint in joints]
 
@@ -168,10 +167,10 @@ class Scene:
         return ways
 
     @cached_property
-    def _steps(self) -> list[tuple[int, DescribedJoint, int, FloatArray]]:
+    def _steps(self) -> list[tuple[int, Joint, int, FloatArray]]:
         """Group, joint above it, group above it, and the joint's frame at zero in that group's frame."""
         inside = {link: T for group in self._groups for link, T in placed_links(self.model, group).items()}
-        joints = self.model.kinematics.joint_by_name
+        joints = self.model.joint_by_name
         return [
             (index, joints[above[0]], above[1], inside[joints[above[0]].parent] @ joints[above[0]].T_parent_child)
             for index, above in enumerate(self._above)
@@ -184,20 +183,20 @@ class Scene:
         )
 
 
-def judged_shapes(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+def judged_shapes(link: Link) -> tuple[Shape, ...]:
     """Collision geometry, or visual geometry where there is none."""
     return link.collisions or link.visuals
 
 
-def visible_shapes(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+def visible_shapes(link: Link) -> tuple[Shape, ...]:
     """Visual geometry, or collision geometry where there is none."""
     return link.visuals or link.collisions
 
 
-def simplified(model: DeclaredModel) -> bool:
+def simplified(model: Robot) -> bool:
     """Whether the collision geometry of some link is not simply its visual geometry."""
 
-    def described(shapes: tuple[DeclaredShape, ...]) -> list[tuple[object, ...]]:
+    def described(shapes: tuple[Shape, ...]) -> list[tuple[object, ...]]:
         return [(shape.kind, shape.file, shape.size, shape.T_link_shape.tobytes()) for shape in shapes]
 
     both = [link for link in model.links if link.visuals and link.collisions]
@@ -205,14 +204,12 @@ def simplified(model: DeclaredModel) -> bool:
 
 
 def read_scene(
-    model: DeclaredModel,
+    model: Robot,
     settings: GeometrySettings,
-    shapes_of: Callable[[DeclaredLink], tuple[DeclaredShape, ...]] = judged_shapes,
+    shapes_of: Callable[[Link], tuple[Shape, ...]] = judged_shapes,
 ) -> Scene:
     """Gather the geometry of the bodies; nothing is measured yet."""
-    parts = [
-        (index, group, _shapes(model, group, shapes_of)) for index, group in enumerate(rigid_groups(model.kinematics))
-    ]
+    parts = [(index, group, _shapes(model, group, shapes_of)) for index, group in enumerate(rigid_groups(model))]
     solid = [(index, group, shapes) for index, group, shapes in parts if any(len(faces) for _, faces in shapes)]
     corners = [vertices for _, _, shapes in solid for vertices, _ in shapes]
     largest = max(
@@ -221,7 +218,7 @@ def read_scene(
     unit = _UNIT_SHARE * max(largest, 1e-9)
     return Scene(
         model=model,
-        mechanism=Mechanism(description=model.kinematics),
+        mechanism=Mechanism(robot=model),
         bodies=tuple(
             Body(
                 name=next(name for name in group.links if model.link_by_name[name].has_geometry),
@@ -238,17 +235,17 @@ def read_scene(
     )
 
 
-def placed_links(model: DeclaredModel, group: RigidGroup) -> dict[str, FloatArray]:
+def placed_links(model: Robot, group: RigidGroup) -> dict[str, FloatArray]:
     """Pose of every link of a group in the frame of its top link, shape (4, 4) each."""
     placed = {group.top: np.eye(4)}
     for name in group.links[1:]:
-        joint = model.kinematics.joint_above[name]
+        joint = model.joint_above[name]
         placed[name] = placed[joint.parent] @ joint.T_parent_child
     return placed
 
 
 def _shapes(
-    model: DeclaredModel, group: RigidGroup, shapes_of: Callable[[DeclaredLink], tuple[DeclaredShape, ...]]
+    model: Robot, group: RigidGroup, shapes_of: Callable[[Link], tuple[Shape, ...]]
 ) -> list[tuple[FloatArray, IntArray]]:
     """Vertices (V, 3) and faces (F, 3) of every shape of a group, in the frame of its top link."""
     return [
@@ -299,7 +296,7 @@ def inverse(T: FloatArray) -> FloatArray:
     return result
 
 
-def _motions(joint: DescribedJoint, values: FloatArray) -> FloatArray:
+def _motions(joint: Joint, values: FloatArray) -> FloatArray:
     """Motion of a joint at many values [rad or m], shape (n, 4, 4)."""
     motion = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
     if joint.kind.turns:

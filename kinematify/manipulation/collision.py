@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.kinematics import Arm
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredModel, DeclaredShape
+    from kinematify.robot.robot import Robot, Shape
 
 FLOOR, COLUMN = "the floor", "the column"
 _FAR = 50.0  # half of the floor's extent [m]
@@ -131,7 +131,7 @@ class CollisionWorld:
             self._geometry.addGeometryObject(pin.GeometryObject(f"{len(self._links)} {name}", joint, placement, shape))
         )
 
-    def _add_robot(self, declared: DeclaredModel) -> None:
+    def _add_robot(self, declared: Robot) -> None:
         model = self._arm.model
         for link in declared.links:
             frame = model.frames[model.getFrameId(link.name)]
@@ -148,11 +148,11 @@ class CollisionWorld:
     def _pairs(self, robots: Iterable[int], hand: set[int], moved: set[int]) -> Iterable[tuple[int, int, str, bool]]:
         """First, second, kind, and whether it is the hand with what it holds."""
         declared = self._arm.declared
-        group = {link: k for k, g in enumerate(rigid_groups(declared.kinematics)) for link in g.links}
-        joined = {frozenset((group[j.parent], group[j.child])) for j in declared.kinematics.joints} | {
+        group = {link: k for k, g in enumerate(rigid_groups(declared)) for link in g.links}
+        joined = {frozenset((group[j.parent], group[j.child])) for j in declared.joints} | {
             frozenset((k,)) for k in group.values()
         }
-        fingers = {declared.kinematics.joint_by_name[name].child for name in self._arm.robot.finger_joints}
+        fingers = {declared.joint_by_name[name].child for name in self._arm.robot.finger_joints}
         first_of = {link: self._first_joint(link) for link in group}
         for first, second in combinations(robots, 2):
             links = self._links[first], self._links[second]
@@ -168,7 +168,7 @@ class CollisionWorld:
 
     def _first_joint(self, link: str) -> int:
         """How many joints of the arm lead to a link."""
-        above, count = self._arm.declared.kinematics.joint_above, 0
+        above, count = self._arm.declared.joint_above, 0
         while link in above:
             count += above[link].name in self._arm.robot.arm_joints
             link = above[link].parent
@@ -193,7 +193,7 @@ class CollisionWorld:
 
 def hand_links(arm: Arm) -> frozenset[str]:
     """Links that may touch what is held: the body of the tool, what carries the fingers, and all that hangs on it."""
-    robot = arm.declared.kinematics
+    robot = arm.declared
     fingers = [robot.joint_by_name[name] for name in arm.robot.finger_joints]
     tops = {arm.robot.tool, *(joint.parent for joint in fingers)}
     links = [link for group in rigid_groups(robot) if tops & set(group.links) for link in group.links]
@@ -208,7 +208,7 @@ def _shifted(place: FloatArray, z: float) -> FloatArray:
     return T
 
 
-def _convex(shape: DeclaredShape) -> tuple[coal.CollisionGeometry, FloatArray] | None:
+def _convex(shape: Shape) -> tuple[coal.CollisionGeometry, FloatArray] | None:
     """A shape as a convex body and its pose in the link's frame; None if it has no extent."""
     if shape.kind == "box":
         return coal.Box(*shape.size), shape.T_link_shape

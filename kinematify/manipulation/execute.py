@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rigid_groups
 from kinematify.simulation.prepare import prepare
 
@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import PrepareSettings
     from kinematify.manipulation.motion import Motion, Reference
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
-    from kinematify.robot.robot import RobotDescription
+    from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
 
 
@@ -82,25 +81,25 @@ class Loaded:
     """Both models as the engines load them, and who is who."""
 
     motion: Motion
-    robot: DeclaredModel
-    object: DeclaredModel
+    robot: Robot
+    object: Robot
     robot_prepared: Prepared
     object_prepared: Prepared
 
     @property
     def held(self) -> str:
         """Child link of the joint that is opened."""
-        return self.object.kinematics.joint_by_name[self.motion.joint].child
+        return self.object.joint_by_name[self.motion.joint].child
 
     @property
     def held_links(self) -> frozenset[str]:
         """Links of the body that the hand holds."""
-        return _body(self.object.kinematics, self.motion.grasp.held) | _body(self.object.kinematics, self.held)
+        return _body(self.object, self.motion.grasp.held) | _body(self.object, self.held)
 
     @property
     def hand_links(self) -> frozenset[str]:
         """Links of the hand: what the tool is fixed to, and the fingers."""
-        robot = self.robot.kinematics
+        robot = self.robot
         fingers = [robot.joint_by_name[name].child for name in self.motion.robot.finger_joints]
         links = set(_body(robot, self.motion.robot.tool))
         for link in fingers:
@@ -136,7 +135,7 @@ def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
     for name, urdf in (("robot", motion.robot.urdf), ("object", motion.object_urdf)):
         folder = work / f"{name}_prepared"
         folder.mkdir(exist_ok=True)
-        model = read_model(urdf)
+        model = read_robot(urdf)
         models.append(model)
         records.append(prepare(model, folder, settings))
     return Loaded(
@@ -204,12 +203,12 @@ def judged(
     )
 
 
-def _body(robot: RobotDescription, link: str) -> frozenset[str]:
+def _body(robot: Robot, link: str) -> frozenset[str]:
     """Links that are fixed to a link, itself included."""
     return frozenset(next(group.links for group in rigid_groups(robot) if link in group.links))
 
 
-def _below(robot: RobotDescription, link: str) -> frozenset[str]:
+def _below(robot: Robot, link: str) -> frozenset[str]:
     links = [link]
     for name in links:
         links += [joint.child for joint in robot.joints_below[name]]

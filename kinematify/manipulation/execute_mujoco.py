@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.execute import Loaded
     from kinematify.manipulation.motion import Reference
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
 
     BoolArray = NDArray[np.bool_]
@@ -129,8 +129,8 @@ class _World:
         self._add_bonds(spec)
         return spec
 
-    def _parsed(self, model: DeclaredModel, prepared: Prepared) -> mujoco.MjSpec:
-        spec = parse(prepared.urdf, Mechanism(description=model.kinematics), step=self.settings.time_step).spec
+    def _parsed(self, model: Robot, prepared: Prepared) -> mujoco.MjSpec:
+        spec = parse(prepared.urdf, Mechanism(robot=model), step=self.settings.time_step).spec
         spec.compiler.balanceinertia = True
         return spec
 
@@ -157,7 +157,7 @@ class _World:
 
     def _leaders(self) -> dict[str, float]:
         """Leading joints of the object at the start [rad or m]."""
-        rest = rest_configuration(self.loaded.object.kinematics)
+        rest = rest_configuration(self.loaded.object)
         start = {**self.loaded.motion.start, self.loaded.motion.joint: float(self.loaded.motion.opened[0])}
         return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.object.moving}
 
@@ -186,17 +186,17 @@ class _World:
                 if prefix == _OBJECT and joint.name in self._freed:
                     latch.name = f"{_LATCH} {joint.name}"
 
-    def _sides(self) -> Sequence[tuple[str, DeclaredModel, dict[str, float]]]:
+    def _sides(self) -> Sequence[tuple[str, Robot, dict[str, float]]]:
         """Prefix, model and values of all joints at the start, of robot and object."""
         loaded, motion = self.loaded, self.loaded.motion
         arm = dict(zip(motion.robot.arm_joints, motion.reach[0].tolist(), strict=True))
         gap = loaded.fingers(motion.grasp.spread)
         hand = dict(zip(motion.robot.finger_joints, gap.tolist(), strict=True))
-        robot = {**rest_configuration(loaded.robot.kinematics), **arm, **hand}
-        values = {**rest_configuration(loaded.object.kinematics), **motion.start, motion.joint: float(motion.opened[0])}
+        robot = {**rest_configuration(loaded.robot), **arm, **hand}
+        values = {**rest_configuration(loaded.object), **motion.start, motion.joint: float(motion.opened[0])}
         return (
-            (_ROBOT, loaded.robot, {**joint_values(loaded.robot.kinematics, robot), **hand}),
-            (_OBJECT, loaded.object, joint_values(loaded.object.kinematics, values)),
+            (_ROBOT, loaded.robot, {**joint_values(loaded.robot, robot), **hand}),
+            (_OBJECT, loaded.object, joint_values(loaded.object, values)),
         )
 
     def _start(self, model: mujoco.MjModel) -> FloatArray:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.execute import Loaded
     from kinematify.manipulation.motion import Reference
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
 
 _MARGIN = 1e-3  # Bullet inflates convex hulls by it [m]
@@ -49,13 +49,13 @@ class _Side:
 
     client: int
     body: int
-    model: DeclaredModel
+    model: Robot
     joints: dict[str, int]
     """Index of every joint that moves."""
     links: dict[str, int]
 
     @classmethod
-    def load(cls, client: int, model: DeclaredModel, prepared: Prepared, T: FloatArray) -> _Side:
+    def load(cls, client: int, model: Robot, prepared: Prepared, T: FloatArray) -> _Side:
         body = bullet.loadURDF(
             str(prepared.urdf),
             basePosition=T[:3, 3].tolist(),
@@ -70,7 +70,7 @@ class _Side:
             body=body,
             model=model,
             joints={info[1].decode(): info[0] for info in infos if info[2] != bullet.JOINT_FIXED},
-            links={model.kinematics.root: _BASE, **{info[12].decode(): info[0] for info in infos}},
+            links={model.root: _BASE, **{info[12].decode(): info[0] for info in infos}},
         )
 
     @property
@@ -79,7 +79,7 @@ class _Side:
 
     def place(self, values: dict[str, float]) -> None:
         """Set all joints and hold them there."""
-        full = joint_values(self.model.kinematics, {**rest_configuration(self.model.kinematics), **values})
+        full = joint_values(self.model, {**rest_configuration(self.model), **values})
         for name, index in self.joints.items():
             bullet.resetJointState(self.body, index, full[name], physicsClientId=self.client)
             self.drive(name, full[name], _STRONG)
@@ -160,7 +160,7 @@ class _World:
         arm = dict(zip(motion.robot.arm_joints, reference.arm[0].tolist(), strict=True))
         self.robot.place({**arm, **fingers})
         self.object.place({**motion.start, motion.joint: float(motion.opened[0])})
-        for name, joint in self.loaded.object.kinematics.joint_by_name.items():
+        for name, joint in self.loaded.object.joint_by_name.items():
             if joint.kind is not JointType.FIXED:
                 bullet.changeDynamics(
                     self.object.body, self.object.joints[name], jointDamping=0.0, physicsClientId=self.client

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.execute import Execution, Frame, Loaded
     from kinematify.render.camera import Camera
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import RobotDescription
+    from kinematify.robot.robot import Robot
 
 _ARM, _HAND = np.array([0.80, 0.83, 0.88]), np.array([0.96, 0.58, 0.20])
 _HELD, _OTHERS, _CARCASS = np.array([0.16, 0.62, 0.56]), np.array([0.62, 0.72, 0.80]), np.array([0.86, 0.80, 0.71])
@@ -97,10 +97,10 @@ class _Stage:
     def meshes(self) -> tuple[tuple[_Mesh, ...], tuple[_Mesh, ...]]:
         """Of the robot, the hand first, and of the object, the held part first."""
         loaded = self.loaded
-        robot = _bodies(loaded.robot.kinematics, lambda link: _HAND if link in loaded.hand_links else _ARM)
-        root = loaded.object.kinematics.root
+        robot = _bodies(loaded.robot, lambda link: _HAND if link in loaded.hand_links else _ARM)
+        root = loaded.object.root
         model = _bodies(
-            loaded.object.kinematics,
+            loaded.object,
             lambda link: _HELD if link in loaded.held_links else _CARCASS if link == root else _OTHERS,
         )
         hand_first = sorted(robot, key=lambda mesh: mesh.link not in loaded.hand_links)
@@ -117,10 +117,10 @@ class _Stage:
         """Both models in one moment, what is watched first."""
         motion = self.loaded.motion
         robot, model = (
-            self._posed(description, meshes, values, T)
-            for description, meshes, values, T in (
-                (self.loaded.robot.kinematics, self.meshes[0], frame.robot, motion.T_world_base),
-                (self.loaded.object.kinematics, self.meshes[1], frame.object, motion.T_world_object),
+            self._posed(robot, meshes, values, T)
+            for robot, meshes, values, T in (
+                (self.loaded.robot, self.meshes[0], frame.robot, motion.T_world_base),
+                (self.loaded.object, self.meshes[1], frame.object, motion.T_world_object),
             )
         )
         hand = sum(mesh.link in self.loaded.hand_links for mesh in self.meshes[0])
@@ -164,7 +164,7 @@ class _Stage:
         return camera_for(scenes, azimuth, self.config, size=size, margin=float(_MARGIN))
 
     def _posed(
-        self, robot: RobotDescription, meshes: Sequence[_Mesh], values: dict[str, float], T_world_root: FloatArray
+        self, robot: Robot, meshes: Sequence[_Mesh], values: dict[str, float], T_world_root: FloatArray
     ) -> list[PosedMesh]:
         leaders = {name: value for name, value in values.items() if robot.joint_by_name[name].mimic is None}
         poses = forward_kinematics(robot, leaders)
@@ -178,7 +178,7 @@ class _Stage:
         ]
 
 
-def _bodies(robot: RobotDescription, color_of: Callable[[str], FloatArray]) -> list[_Mesh]:
+def _bodies(robot: Robot, color_of: Callable[[str], FloatArray]) -> list[_Mesh]:
     """One mesh per body that has geometry, in the frame of its first link."""
     poses = forward_kinematics(robot, {})
     found = []

@@ -160,8 +160,8 @@ class _Ranked:
         settings = search.settings
         self.candidates, self.search = candidates, search
         values = dict(zip((t.joint for t in scene.travels), leaders.tolist(), strict=True))
-        described = scene.model.kinematics.joint_by_name[joint]
-        poses = forward_kinematics(scene.model.kinematics, values)
+        described = scene.model.joint_by_name[joint]
+        poses = forward_kinematics(scene.model, values)
         self.T_root_link = poses[described.child]
         self.axis = self.T_root_link[:3, :3] @ described.axis
         travel = next(t for t in scene.travels if t.joint == joint)

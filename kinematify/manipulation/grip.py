@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from kinematify.config.task import ExecutionSettings
     from kinematify.manipulation.grasp import Grasp
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import Robot
 
 _THIN = 1e-3  # sheets are made so thick [m]
 
 
 def grip_piece(
-    model: DeclaredModel, link: str, values: Mapping[str, float], grasp: Grasp, settings: ExecutionSettings
+    model: Robot, link: str, values: Mapping[str, float], grasp: Grasp, settings: ExecutionSettings
 ) -> tuple[FloatArray, IntArray]:
     """Cut out what lies between the pads and return its convex hull.
 
@@ -52,10 +52,10 @@ def grip_piece(
     return transformed(vertices, grasp.T_link_grasp), faces
 
 
-def _triangles(model: DeclaredModel, link: str, held: str, values: Mapping[str, float]) -> FloatArray:
+def _triangles(model: Robot, link: str, held: str, values: Mapping[str, float]) -> FloatArray:
     """Corners of all faces of the held body, frame of the link, shape (F, 3, 3)."""
-    poses = forward_kinematics(model.kinematics, values)
-    group = next(group for group in rigid_groups(model.kinematics) if held in group.links)
+    poses = forward_kinematics(model, values)
+    group = next(group for group in rigid_groups(model) if held in group.links)
     found = [np.empty((0, 3, 3))]
     for name in group.links:
         declared = model.link_by_name[name]

@@ -162,13 +162,13 @@ class Arm:
 
     @property
     def _turning(self) -> list[int]:
-        joints = [self.declared.kinematics.joint_by_name[name] for name in self.robot.arm_joints]
+        joints = [self.declared.joint_by_name[name] for name in self.robot.arm_joints]
         return [self.model.getJointId(joint.name) for joint in joints if joint.kind.turns]
 
     def _direction(self, joint: int) -> FloatArray:
         """Axis of a joint at home, root frame, shape (3,)."""
         name = self.model.names[joint]
-        return np.asarray(self._data.oMi[joint].rotation @ self.declared.kinematics.joint_by_name[name].axis)
+        return np.asarray(self._data.oMi[joint].rotation @ self.declared.joint_by_name[name].axis)
 
     @cached_property
     def _map(self) -> KDTree:

@@ -95,10 +95,8 @@ def object_motion(scene: Scene, joint: str, end: float, settings: PlanSettings) 
     T_world_object = np.eye(4)
     T_world_object[:3, 3] = [*(-0.5 * box.sum(axis=0)[:2]), -bottom]
     names = [travel.joint for travel in scene.travels]
-    child = scene.model.kinematics.joint_by_name[joint].child
-    links = [
-        forward_kinematics(scene.model.kinematics, dict(zip(names, row.tolist(), strict=True)))[child] for row in rows
-    ]
+    child = scene.model.joint_by_name[joint].child
+    links = [forward_kinematics(scene.model, dict(zip(names, row.tolist(), strict=True)))[child] for row in rows]
     return ObjectMotion(
         joint=joint,
         T_world_object=T_world_object,
@@ -234,17 +232,17 @@ class Places:
         """A robot that is nothing but an arm stands on a column; one with wheels or legs stands as it is."""
         robot = self._arm.robot
         own = {*robot.arm_joints, *robot.finger_joints}
-        joints = self._arm.declared.kinematics.joints
+        joints = self._arm.declared.joints
         return all(j.name in own or j.mimic is not None for j in joints if j.kind is not JointType.FIXED)
 
     @cached_property
     def _standing(self) -> float:
         """Height of the root link at which the robot's lowest point is on the floor [m]."""
-        description = self._arm.declared.kinematics
-        poses = forward_kinematics(description, rest_configuration(description))
+        robot = self._arm.declared
+        poses = forward_kinematics(robot, rest_configuration(robot))
         lowest = [
             transformed(mesh.vertices, poses[link.name])[:, 2].min()
-            for link in description.links
+            for link in robot.links
             for mesh in link.meshes
             if len(mesh.vertices)
         ]

@@ -17,7 +17,7 @@ from kinematify.manipulation.place import Places, object_box
 from kinematify.manipulation.pour_scene import CARRY, LIFT, TILT, pour_motion, write_pour
 from kinematify.manipulation.pull import Pull, Puller
 from kinematify.manipulation.reach import plan_reach
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -83,7 +83,7 @@ class _Planning:
     def __init__(self, arm: Arm, pour: Pour, settings: ValidationSettings, seed: int, started: float) -> None:
         self._arm, self._pour, self._seed, self._started = arm, pour, seed, started
         self._settings, self._plan = settings, settings.task.plan
-        self._scene = read_scene(read_model(pour.urdf), settings.geometry)
+        self._scene = read_scene(read_robot(pour.urdf), settings.geometry)
         self._motion = pour_motion(self._scene, pour, settings.task.pour)
         self._places = Places(arm, self._motion, object_box(self._scene), self._plan)
         self._begun = time.process_time()

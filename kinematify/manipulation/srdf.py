@@ -24,7 +24,7 @@ from kinematify.geometry.solid import Solid
 from kinematify.geometry.together import random_rows
 from kinematify.manipulation.robot import arm_chain, found_fingers, named_fingers
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
-    from kinematify.robot.robot import DescribedJoint, RobotDescription
+    from kinematify.robot.robot import Joint, Robot
 
     BoolArray = NDArray[np.bool_]
 
@@ -106,7 +105,7 @@ def write_srdf(
         InputError: The robot cannot be read or has no movable joint, or there is no such link or joint.
         OSError: The file cannot be written.
     """
-    model = read_model(urdf, package_dirs=package_dirs)
+    model = read_robot(urdf, package_dirs=package_dirs)
     groups = semantic_groups(model, urdf, tool, gripper)
     pairs, enabled = disabled_pairs(model, settings)
     document = etree.Element("robot", name=model.name)
@@ -114,9 +113,9 @@ def write_srdf(
         _add_groups(document, group)
     for group in groups:
         _add_poses(document, model, group)
-    root = model.kinematics.root
+    root = model.root
     etree.SubElement(document, "virtual_joint", name="world_joint", type="fixed", parent_frame="world", child_link=root)
-    for joint in model.kinematics.joints:
+    for joint in model.joints:
         if joint.mimic is not None:
             etree.SubElement(document, "passive_joint", name=joint.name)
     for pair in pairs:
@@ -127,11 +126,9 @@ def write_srdf(
     return Counter({**Counter(pair.reason.value for pair in pairs), "checked": enabled})
 
 
-def semantic_groups(
-    model: DeclaredModel, urdf: Path, tool: str | None, gripper: Sequence[str]
-) -> tuple[SemanticGroup, ...]:
+def semantic_groups(model: Robot, urdf: Path, tool: str | None, gripper: Sequence[str]) -> tuple[SemanticGroup, ...]:
     """Find the arm and its hand, or all chains; see `write_srdf` for arguments and errors."""
-    robot = model.kinematics
+    robot = model
     if not model.moving:
         raise InputError(
             f"The robot {urdf} has no movable joint, so there is nothing to plan. Give a robot that moves."
@@ -143,7 +140,7 @@ def semantic_groups(
     tips = (tool,) if tool is not None else _likely_tips(robot)
     if tool is not None and not arm_chain(robot, tool):
         raise InputError(f"No movable joint leads to the link {tool!r} of {urdf}. Name the end of the arm with --tool.")
-    fingers: Sequence[DescribedJoint] = named_fingers(robot, urdf, gripper) if gripper else ()
+    fingers: Sequence[Joint] = named_fingers(robot, urdf, gripper) if gripper else ()
     return tuple(
         SemanticGroup(
             name=ARM if len(tips) == 1 else tip,
@@ -156,7 +153,7 @@ def semantic_groups(
     )
 
 
-def _likely_tips(robot: RobotDescription) -> tuple[str, ...]:
+def _likely_tips(robot: Robot) -> tuple[str, ...]:
     """The link that carries the fingers at the end of an arm, or else the last moving link of every chain."""
     depth = {link: len(arm_chain(robot, link)) for link in robot.link_by_name}
     hands = [link for link in depth if depth[link] >= _ARM_JOINTS and len(_single_fingers(robot, link)) > 1]
@@ -169,7 +166,7 @@ def _likely_tips(robot: RobotDescription) -> tuple[str, ...]:
     )
 
 
-def _single_fingers(robot: RobotDescription, link: str) -> list[DescribedJoint]:
+def _single_fingers(robot: Robot, link: str) -> list[Joint]:
     """Movable joints on a link with nothing movable behind them, as fingers have."""
     return [
         joint
@@ -178,7 +175,7 @@ def _single_fingers(robot: RobotDescription, link: str) -> list[DescribedJoint]:
     ]
 
 
-def disabled_pairs(model: DeclaredModel, settings: ValidationSettings) -> tuple[list[DisabledPair], int]:
+def disabled_pairs(model: Robot, settings: ValidationSettings) -> tuple[list[DisabledPair], int]:
     """Return the pairs of links with geometry that need no check, in the document's order, and how many stay.
 
     Args:
@@ -252,7 +249,7 @@ class _LinkSolids:
     def _solid(self, body: int, link: str) -> Solid:
         if link not in self._solids:
             model, settings = self._scene.model, self._scene.settings
-            group = rigid_groups(model.kinematics)[self._scene.bodies[body].group]
+            group = rigid_groups(model)[self._scene.bodies[body].group]
             T = placed_links(model, group)[link]
             shapes = judged_shapes(model.link_by_name[link])
             starts = np.cumsum([0, *(len(shape.mesh.vertices) for shape in shapes)])
@@ -278,10 +275,10 @@ def _add_groups(document: _Element, group: SemanticGroup) -> None:
         )
 
 
-def _add_poses(document: _Element, model: DeclaredModel, group: SemanticGroup) -> None:
+def _add_poses(document: _Element, model: Robot, group: SemanticGroup) -> None:
     """Rest and the middle of the limits of the arm; the ends of the fingers."""
-    joints = model.kinematics.joint_by_name
-    rest = rest_configuration(model.kinematics)
+    joints = model.joint_by_name
+    rest = rest_configuration(model)
     middle = {
         name: 0.5 * (joints[name].lower + joints[name].upper)
         if np.isfinite(joints[name].upper - joints[name].lower)

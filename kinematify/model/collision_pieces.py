@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import PrepareSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredLink, DeclaredModel, DeclaredShape
-    from kinematify.robot.robot import LinkMesh
+    from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
 
 _KEPT = ("box", "cylinder", "sphere")
 """Primitives that all engines have; capsules become meshes."""
@@ -55,7 +54,7 @@ _EFFORT = list(Method)
 class Pieces:
     """What the engines collide for one link."""
 
-    primitives: tuple[DeclaredShape, ...]
+    primitives: tuple[Shape, ...]
     convex: tuple[ConvexPiece, ...]
     """Link frame."""
     method: Method
@@ -86,7 +85,7 @@ class _Component:
         return self.gap <= self.tolerance
 
 
-def decomposed(model: DeclaredModel, settings: PrepareSettings) -> dict[str, Pieces]:
+def decomposed(model: Robot, settings: PrepareSettings) -> dict[str, Pieces]:
     """Return the collision geometry of every link, or the visual one where it declares none.
 
     Args:
@@ -109,9 +108,9 @@ def decomposed(model: DeclaredModel, settings: PrepareSettings) -> dict[str, Pie
     }
 
 
-def _diagonal(model: DeclaredModel) -> float:
+def _diagonal(model: Robot) -> float:
     """Of the box around the collision geometry at zero [m]; 0 where there is none."""
-    poses = forward_kinematics(model.kinematics, {})
+    poses = forward_kinematics(model, {})
     ends = [
         end(shape.mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3], axis=0)
         for link in model.links
@@ -122,12 +121,12 @@ def _diagonal(model: DeclaredModel) -> float:
     return float(np.linalg.norm(np.ptp(np.array(ends), axis=0))) if ends else 0.0
 
 
-def shapes_of(link: DeclaredLink) -> tuple[DeclaredShape, ...]:
+def shapes_of(link: Link) -> tuple[Shape, ...]:
     """Collision shapes of a link, visual ones where it declares none."""
     return link.collisions or link.visuals
 
 
-def _components(link: DeclaredLink, mesh: LinkMesh, size: float, settings: PrepareSettings) -> list[_Component]:
+def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettings) -> list[_Component]:
     parts = sorted(
         connected_pieces(RawMesh(name="", vertices=mesh.vertices, faces=mesh.faces), _WELD),
         key=lambda part: -float(np.linalg.norm(np.ptp(part.vertices, axis=0))),
@@ -182,7 +181,7 @@ def _cut(concave: Sequence[_Component], links: int, settings: PrepareSettings) -
     return cached_cuts(bodies, max(settings.cuts, settings.cuts_per_link * links), settings)
 
 
-def _pieces(link: DeclaredLink, parts: Sequence[tuple[_Component, list[ConvexPiece] | None]]) -> Pieces:
+def _pieces(link: Link, parts: Sequence[tuple[_Component, list[ConvexPiece] | None]]) -> Pieces:
     """Put the pieces of a link together; what could not be cut keeps its hull."""
     shapes = shapes_of(link)
     primitives = tuple(shape for shape in shapes if shape.kind in _KEPT)
@@ -208,7 +207,7 @@ def _pieces(link: DeclaredLink, parts: Sequence[tuple[_Component, list[ConvexPie
     )
 
 
-def _volume_error(shapes: Sequence[DeclaredShape], convex: Sequence[ConvexPiece]) -> float | None:
+def _volume_error(shapes: Sequence[Shape], convex: Sequence[ConvexPiece]) -> float | None:
     volumes = [enclosed_volume(shape.mesh.vertices, shape.mesh.faces) for shape in shapes if shape.kind not in _KEPT]
     known = [volume for volume in volumes if volume is not None]
     if not known or len(known) < len(volumes):

@@ -18,8 +18,8 @@ from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.pipeline.record import PREVIEW_FILE, SCHEMA, file_hashes, write_inference_files
-from kinematify.robot.description import read_description
 from kinematify.robot.mesh_file import RawMesh
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.topology.tree import KinematicTree
 
@@ -163,13 +163,13 @@ def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
 
 def _meshes(folder: Path, record: dict[str, Any]) -> list[RawMesh]:
     """One mesh per part, and those that had been set aside, in the world frame of the input."""
-    description = read_description(folder / MODEL_FILE)
-    poses = forward_kinematics(description, {})
+    robot = read_robot(folder / MODEL_FILE, geometry="shown")
+    poses = forward_kinematics(robot, {})
     aside: dict[str, list[str]] = defaultdict(list)
     for item in record["set_aside"]:
         aside[item["nearest"]].append(item["name"])
     found = {}
-    for link in description.links:
+    for link in robot.links:
         T = poses[link.name]
         names = [link.name, *aside[link.name]]
         for name, mesh in zip(names, link.meshes, strict=False):

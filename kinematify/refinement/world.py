@@ -69,7 +69,7 @@ class World:
         origins = {link.name: link.T_world_link[:3, 3] for link in model.links}
         return WorldScene(
             model=robot,
-            mechanism=Mechanism(description=robot),
+            mechanism=Mechanism(robot=robot),
             bodies=tuple(
                 Body(name=group.links[0], links=group.links, group=index, solid=self._solid(group.links), shapes=())
                 for index, group in enumerate(groups)

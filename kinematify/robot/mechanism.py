@@ -52,15 +52,15 @@ class Travel:
 class Mechanism:
     """A tree, its leading joints and its bodies (links held together by fixed joints)."""
 
-    description: Robot
+    robot: Robot
     standing: Mapping[str, float] = field(default_factory=dict)
     """Leaders that rest elsewhere than they would, and where [rad or m]."""
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
         """Of every joint that is neither fixed nor a follower, in the order of the document."""
-        leaders = [j for j in self.description.joints if j.kind is not JointType.FIXED and j.mimic is None]
-        rest = {**rest_configuration(self.description), **self.standing}
+        leaders = [j for j in self.robot.joints if j.kind is not JointType.FIXED and j.mimic is None]
+        rest = {**rest_configuration(self.robot), **self.standing}
         lower, upper = joint_ends(leaders)
         return tuple(
             Travel(
@@ -77,24 +77,24 @@ class Mechanism:
     @cached_property
     def links(self) -> tuple[str, ...]:
         """In the order of the document."""
-        return tuple(link.name for link in self.description.links)
+        return tuple(link.name for link in self.robot.links)
 
     @cached_property
     def joints(self) -> tuple[str, ...]:
         """Every joint that is not fixed, followers included, in the order of the document."""
-        return tuple(joint.name for joint in self.description.joints if joint.kind is not JointType.FIXED)
+        return tuple(joint.name for joint in self.robot.joints if joint.kind is not JointType.FIXED)
 
     @cached_property
     def body_of_link(self) -> IntArray:
         """Index of the rigid body of each link, shape (L,); the root's is 0."""
-        bodies = {name: k for k, group in enumerate(rigid_groups(self.description)) for name in group.links}
+        bodies = {name: k for k, group in enumerate(rigid_groups(self.robot)) for name in group.links}
         return np.array([bodies[name] for name in self.links], dtype=np.int64)
 
     @cached_property
     def neighbours(self) -> frozenset[tuple[int, int]]:
         """Pairs of bodies that a joint connects, smaller index first."""
         body = dict(zip(self.links, self.body_of_link.tolist(), strict=True))
-        ends = [sorted((body[joint.parent], body[joint.child])) for joint in self.description.joints]
+        ends = [sorted((body[joint.parent], body[joint.child])) for joint in self.robot.joints]
         return frozenset((a, b) for a, b in ends if a != b)
 
     @cached_property
@@ -103,7 +103,7 @@ class Mechanism:
         row = {name: np.abs(self.leads[k]) > 0.0 for k, name in enumerate(self.joints)}
         body = dict(zip(self.links, self.body_of_link.tolist(), strict=True))
         moved = np.zeros((int(self.body_of_link.max()) + 1, len(self.travels)), dtype=bool)
-        for joint in self.description.joints_downward:
+        for joint in self.robot.joints_downward:
             moved[body[joint.child]] |= moved[body[joint.parent]] | row.get(joint.name, np.False_)
         result: BoolArray = moved.T
         return result
@@ -141,7 +141,7 @@ class Mechanism:
 
     def _followed(self, leaders: FloatArray) -> FloatArray:
         names = [travel.joint for travel in self.travels]
-        rows = [joint_values(self.description, dict(zip(names, row.tolist(), strict=True))) for row in leaders]
+        rows = [joint_values(self.robot, dict(zip(names, row.tolist(), strict=True))) for row in leaders]
         return np.array([[row[name] for name in self.joints] for row in rows]).reshape(len(leaders), len(self.joints))
 
 

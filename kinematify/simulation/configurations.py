@@ -83,16 +83,16 @@ class EnginePoses:
     """Deepest point of each of `contacts` [m], positive where they overlap, shape (c,)."""
 
 
-def agreement_configurations(description: Robot, settings: AgreementSettings, seed: int) -> Configurations:
+def agreement_configurations(robot: Robot, settings: AgreementSettings, seed: int) -> Configurations:
     """Return the same rows in every process: zero, rest, quasi-random ones, and both ends of every joint.
 
     Args:
-        description: The tree; meshes play no part (`Robot.kinematics`).
+        robot: The tree; shapes play no part.
         settings: How many rows.
         seed: Of the run (`ValidationSettings.seed`).
     """
-    leaders = [joint for joint in description.joints if joint.kind != "fixed" and joint.mimic is None]
-    rest = rest_configuration(description)
+    leaders = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
+    rest = rest_configuration(robot)
     middle = np.array([rest[joint.name] for joint in leaders])
     lower, upper = joint_ends(leaders)
     values = np.vstack(
@@ -103,11 +103,11 @@ def agreement_configurations(description: Robot, settings: AgreementSettings, se
             _at_ends(middle, lower, upper, settings.end_rows),
         ]
     )
-    joints = tuple(joint.name for joint in description.joints if joint.kind != "fixed")
+    joints = tuple(joint.name for joint in robot.joints if joint.kind != "fixed")
     return Configurations(
-        links=tuple(link.name for link in description.links),
+        links=tuple(link.name for link in robot.links),
         joints=joints,
-        q=_with_followers(description, [joint.name for joint in leaders], joints, values),
+        q=_with_followers(robot, [joint.name for joint in leaders], joints, values),
         dynamic=min(len(values), settings.dynamic_rows, max(2, settings.dynamic_numbers // max(1, len(joints) ** 2))),
     )
 
@@ -133,17 +133,17 @@ def _at_ends(middle: FloatArray, lower: FloatArray, upper: FloatArray, rows: int
     return values
 
 
-def _with_followers(description: Robot, leaders: list[str], joints: tuple[str, ...], values: FloatArray) -> FloatArray:
-    rows = [joint_values(description, dict(zip(leaders, row.tolist(), strict=True))) for row in values]
+def _with_followers(robot: Robot, leaders: list[str], joints: tuple[str, ...], values: FloatArray) -> FloatArray:
+    rows = [joint_values(robot, dict(zip(leaders, row.tolist(), strict=True))) for row in values]
     return np.array([[row[name] for name in joints] for row in rows]).reshape(len(values), len(joints))
 
 
-def link_poses(description: Robot, rows: Configurations) -> FloatArray:
+def link_poses(robot: Robot, rows: Configurations) -> FloatArray:
     """Return the pose of every link in every row, the root at the origin, shape (n, L, 4, 4)."""
     index = {name: k for k, name in enumerate(rows.links)}
     column = {name: k for k, name in enumerate(rows.joints)}
     poses = np.tile(np.eye(4), (len(rows.q), len(rows.links), 1, 1))
-    for joint in description.joints_downward:
+    for joint in robot.joints_downward:
         values = rows.q[:, column[joint.name]] if joint.name in column else np.zeros(len(rows.q))
         poses[:, index[joint.child]] = poses[:, index[joint.parent]] @ joint.T_parent_child @ _motions(joint, values)
     return poses

@@ -194,7 +194,7 @@ def with_allowances(source: ParsedModel, measured: CompiledModel, touching: Touc
 def with_floor(source: ParsedModel, *, height: float, tolerance: float) -> ParsedModel:
     """Return a copy whose root is free, above a plane at a height [m]; the floor tolerates no depth."""
     spec = source.spec.copy()
-    spec.body(source.names[source.mechanism.links.index(source.mechanism.description.root)]).add_freejoint()
+    spec.body(source.names[source.mechanism.links.index(source.mechanism.robot.root)]).add_freejoint()
     floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
     floor.size, floor.pos, floor.priority = [0.0, 0.0, 1.0], [0.0, 0.0, height], 1
     floor.margin, floor.gap = 0.5 * tolerance, -0.5 * tolerance

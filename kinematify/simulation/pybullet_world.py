@@ -240,7 +240,7 @@ def load(
         raise Refused(str(error)) from error
     infos = [bullet.getJointInfo(body, k, physicsClientId=client) for k in range(bullet.getNumJoints(body, client))]
     links = {text_of(info[12]): info[0] for info in infos}
-    links.setdefault(mechanism.description.root, _BASE)
+    links.setdefault(mechanism.robot.root, _BASE)
     joints = {text_of(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
     methods = [prepared.link_by_name[name].method for name in mechanism.links]
     scale = _scaled_down(client, body, len(infos)) if looking else 1.0

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredModel
-    from kinematify.robot.robot import DescribedJoint, RigidGroup
+    from kinematify.robot.robot import Joint, RigidGroup, Robot
     from kinematify.view.alternatives import Alternative
 
 _ARC_STEPS = 24
@@ -50,9 +49,9 @@ class Touch:
 class ViewScene:
     """A model with the joints that are tried."""
 
-    def __init__(self, model: DeclaredModel, settings: ValidationSettings) -> None:
+    def __init__(self, model: Robot, settings: ValidationSettings) -> None:
         """Keep the model; collisions are prepared when first asked for."""
-        self.model, self.robot = model, model.kinematics
+        self.model, self.robot = model, model
         self._settings = settings
         self._tried: dict[str, Alternative] = {}
 
@@ -67,7 +66,7 @@ class ViewScene:
         return rest_configuration(self.robot)
 
     @cached_property
-    def leaders(self) -> tuple[DescribedJoint, ...]:
+    def leaders(self) -> tuple[Joint, ...]:
         """Joints that have a slider."""
         return tuple(j for j in self.robot.joints if j.kind is not JointType.FIXED and j.mimic is None)
 
@@ -95,7 +94,7 @@ class ViewScene:
         zero = forward_kinematics(self.robot, {})
         return {group.top: self._mesh(group, zero) for group in self.groups}
 
-    def range_of(self, joint: DescribedJoint) -> tuple[float, float]:
+    def range_of(self, joint: Joint) -> tuple[float, float]:
         """Ends of a slider [rad or m]: the limits, or half a turn either way where there are none."""
         if joint.kind is JointType.CONTINUOUS or not math.isfinite(joint.upper - joint.lower):
             return -math.pi, math.pi
@@ -141,7 +140,7 @@ class ViewScene:
             found.append(Touch(pair=(tops[pair[0]], tops[pair[1]]), depth=depth, tolerated=tolerated))
         return sorted(found, key=lambda touch: (touch.tolerated, -touch.depth))
 
-    def glyph(self, joint: DescribedJoint) -> FloatArray:
+    def glyph(self, joint: Joint) -> FloatArray:
         """Line segments of a joint's axis and range in the frame of the joint at zero, shape (n, 2, 3) [m]."""
         axis, pivot, kind = self._axis(joint)
         reach = 0.18 * self.size
@@ -160,7 +159,7 @@ class ViewScene:
         stroke = 0.03 * self.size * _across(axis)
         return [[pivot + end * axis - stroke, pivot + end * axis + stroke] for end in (lower, upper)]
 
-    def _axis(self, joint: DescribedJoint) -> tuple[FloatArray, FloatArray, JointType]:
+    def _axis(self, joint: Joint) -> tuple[FloatArray, FloatArray, JointType]:
         """Axis and a point on it in the joint's frame, and the type, as tried or as in the file."""
         tried = self._tried.get(joint.name)
         if tried is None:
@@ -168,7 +167,7 @@ class ViewScene:
         T_joint_root = np.linalg.inv(self._zero[joint.child])
         return T_joint_root[:3, :3] @ tried.axis, T_joint_root[:3, :3] @ tried.pivot + T_joint_root[:3, 3], tried.kind
 
-    def _motion(self, joint: DescribedJoint, value: float) -> FloatArray:
+    def _motion(self, joint: Joint, value: float) -> FloatArray:
         if joint.name not in self._tried:
             return joint.motion(value)
         axis, pivot, kind = self._axis(joint)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import viser
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import DescribedJoint
+    from kinematify.robot.robot import Joint
     from kinematify.view.alternatives import Alternative
     from kinematify.view.scene import Touch, ViewScene
 
@@ -138,7 +138,7 @@ class ModelViewer:
             for joint in self._scene.leaders:
                 self._add_joint(joint, alternatives.get((joint.parent, joint.child), ()))
 
-    def _add_joint(self, joint: DescribedJoint, candidates: Sequence[Alternative]) -> None:
+    def _add_joint(self, joint: Joint, candidates: Sequence[Alternative]) -> None:
         gui, (lower, upper) = self._server.gui, self._scene.range_of(joint)
         unit = "m" if joint.kind is JointType.PRISMATIC else "rad"
         step = max((upper - lower) / _SLIDER_STEPS, 1e-9)
@@ -196,13 +196,13 @@ class ModelViewer:
     def _toggle(self, top: str, *, visible: bool) -> None:
         self._meshes[top].visible = visible
 
-    def _try(self, joint: DescribedJoint, candidates: Sequence[Alternative], number: int) -> None:
+    def _try(self, joint: Joint, candidates: Sequence[Alternative], number: int) -> None:
         with self._lock:
             self._scene.try_joint(joint.name, candidates[number - 1] if number else None)
             self._draw_axis(joint)
             self._place()
 
-    def _draw_axis(self, joint: DescribedJoint) -> None:
+    def _draw_axis(self, joint: Joint) -> None:
         """Draw the axis with the range; it stays with the parent while the joint moves."""
         points = self._scene.glyph(joint).astype(np.float32)
         color = _SLIDE if joint.kind is JointType.PRISMATIC else _AXIS
@@ -231,7 +231,7 @@ class ModelViewer:
                 self._place_axis(joint, poses)
         self._status.content = _told(touches)
 
-    def _place_axis(self, joint: DescribedJoint, poses: Mapping[str, FloatArray]) -> None:
+    def _place_axis(self, joint: Joint, poses: Mapping[str, FloatArray]) -> None:
         T = poses[joint.parent] @ joint.T_parent_child
         handle = self._axes[joint.name]
         handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3]

@@ -17,8 +17,8 @@ from kinematify.assembly.erase import GroundTruth, erase, truth_path, write_eras
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
 from kinematify.errors import DescriptionError, InputError, OutputError
-from kinematify.robot.description import read_description
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Joint, Link, LinkMesh, Mimic, Robot, Shape
 from kinematify.robot.transforms import rotation_about
 from tests.places import BENCH
@@ -279,7 +279,7 @@ def test_benchmark_models_have_the_parts_and_joints_that_their_records_state(kin
     wrong = []
     for path in (path for path in MODELS if path.parent.parent.name == kind):
         facts = json.loads((path.parent / "source.json").read_text())
-        erased = erase(read_description(path), pose="random", seed=1)
+        erased = erase(read_robot(path, geometry="shown"), pose="random", seed=1)
         found = (len(erased.parts), len(erased.truth.joints), erased.truth.parents.count(-1), erased.truth.dropped)
         if found != (facts["rigid_parts_with_geometry"], facts["dof"], 1, ()):
             wrong.append((path.parent.name, found))
@@ -288,7 +288,7 @@ def test_benchmark_models_have_the_parts_and_joints_that_their_records_state(kin
 
 @needs_bench
 def test_the_screw_cap_is_a_chain_of_two_joints() -> None:
-    truth = erase(read_description(BENCH / "everyday" / "bottle_3763" / "model.urdf")).truth
+    truth = erase(read_robot(BENCH / "everyday" / "bottle_3763" / "model.urdf", geometry="shown")).truth
     assert [(j.name, j.kind, j.serial, j.chain_length) for j in truth.joints] == [
         ("joint_2", "prismatic", 0, 2),
         ("joint_0", "continuous", 1, 2),

@@ -16,7 +16,7 @@ from kinematify.cli.verdict import describe_briefly
 from kinematify.evaluation.datasets import find_objects
 from kinematify.generate.procedural.request import from_text
 from kinematify.pipeline.corpus import _entry, write_corpus
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result
 
@@ -74,7 +74,7 @@ def test_the_short_verdict_tells_errors_in_full_and_counts_warnings(monkeypatch)
 def test_the_truth_describes_the_same_object(generated):
     out, _ = generated
     truth = GroundTruth.from_json((out / "truth" / "truth.json").read_text())
-    described = read_description(out / "truth" / "model.urdf")
+    described = read_robot(out / "truth" / "model.urdf", geometry="shown")
     assert sorted(truth.part_names) == sorted(link.name for link in described.links)
     by_child = {joint.child: joint for joint in described.joints}
     for joint in truth.joints:
@@ -88,7 +88,7 @@ def test_the_inference_gives_the_same_model_where_the_truth_is_deleted(generated
     out, _ = generated
     shutil.copytree(out / "parts", tmp_path / "parts")
     assert run(["infer", str(tmp_path / "parts"), "-o", str(tmp_path / "again"), "--no-preview"]) == 0
-    one, two = (read_description(folder / "model.urdf") for folder in (out, tmp_path / "again"))
+    one, two = (read_robot(folder / "model.urdf", geometry="shown") for folder in (out, tmp_path / "again"))
     for first, second in zip(one.joints, two.joints, strict=True):
         assert (first.name, first.kind, first.parent) == (second.name, second.kind, second.parent)
         np.testing.assert_allclose(first.axis, second.axis, atol=1e-9)

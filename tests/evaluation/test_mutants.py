@@ -15,7 +15,7 @@ from kinematify.evaluation.studies.mutants.base import BaseModel, write_base
 from kinematify.evaluation.studies.mutants.fault import Planted
 from kinematify.evaluation.studies.mutants.outcome import Verdict, judge
 from kinematify.evaluation.studies.mutants.plan import FAULTS, Mutant, write_mutants
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 from tests.household import barrel_hinge_door, nested_drawer
 from tests.known import KnownObject
 from tests.validation.planted import write
@@ -39,7 +39,7 @@ def mutants(bases: list[BaseModel]) -> list[Mutant]:
 
 
 def at_rest(urdf: str | Path) -> ErasedModel:
-    return erase(read_description(Path(urdf)), shuffle=False)
+    return erase(read_robot(Path(urdf), geometry="shown"), shuffle=False)
 
 
 def of(mutants: list[Mutant], fault: str) -> list[Mutant]:

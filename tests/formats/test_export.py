@@ -15,8 +15,7 @@ from pxr import Usd, UsdGeom, UsdPhysics
 from kinematify import export
 from kinematify.cli.app import run
 from kinematify.errors import InputError, OutputError
-from kinematify.robot.description import read_description
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about
 
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import RobotDescription
+    from kinematify.robot.robot import Robot
 
 BOX = '<geometry><box size="{} {} {}"/></geometry>'
 RED = '<material name="red"><color rgba="1 0 0 0.5"/></material>'
@@ -92,8 +91,8 @@ def configurations() -> list[dict[str, float]]:
     ]
 
 
-def poses_of(urdf: Path) -> tuple[RobotDescription, list[dict[str, FloatArray]]]:
-    robot = read_description(urdf)
+def poses_of(urdf: Path) -> tuple[Robot, list[dict[str, FloatArray]]]:
+    robot = read_robot(urdf, geometry="shown")
     return robot, [forward_kinematics(robot, q) for q in configurations()]
 
 
@@ -252,7 +251,7 @@ def pose(text: str) -> FloatArray:
 
 def test_glb_shows_the_model_upright_in_its_colours(urdf: Path, tmp_path: Path) -> None:
     scene = trimesh.load_scene(export(urdf, "glb", tmp_path / "model.glb").path)
-    robot = read_description(urdf)
+    robot = read_robot(urdf, geometry="shown")
     poses = forward_kinematics(robot, {"hinge": 0.05})  # which puts the follower at zero
     hinge = robot.joint_by_name["hinge"]
     for name in ("swing arm", "slider"):
@@ -283,9 +282,9 @@ def test_formats_and_files_that_cannot_be_are_refused(
 
 def test_urdf_keeps_the_model_and_cuts_what_collides_into_convex_pieces(urdf: Path, tmp_path: Path) -> None:
     done = export(urdf, "urdf", tmp_path / "engines.urdf")
-    before, after = read_model(urdf), read_model(done.path)
+    before, after = read_robot(urdf), read_robot(done.path)
     for q, poses in zip(configurations(), poses_of(urdf)[1], strict=True):
-        moved = forward_kinematics(after.kinematics, q)
+        moved = forward_kinematics(after, q)
         assert all(np.allclose(moved[name], T, atol=1e-12) for name, T in poses.items())
     for joint, copy in zip(before.joints, after.joints, strict=True):
         assert (joint.joint.name, joint.joint.kind) == (copy.joint.name, copy.joint.kind)
@@ -311,8 +310,8 @@ def test_bullet_puts_a_ball_into_the_hollow_of_an_exported_tray(urdf: Path, tmp_
         try:
             robot = pybullet.loadURDF(str(path), useFixedBase=True, physicsClientId=client)
             name = [pybullet.getJointInfo(robot, k, physicsClientId=client)[12].decode() for k in range(5)]
-            poses = forward_kinematics(read_description(path), {})
-            tray = poses["slider"] @ read_model(path).link_by_name["slider"].visuals[0].T_link_shape
+            poses = forward_kinematics(read_robot(path, geometry="shown"), {})
+            tray = poses["slider"] @ read_robot(path).link_by_name["slider"].visuals[0].T_link_shape
             ball = pybullet.createMultiBody(
                 1.0,
                 pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.05, physicsClientId=client),

@@ -12,7 +12,7 @@ from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.grasp import Grasp, find_grasps
 from kinematify.manipulation.motion import Motion
 from kinematify.manipulation.robot import TaskRobot, builtin_robot
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 
 SETTINGS = load_settings()
 
@@ -103,7 +103,7 @@ def planned(
         steps: Rows of the pull.
     """
     robot = builtin_robot(folder)
-    scene = read_scene(read_model(urdf), SETTINGS.geometry)
+    scene = read_scene(read_robot(urdf), SETTINGS.geometry)
     names = [travel.joint for travel in scene.travels]
     opened = np.linspace(scene.mechanism.rest[names.index(joint)], end, steps)
     T_world_base = np.eye(4)
@@ -134,8 +134,8 @@ def link_pose(scene, joint: str, value: float) -> np.ndarray:
     """Pose of the child link of a joint at a value, frame of the root."""
     from kinematify.robot.robot import forward_kinematics
 
-    described = scene.model.kinematics.joint_by_name[joint]
-    return forward_kinematics(scene.model.kinematics, {joint: value})[described.child]
+    described = scene.model.joint_by_name[joint]
+    return forward_kinematics(scene.model, {joint: value})[described.child]
 
 
 def reach_of(robot: TaskRobot, target: np.ndarray, end: np.ndarray) -> np.ndarray:
@@ -192,5 +192,5 @@ def solved(robot: TaskRobot, target: np.ndarray, start: np.ndarray) -> np.ndarra
 
 def grasps(urdf: Path, joint: str, opening: float = 0.1, **options) -> list[Grasp]:
     """Grasps of a joint's part."""
-    scene = read_scene(read_model(urdf), SETTINGS.geometry)
+    scene = read_scene(read_robot(urdf), SETTINGS.geometry)
     return find_grasps(scene, joint, opening, settings=SETTINGS.task.grasp, **options)

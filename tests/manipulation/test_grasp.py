@@ -11,7 +11,7 @@ import pytest
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.grasp import search_grasps
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from tests.manipulation import furniture
 
 PLAIN = """<robot name="thing">
@@ -67,7 +67,7 @@ def test_a_door_is_held_far_from_its_hinge(tmp_path: Path) -> None:
 def test_fingers_and_what_they_hold_are_where_they_should_be(tmp_path: Path) -> None:
     """Both pads stand beside the part, and a box between them meets it."""
     urdf = furniture.write_drawer_cabinet(tmp_path / "c.urdf")
-    scene = read_scene(read_model(urdf), furniture.SETTINGS.geometry)
+    scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
     body = next(b for b in scene.bodies if b.name == "part_7").solid
     tree = fcl.CollisionObject(body.tree, fcl.Transform(body.middle / scene.unit))
 
@@ -85,14 +85,14 @@ def test_fingers_and_what_they_hold_are_where_they_should_be(tmp_path: Path) -> 
 
 def test_a_bar_that_is_wider_than_the_gripper_is_not_held(tmp_path: Path) -> None:
     urdf = furniture.write_drawer_cabinet(tmp_path / "c.urdf", handle=0.03)
-    scene = read_scene(read_model(urdf), furniture.SETTINGS.geometry)
+    scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
     report = search_grasps(scene, "slide", 0.01, settings=furniture.SETTINGS.task.grasp)
     assert not [g for g in report.grasps if g.width > 0.01]
 
 
 def test_a_flush_front_offers_nothing_and_says_why(tmp_path: Path) -> None:
     urdf = write(tmp_path / "c.urdf", furniture.box((0.02, 0.39, 0.59), (0.0, 0.0, 0.3)))
-    scene = read_scene(read_model(urdf), furniture.SETTINGS.geometry)
+    scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
     report = search_grasps(scene, "j", 0.1, settings=furniture.SETTINGS.task.grasp)
     assert not report.grasps
     assert report.reason
@@ -108,7 +108,7 @@ def test_a_part_inside_a_closed_box_is_not_seen(tmp_path: Path) -> None:
         ]
     )  # fmt: skip
     urdf = write(tmp_path / "c.urdf", furniture.box((0.03, 0.03, 0.03), (0, 0, 0)), body=body)
-    scene = read_scene(read_model(urdf), furniture.SETTINGS.geometry)
+    scene = read_scene(read_robot(urdf), furniture.SETTINGS.geometry)
     report = search_grasps(scene, "j", 0.1, settings=furniture.SETTINGS.task.grasp)
     assert not report.grasps
     assert "outside" in (report.reason or "")

@@ -21,7 +21,7 @@ from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pul
 from kinematify.manipulation.pull import Puller
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.manipulation.robot import builtin_robot
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.run import validate
@@ -36,7 +36,7 @@ def arm(tmp_path_factory: pytest.TempPathFactory) -> Arm:
 
 
 def scene_of(urdf: Path) -> Scene:
-    return read_scene(read_model(urdf), SETTINGS.geometry)
+    return read_scene(read_robot(urdf), SETTINGS.geometry)
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_inverse_kinematics_reaches_poses_that_the_arm_can_take(arm: Arm) -> Non
     rows = arm.lower + rng.random((40, arm.dof)) * (arm.upper - arm.lower)
     reached = 0
     for q in rows:
-        target = forward_kinematics(arm.declared.kinematics, dict(zip(arm.robot.arm_joints, q.tolist(), strict=True)))[
+        target = forward_kinematics(arm.declared, dict(zip(arm.robot.arm_joints, q.tolist(), strict=True)))[
             arm.robot.tool
         ]
         found = arm.solve_anew(target, 6)
@@ -78,7 +78,7 @@ def test_arm_opens_a_drawer_and_holds_on_all_the_way(arm: Arm, drawer: Scene, dr
     assert plan.opened[-1] == pytest.approx(0.25)
     T_base_world = np.linalg.inv(plan.place.T_world_base)
     for q, value in zip(plan.pull, plan.opened, strict=True):
-        link = forward_kinematics(drawer.model.kinematics, {"slide": float(value)})["part_7"]
+        link = forward_kinematics(drawer.model, {"slide": float(value)})["part_7"]
         wanted = T_base_world @ plan.T_world_object @ link @ plan.place.T_link_tool
         assert np.abs(arm.pose(q) - wanted).max() < 2e-3
 

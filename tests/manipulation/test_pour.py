@@ -16,7 +16,7 @@ from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.pour import GRASP, PourPlan, plan_pour
 from kinematify.manipulation.pour_scene import Vessel, pour_motion, read_vessel, write_pour
 from kinematify.manipulation.robot import builtin_robot
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from tests.manipulation.furniture import SETTINGS, box
 
 
@@ -56,7 +56,7 @@ def plan(vessels: tuple[Vessel, Vessel, Path]) -> PourPlan:
 def test_the_lip_ends_above_the_middle_of_the_container(vessels: tuple[Vessel, Vessel, Path], yaw: float) -> None:
     cup, bowl, folder = vessels
     pour = write_pour(cup, bowl, yaw, folder / "made.urdf", SETTINGS.task.pour)
-    scene = read_scene(read_model(pour.urdf), SETTINGS.geometry)
+    scene = read_scene(read_robot(pour.urdf), SETTINGS.geometry)
     motion = pour_motion(scene, pour, SETTINGS.task.pour)
     names = [body.name for body in scene.bodies]
     container = scene.bodies[names.index("into_shell")]
@@ -72,7 +72,7 @@ def test_the_lip_ends_above_the_middle_of_the_container(vessels: tuple[Vessel, V
 def test_the_cup_stays_upright_until_it_tilts(vessels: tuple[Vessel, Vessel, Path]) -> None:
     cup, bowl, folder = vessels
     pour = write_pour(cup, bowl, 0.5, folder / "made.urdf", SETTINGS.task.pour)
-    scene = read_scene(read_model(pour.urdf), SETTINGS.geometry)
+    scene = read_scene(read_robot(pour.urdf), SETTINGS.geometry)
     poses = pour_motion(scene, pour, SETTINGS.task.pour).link_poses
     up = poses[:, :3, :3] @ np.array([0.0, 0.0, 1.0])
     tilting = np.flatnonzero(up[:, 2] < 1.0 - 1e-9)

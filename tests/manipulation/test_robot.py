@@ -13,7 +13,7 @@ from kinematify.errors import InputError
 from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.scene import read_scene, relative
 from kinematify.manipulation.robot import GRASP_LINK, TaskRobot, builtin_robot, user_robot
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from tests.places import BENCH
 
 needs_bench = pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")
@@ -54,7 +54,7 @@ def test_the_arm_reaches_as_far_as_research_arms(arm: TaskRobot) -> None:
 
 
 def test_neighbours_of_the_arm_touch_in_no_configuration(arm: TaskRobot) -> None:
-    scene = read_scene(read_model(arm.urdf), load_settings().geometry)
+    scene = read_scene(read_robot(arm.urdf), load_settings().geometry)
     rng = np.random.default_rng(1)
     low, high = (np.array([getattr(t, end) for t in scene.travels]) for end in ("lower", "upper"))
     poses = scene.poses(rng.uniform(low, high, (300, len(low))))
@@ -78,7 +78,7 @@ def test_fingers_meet_when_closed(arm: TaskRobot) -> None:
 
 
 def test_mass_of_every_link_lies_in_its_shapes(arm: TaskRobot) -> None:
-    for link in read_model(arm.urdf).links:
+    for link in read_robot(arm.urdf).links:
         if not link.has_geometry:
             continue
         assert link.inertial is not None

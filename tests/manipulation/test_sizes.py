@@ -10,7 +10,7 @@ import pytest
 from kinematify.errors import InputError
 from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.sizes import SIZES, category_of, is_normalised, sizing
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from tests.manipulation import furniture
 from tests.places import BENCH
@@ -89,9 +89,9 @@ LINKAGE = """<robot name="r">
 def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(LINKAGE)
     write_scaled(tmp_path / "r.urdf", 0.25, tmp_path / "s.urdf")
-    first, second = (read_model(tmp_path / f"{name}.urdf") for name in ("r", "s"))
+    first, second = (read_robot(tmp_path / f"{name}.urdf") for name in ("r", "s"))
     for angle in (-0.7, 0.0, 0.9):
-        here, there = (forward_kinematics(model.kinematics, {"turn": angle}) for model in (first, second))
+        here, there = (forward_kinematics(model, {"turn": angle}) for model in (first, second))
         for link in here:
             assert there[link][:3, 3] == pytest.approx(0.25 * here[link][:3, 3])
             assert there[link][:3, :3] == pytest.approx(here[link][:3, :3])
@@ -109,14 +109,14 @@ def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
 def test_factor_one_changes_no_number(tmp_path: Path) -> None:
     urdf = furniture.write_door_cabinet(tmp_path / "c.urdf")
     write_scaled(urdf, 1.0, tmp_path / "s.urdf")
-    assert read_model(tmp_path / "s.urdf").joint_by_name["hinge"].joint.lower == -1.4
+    assert read_robot(tmp_path / "s.urdf").joint_by_name["hinge"].joint.lower == -1.4
 
 
 @pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")
 def test_meshes_of_a_scaled_copy_are_found_and_scaled(tmp_path: Path) -> None:
     urdf = BENCH / "everyday" / "oven_7138" / "model.urdf"
     write_scaled(urdf, 0.5, tmp_path / "s.urdf")
-    first, second = read_model(urdf), read_model(tmp_path / "s.urdf")
+    first, second = read_robot(urdf), read_robot(tmp_path / "s.urdf")
     for one, other in zip(first.links, second.links, strict=True):
         for a, b in zip(one.visuals, other.visuals, strict=True):
             assert b.mesh.vertices == pytest.approx(0.5 * a.mesh.vertices, abs=1e-9)

@@ -18,7 +18,7 @@ from kinematify.geometry.scene import read_scene
 from kinematify.geometry.together import looked_at, random_rows
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.manipulation.srdf import DisableReason, disabled_pairs, write_srdf
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.validation.geometry.look import allowed_pairs
 
 SETTINGS = load_settings()
@@ -78,8 +78,8 @@ def test_pinocchio_reads_it_back_with_the_same_pairs(arm: tuple[Path, Path]) -> 
     for pair in geometry.collisionPairs:
         links = frozenset(model.frames[geometry.geometryObjects[k].parentFrame].name for k in (pair.first, pair.second))
         kept |= {links} if len(links) == 2 else set()
-    disabled, enabled = disabled_pairs(read_model(urdf), SETTINGS)
-    names = [link.name for link in read_model(urdf).links if link.has_geometry]
+    disabled, enabled = disabled_pairs(read_robot(urdf), SETTINGS)
+    names = [link.name for link in read_robot(urdf).links if link.has_geometry]
     everything = {frozenset((a, b)) for a in names for b in names if a != b}
     assert kept == everything - {frozenset(pair.links) for pair in disabled}
     assert len(kept) == enabled
@@ -114,7 +114,7 @@ def test_a_pair_that_is_never_checked_never_meets(arm: tuple[Path, Path]) -> Non
 
 def test_every_reason_is_told(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(STUCK)
-    found, enabled = disabled_pairs(read_model(tmp_path / "r.urdf"), SETTINGS)
+    found, enabled = disabled_pairs(read_robot(tmp_path / "r.urdf"), SETTINGS)
     reasons = {frozenset(pair.links): pair.reason for pair in found}
     assert reasons[frozenset(("base", "arm"))] is DisableReason.ADJACENT
     assert reasons[frozenset(("arm", "ring"))] is DisableReason.DEFAULT
@@ -124,7 +124,7 @@ def test_every_reason_is_told(tmp_path: Path) -> None:
 
 def test_reasons_agree_with_those_of_kv3(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(STUCK)
-    model = read_model(tmp_path / "r.urdf")
+    model = read_robot(tmp_path / "r.urdf")
     scene = read_scene(model, SETTINGS.geometry)
     overlap = Overlap(scene)
     allowance = Allowance(scene, overlap)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.simulation.prepare import prepare
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult
@@ -151,7 +151,7 @@ def prepared_request(
 ) -> StageRequest:
     """Write a model, prepare it for the engines, and return the request of a stage."""
     path, settings = model.write(folder), settings or load_settings()
-    prepare(read_model(path), folder, settings.prepare)
+    prepare(read_robot(path), folder, settings.prepare)
     return StageRequest(
         urdf=path,
         package_dirs=(),

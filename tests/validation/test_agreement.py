@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import (
     Configurations,
     EnginePoses,
@@ -274,13 +274,13 @@ def test_lost_and_swapped_joints_are_found(tmp_path: Path) -> None:
         masses={link.link: link.mass for link in prepared.links},
         total_mass=prepared.total_mass + 1.0,
     )
-    compare_with_file(check, read_model(request.urdf), prepared, loaded, 1e-4)
+    compare_with_file(check, read_robot(request.urdf), prepared, loaded, 1e-4)
     assert [finding.joint for finding in check.findings] == ["drawer_joint", "door_joint"]
 
 
 def configurations(model: Model, folder: Path, **changes: int) -> Configurations:
     chosen = load_settings().agreement.model_copy(update=changes)
-    return agreement_configurations(read_model(model.write(folder)).kinematics, chosen, 0)
+    return agreement_configurations(read_robot(model.write(folder)), chosen, 0)
 
 
 def test_configurations_hold_zero_rest_and_all_ends(tmp_path: Path) -> None:
@@ -319,7 +319,7 @@ def test_configurations_stay_within_limits_and_caps(
 @pytest.mark.skipif(not PANDA.is_file(), reason="the benchmark objects are not there")
 def test_engines_agree_on_panda(tmp_path: Path) -> None:
     request = replace(prepared_request(cabinet(), tmp_path), urdf=PANDA.resolve())
-    prepare(read_model(PANDA), tmp_path, request.settings.prepare)
+    prepare(read_robot(PANDA), tmp_path, request.settings.prepare)
     for engine in ENGINES:
         tell(partial(engine_stage.run, engine=engine), request)
     results = compared(request)

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.declared import DeclaredModel
+from kinematify.robot.robot import Robot
 from kinematify.validation.asset.meshes import check_mesh_files
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
@@ -48,7 +48,7 @@ def cupboard(tmp_path: Path) -> Path:
     return tmp_path / "model.urdf"
 
 
-def check_model(path: Path) -> tuple[DeclaredModel | None, dict[str, CheckResult]]:
+def check_model(path: Path) -> tuple[Robot | None, dict[str, CheckResult]]:
     results: list[CheckResult] = []
     request = StageRequest(
         urdf=path,

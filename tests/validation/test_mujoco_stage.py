@@ -12,7 +12,7 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import Mechanism, sweep_rows
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
@@ -76,11 +76,11 @@ def test_leaves_poses_that_agree_with_the_kinematics(tmp_path: Path) -> None:
     request = prepared_request(cabinet(), tmp_path)
     tell(run, request)
     poses = read_poses(tmp_path, "mujoco")
-    description = read_model(request.urdf).kinematics
-    rows = agreement_configurations(description, request.settings.agreement, request.settings.seed)
+    robot = read_robot(request.urdf)
+    rows = agreement_configurations(robot, request.settings.agreement, request.settings.seed)
     assert poses is not None
     np.testing.assert_array_equal(poses.q, rows.q)
-    np.testing.assert_allclose(poses.T_world_link, link_poses(description, rows), atol=1e-12)
+    np.testing.assert_allclose(poses.T_world_link, link_poses(robot, rows), atol=1e-12)
     assert poses.mass_matrix is not None
     np.testing.assert_allclose(poses.mass_matrix[0, 0, 0], 2.0)  # a drawer of 2 kg that slides
     assert poses.masses is not None
@@ -297,7 +297,7 @@ def test_late_stage_says_what_it_left_out(tmp_path: Path) -> None:
 
 
 def test_sweep_moves_one_joint_at_a_time(tmp_path: Path) -> None:
-    mechanism = Mechanism(description=read_model(cabinet().write(tmp_path)).kinematics)
+    mechanism = Mechanism(robot=read_robot(cabinet().write(tmp_path)))
     rows = mechanism.sweep(5)
     assert rows.shape == (11, 2)
     np.testing.assert_array_equal(rows[sweep_rows(1, 5), 0], 0.0)
@@ -308,7 +308,7 @@ def test_sweep_moves_one_joint_at_a_time(tmp_path: Path) -> None:
 @pytest.mark.skipif(not PANDA.is_file(), reason="the benchmark objects are not there")
 def test_panda_has_no_error_and_is_quick(tmp_path: Path) -> None:
     settings = load_settings()
-    prepare(read_model(PANDA), tmp_path, settings.prepare)
+    prepare(read_robot(PANDA), tmp_path, settings.prepare)
     request = StageRequest(
         urdf=PANDA,
         package_dirs=(),

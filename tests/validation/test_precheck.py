@@ -10,7 +10,7 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.precheck.document import precheck
@@ -187,7 +187,7 @@ def test_a_fault_is_found_where_it_is(fault: str, tmp_path: Path) -> None:
 def test_what_is_let_pass_can_be_read(fault: str, tmp_path: Path) -> None:
     old, new, *_ = FAULTS[fault]
     check_text(tmp_path, CLEAN.replace(old, new, 1))
-    assert len(read_model(tmp_path / "model.urdf").links) == 3
+    assert len(read_robot(tmp_path / "model.urdf").links) == 3
 
 
 def test_all_problems_are_told_at_once(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from kinematify.geometry.cut import Concave, Surface, cut_worst_first, split
 from kinematify.geometry.cut_cache import cache_folder
 from kinematify.model.collision_pieces import Method
 from kinematify.model.masses import lifted
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rpy_of
 from kinematify.simulation.prepared import Prepared, load_prepared
@@ -114,7 +114,7 @@ def machine(tmp_path: Path) -> Path:
 
 def test_every_engine_reads_the_joints_and_poses_of_the_original(machine: Path) -> None:
     urdf = prepared(machine).urdf
-    poses = forward_kinematics(read_model(machine).kinematics, {"hinge": 0.7})  # the slide follows to 0.45
+    poses = forward_kinematics(read_robot(machine), {"hinge": 0.7})  # the slide follows to 0.45
     for read in (mujoco_positions, pybullet_positions, pinocchio_positions):
         positions = read(urdf, {"hinge": 0.7, "slide": 0.45})
         for name in ("arm", "tip"):

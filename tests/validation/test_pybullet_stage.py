@@ -11,7 +11,7 @@ import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import Mechanism
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
@@ -62,10 +62,10 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
     request = prepared_request(cabinet(), tmp_path)
     tell(run, request)
     poses = read_poses(tmp_path, "pybullet")
-    description = read_model(request.urdf).kinematics
-    rows = agreement_configurations(description, request.settings.agreement, request.settings.seed)
+    robot = read_robot(request.urdf)
+    rows = agreement_configurations(robot, request.settings.agreement, request.settings.seed)
     assert poses is not None
-    np.testing.assert_allclose(poses.T_world_link, link_poses(description, rows), atol=1e-6)
+    np.testing.assert_allclose(poses.T_world_link, link_poses(robot, rows), atol=1e-6)
     assert poses.masses is not None
     np.testing.assert_allclose(poses.masses, [20.0, 2.0, 2.0])  # that of the fixed base too
     assert poses.mass_matrix is not None
@@ -188,7 +188,7 @@ def test_more_joints_than_pybullet_has_room_for_are_not_given_to_it(tmp_path: Pa
 
 def test_contacts_do_not_depend_on_what_was_looked_at_before(tmp_path: Path) -> None:
     request = prepared_request(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
-    mechanism, prepared = Mechanism(description=read_model(request.urdf).kinematics), load_prepared(tmp_path)
+    mechanism, prepared = Mechanism(robot=read_robot(request.urdf)), load_prepared(tmp_path)
     loaded = PybulletEngine(settings=load_settings().engines, log=tmp_path / "log").load(prepared, mechanism)
     values = mechanism.all_values(mechanism.sweep(15))
     forth, back = (loaded.contacts(rows) for rows in (values, values[::-1]))
@@ -209,10 +209,10 @@ def test_margin_of_hulls_is_not_counted(tmp_path: Path, offset: float, depth: fl
     joint = '<joint name="j" type="prismatic"><parent link="a"/><child link="b"/><limit lower="-1" upper="1"/></joint>'
     path = tmp_path / "two.urdf"
     path.write_text(f'<robot name="two">{links}{joint}</robot>')
-    model = read_model(path)
+    model = read_robot(path)
     prepared = prepare(model, tmp_path, load_settings().prepare)
     engine = PybulletEngine(settings=load_settings().engines, log=tmp_path / "log")
-    contacts = engine.load(prepared, Mechanism(description=model.kinematics)).contacts(np.array([[offset]]))
+    contacts = engine.load(prepared, Mechanism(robot=model)).contacts(np.array([[offset]]))
     assert np.max(contacts.depth, initial=0.0) == pytest.approx(depth, abs=2e-4)
 
 
@@ -233,7 +233,7 @@ def test_inertias_of_heavy_models_are_not_refused(tmp_path: Path) -> None:
 def test_panda_has_no_errors(tmp_path: Path) -> None:
     settings = load_settings()
     request = prepared_request(cabinet(), tmp_path, settings)  # for its fields
-    prepare(read_model(PANDA), tmp_path, settings.prepare)
+    prepare(read_robot(PANDA), tmp_path, settings.prepare)
     result = tell(run, type(request)(**{**vars(request), "urdf": PANDA.resolve()}))
     assert set(result.results) == IDS
     errors = [f for r in result.results.values() for f in r.findings if f.severity is Severity.ERROR]

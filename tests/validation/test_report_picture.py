@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.formats.picture import Drawing, drawing_of, shown_model
 
@@ -39,7 +39,7 @@ def gripper(tmp_path: Path) -> Path:
 
 
 def test_shown_model_stands_at_rest_and_moves_as_declared(gripper: Path) -> None:
-    model = shown_model(read_model(gripper).kinematics)
+    model = shown_model(read_robot(gripper))
     assert [link.name for link in model.links] == ["world", "wrist", "left", "right"]
     turned = (0.1 * np.cos(1) + 0.2 * np.sin(1), 0.1 * np.sin(1) + 0.2 * np.cos(1), 0.05)
     assert model.link_by_name["world"].part.diagonal == pytest.approx(np.linalg.norm(turned))

@@ -15,7 +15,7 @@ from kinematify.generate.procedural.solids import box
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
 from kinematify.robot.mechanism import Mechanism
-from kinematify.robot.read import read_model, read_without_geometry
+from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.surfaces import surfaces_meet
 from kinematify.validation.run import validate
@@ -38,14 +38,14 @@ def slit(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(("depth", "meet"), [(0.06, False), (0.1, True)])
 def test_a_bar_is_stopped_by_the_end_of_its_slit_alone(slit: Path, depth: float, meet: bool) -> None:
-    model = read_model(slit)
+    model = read_robot(slit)
     rows = np.linspace(0.0, depth, 20)[:, None]
-    assert Mechanism(description=model.kinematics).rest == 0.0
+    assert Mechanism(robot=model).rest == 0.0
     assert surfaces_meet(model, ("wall", "bar"), rows, tolerance=0.001, settings=GEOMETRY) is meet
 
 
 def test_without_surfaces_the_pieces_have_the_last_word(slit: Path) -> None:
-    bare = read_without_geometry(slit)
+    bare = read_robot(slit, geometry="none")
     assert surfaces_meet(bare, ("wall", "bar"), np.zeros((2, 1)), tolerance=0.001, settings=GEOMETRY)
 
 

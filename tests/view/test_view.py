@@ -15,7 +15,7 @@ import pytest
 from kinematify.cli.app import run
 from kinematify.config.validation import load_settings
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import Alternative, load_alternatives
 from kinematify.view.scene import ViewScene
@@ -39,7 +39,7 @@ def urdf(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def scene(urdf: Path) -> ViewScene:
-    return ViewScene(read_model(urdf), load_settings())
+    return ViewScene(read_robot(urdf), load_settings())
 
 
 def test_bodies_stand_where_the_joints_put_them(scene: ViewScene) -> None:

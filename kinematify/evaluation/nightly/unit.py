@@ -25,7 +25,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.nightly.record import Problem
 from kinematify.model.urdf import write_urdf
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
@@ -138,7 +138,7 @@ def _write_page(request: UnitRequest, urdf: Path, package_dirs: tuple[Path, ...]
 def _inferred(request: UnitRequest, folder: Path) -> Path:
     """Write the model that the inference makes of the anonymous parts of an object at rest."""
     package_dirs = tuple(map(Path, request.package_dirs))
-    erased = erase(read_description(Path(request.urdf), package_dirs=package_dirs), pose="rest", seed=0)
+    erased = erase(read_robot(Path(request.urdf), package_dirs=package_dirs, geometry="shown"), pose="rest", seed=0)
     module, _, name = request.infer.partition(":")
     infer = getattr(importlib.import_module(module), name)
     inference = infer(Assembly(parts=erased.parts, source="nightly"), config=load_config(request.infer_config))

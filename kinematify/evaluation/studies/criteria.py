@@ -31,7 +31,7 @@ from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -100,7 +100,7 @@ def _made(source: Any) -> tuple[tuple[Part, ...], GroundTruth]:
     if isinstance(source, tuple):
         blueprint = build(FAMILIES[source[0]], {}, seed=source[1])
         return blueprint.parts, ground_truth(blueprint)
-    erased = erase(read_description(source), pose="rest", seed=0, yaw_deg=0.0)
+    erased = erase(read_robot(source, geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
     return erased.parts, erased.truth
 
 

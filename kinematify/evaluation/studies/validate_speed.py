@@ -25,7 +25,7 @@ import pybullet as bullet
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import find_objects
 from kinematify.robot.mechanism import Mechanism
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.simulation.mujoco_engine import MujocoEngine
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import load_prepared
@@ -104,9 +104,9 @@ def _run(urdf: Path, cache: str) -> float:
 def _ratios(urdf: Path, folder: Path) -> tuple[int, float, float]:
     """Number of configurations, and the cost of our sweep over that of the bare loop in MuJoCo and PyBullet."""
     settings = load_settings()
-    model = read_model(urdf)
+    model = read_robot(urdf)
     prepare(model, folder, settings.prepare)
-    prepared, mechanism = load_prepared(folder), Mechanism(description=model.kinematics)
+    prepared, mechanism = load_prepared(folder), Mechanism(robot=model)
     values = mechanism.all_values(mechanism.sweep(settings.engines.sweep_samples))
     ours = MujocoEngine(settings=settings.engines, threads=1, said=[]).load(prepared, mechanism)
     by_mujoco = _ratio(lambda: ours.measure(values, dynamic=1), lambda: _bare_mujoco(ours.measuring, values))

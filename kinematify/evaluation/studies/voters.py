@@ -22,7 +22,7 @@ from kinematify.evaluation.metrics import score_object
 from kinematify.evaluation.prediction import prediction_of
 from kinematify.joints.candidate import JointCandidate
 from kinematify.pipeline import infer
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 from kinematify.vision.answer import TYPES, Direction, JointVotes, Side, Vote
 from kinematify.vision.votes import chosen_anew, direction_of, side_of
 
@@ -68,7 +68,7 @@ def main() -> None:
     config = load_config()
     scores: dict[str, list[list[ObjectScore]]] = {}
     for item in find_objects(arguments.data)[: arguments.most]:
-        erased = erase(read_description(item.urdf), pose="rest", seed=CONDITIONS[0].seed, yaw_deg=0.0)
+        erased = erase(read_robot(item.urdf, geometry="shown"), pose="rest", seed=CONDITIONS[0].seed, yaw_deg=0.0)
         inference = infer(Assembly(parts=erased.parts, source="benchmark"), config=config)
         _add(scores, "nobody", [_score(erased, inference)])
         for questions in (("type",), ("direction",), _QUESTIONS):

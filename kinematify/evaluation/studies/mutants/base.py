@@ -12,13 +12,13 @@ from lxml import etree
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.model.inertia import inertial_of
-from kinematify.robot.description import read_description
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.evaluation.datasets import BenchObject
-    from kinematify.robot.robot import DescribedLink, RobotDescription
+    from kinematify.robot.robot import Link, Robot
 
 UNTOUCHED = "untouched"
 
@@ -40,9 +40,9 @@ class BaseModel:
         """The robot element, for changing."""
         return etree.parse(self.urdf, etree.XMLParser(remove_comments=True)).getroot()
 
-    def description(self) -> RobotDescription:
+    def robot(self) -> Robot:
         """Links, joints and meshes."""
-        return read_description(self.urdf)
+        return read_robot(self.urdf, geometry="shown")
 
 
 def write_base(item: BenchObject, work: Path) -> BaseModel:
@@ -53,10 +53,10 @@ def write_base(item: BenchObject, work: Path) -> BaseModel:
     if not meshes.is_symlink():
         meshes.symlink_to(item.urdf.resolve().parent / "meshes")
     base = BaseModel(name=item.name, folder=folder)
-    description = read_description(item.urdf)
+    robot = read_robot(item.urdf, geometry="shown")
     root = etree.parse(item.urdf, etree.XMLParser(remove_blank_text=True, remove_comments=True)).getroot()
     for link in root.findall("link"):
-        _complete(link, description.link_by_name[link.get("name") or ""])
+        _complete(link, robot.link_by_name[link.get("name") or ""])
     write_model(root, base.urdf)
     return base
 
@@ -66,7 +66,7 @@ def write_model(robot: etree._Element, path: Path) -> None:
     etree.ElementTree(robot).write(path, pretty_print=True, xml_declaration=True, encoding="utf-8")
 
 
-def _complete(element: etree._Element, link: DescribedLink) -> None:
+def _complete(element: etree._Element, link: Link) -> None:
     if not link.has_geometry:
         return
     if element.find("collision") is None:
@@ -78,7 +78,7 @@ def _complete(element: etree._Element, link: DescribedLink) -> None:
         element.insert(0, _inertial(link_part(link)))
 
 
-def link_part(link: DescribedLink) -> Part:
+def link_part(link: Link) -> Part:
     """All geometry of a link as one part, in the link frame."""
     counts = np.cumsum([0, *(len(mesh.vertices) for mesh in link.meshes)])
     return Part(

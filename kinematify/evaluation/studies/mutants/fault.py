@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import numpy as np
     from lxml.etree import _Element
 
-    from kinematify.robot.robot import DescribedJoint, DescribedLink, RobotDescription
+    from kinematify.robot.robot import Joint, Link, Robot
     from kinematify.validation.finding import Blame
 
 
@@ -26,9 +26,9 @@ class Planted:
     """Links of which one may be named instead; empty where the whole model is wrong and any name is right."""
 
 
-JointPlanter = Callable[["_Element", "DescribedJoint", "RobotDescription", "np.random.Generator"], Planted | None]
+JointPlanter = Callable[["_Element", "Joint", "Robot", "np.random.Generator"], Planted | None]
 """Changes the robot element in place; None where the fault would change nothing, so that there is none."""
-LinkPlanter = Callable[["_Element", "DescribedLink", "RobotDescription", "np.random.Generator"], Planted | None]
+LinkPlanter = Callable[["_Element", "Link", "Robot", "np.random.Generator"], Planted | None]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.robot.robot import DescribedJoint, DescribedLink, RobotDescription
+    from kinematify.robot.robot import Joint, Link, Robot
 
     Random = np.random.Generator
 
@@ -28,24 +28,24 @@ OUTSIDE_SHARE = 2.0
 """How far a centre of mass is moved, fraction of the link's diagonal."""
 
 
-def moving_links(description: RobotDescription) -> list[DescribedLink]:
+def moving_links(robot: Robot) -> list[Link]:
     """Links with geometry that a joint moves; defects of mass and collision matter there."""
-    fixed = set(rigid_groups(description)[0].links)
-    return [link for link in description.links if link.has_geometry and link.name not in fixed]
+    fixed = set(rigid_groups(robot)[0].links)
+    return [link for link in robot.links if link.has_geometry and link.name not in fixed]
 
 
 # ---- joints ----------------------------------------------------------------------------------------------------------
 
 
-def _joint(robot: _Element, joint: DescribedJoint) -> _Element:
+def _joint(robot: _Element, joint: Joint) -> _Element:
     return next(item for item in robot.findall("joint") if item.get("name") == joint.name)
 
 
-def _at_joint(joint: DescribedJoint, how: str) -> Planted:
+def _at_joint(joint: Joint, how: str) -> Planted:
     return Planted(how=how, joint=joint.name, links=(joint.child,))
 
 
-def _zero_axis(robot: _Element, joint: DescribedJoint, model: RobotDescription, random: Random) -> Planted:
+def _zero_axis(robot: _Element, joint: Joint, model: Robot, random: Random) -> Planted:
     element = _joint(robot, joint)
     axis = element.find("axis")
     if axis is None:
@@ -55,7 +55,7 @@ def _zero_axis(robot: _Element, joint: DescribedJoint, model: RobotDescription, 
     return _at_joint(joint, "axis 0 0 0")
 
 
-def _swapped_limits(robot: _Element, joint: DescribedJoint, model: RobotDescription, random: Random) -> Planted | None:
+def _swapped_limits(robot: _Element, joint: Joint, model: Robot, random: Random) -> Planted | None:
     limit = _joint(robot, joint).find("limit")
     if not np.isfinite(joint.upper) or limit is None:
         return None
@@ -64,7 +64,7 @@ def _swapped_limits(robot: _Element, joint: DescribedJoint, model: RobotDescript
     return _at_joint(joint, f"limits {joint.upper:.3g} to {joint.lower:.3g}")
 
 
-def _degrees(robot: _Element, joint: DescribedJoint, model: RobotDescription, random: Random) -> Planted | None:
+def _degrees(robot: _Element, joint: Joint, model: Robot, random: Random) -> Planted | None:
     limit = _joint(robot, joint).find("limit")
     if joint.kind is not JointType.REVOLUTE or limit is None:
         return None
@@ -76,23 +76,23 @@ def _degrees(robot: _Element, joint: DescribedJoint, model: RobotDescription, ra
 # ---- links -----------------------------------------------------------------------------------------------------------
 
 
-def _link(robot: _Element, link: DescribedLink) -> _Element:
+def _link(robot: _Element, link: Link) -> _Element:
     return next(item for item in robot.findall("link") if item.get("name") == link.name)
 
 
-def _at_link(link: DescribedLink, model: RobotDescription, how: str) -> Planted:
+def _at_link(link: Link, model: Robot, how: str) -> Planted:
     above = model.joint_above.get(link.name)
     return Planted(how=how, joint=None if above is None else above.name, links=(link.name,))
 
 
-def _units_of_link(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _units_of_link(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     factor = 1000.0 if random.random() < 0.5 else 0.001
     if not _scaled([_link(robot, link)], factor):
         return None
     return _at_link(link, model, f"meshes scaled by {factor:g}")
 
 
-def _units_of_all(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _units_of_all(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     factor = 1000.0 if random.random() < 0.5 else 0.001
     if not _scaled(robot.findall("link"), factor):
         return None
@@ -107,7 +107,7 @@ def _scaled(links: Sequence[_Element], factor: float) -> int:
     return len(meshes)
 
 
-def _inertia(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _inertia(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     inertia = _link(robot, link).find("inertial/inertia")
     if inertia is None:
         return None
@@ -124,7 +124,7 @@ def _inertia(robot: _Element, link: DescribedLink, model: RobotDescription, rand
     return _at_link(link, model, f"inertia: {how}")
 
 
-def _mass(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _mass(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     mass = _link(robot, link).find("inertial/mass")
     if mass is None:
         return None
@@ -134,7 +134,7 @@ def _mass(robot: _Element, link: DescribedLink, model: RobotDescription, random:
     return _at_link(link, model, f"mass {value:.3g} kg instead of {before:.3g} kg")
 
 
-def _missing_mesh(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _missing_mesh(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     meshes = list(_link(robot, link).iter("mesh"))
     if not meshes:
         return None
@@ -142,7 +142,7 @@ def _missing_mesh(robot: _Element, link: DescribedLink, model: RobotDescription,
     return _at_link(link, model, "a mesh file is missing")
 
 
-def _missing_collision(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _missing_collision(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     element = _link(robot, link)
     shapes = element.findall("collision")
     for shape in shapes:
@@ -150,7 +150,7 @@ def _missing_collision(robot: _Element, link: DescribedLink, model: RobotDescrip
     return _at_link(link, model, "no collision geometry") if shapes else None
 
 
-def _offset_collision(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _offset_collision(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     way = random.normal(size=3)
     shift = OFFSET_SHARE * link_part(link).diagonal * way / np.linalg.norm(way)
     shapes = _link(robot, link).findall("collision")
@@ -168,7 +168,7 @@ def _move_origin(element: _Element, shift: np.ndarray) -> None:
     origin.set("xyz", words(before + shift))
 
 
-def _mass_outside(robot: _Element, link: DescribedLink, model: RobotDescription, random: Random) -> Planted | None:
+def _mass_outside(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
     inertial = _link(robot, link).find("inertial")
     if inertial is None:
         return None

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import DescribedJoint, RobotDescription
+    from kinematify.robot.robot import Joint, Robot
 
 PIVOT_SHARE = 0.2
 """How far a pivot is moved, fraction of the part's diagonal."""
@@ -35,47 +35,47 @@ ONE_SIDED = 0.5
 class _Model:
     """What the faults need to know of the untouched model."""
 
-    description: RobotDescription
+    robot: Robot
 
     @cached_property
     def body_of(self) -> dict[str, int]:
         """Rigid group of every link."""
-        groups = rigid_groups(self.description)
+        groups = rigid_groups(self.robot)
         return {link: index for index, group in enumerate(groups) for link in group.links}
 
     @cached_property
     def bodies(self) -> list[str]:
         """Names of links with geometry, one for each rigid group that has any."""
-        groups = [group for group in rigid_groups(self.description) if group.has_geometry]
-        links = self.description.link_by_name
+        groups = [group for group in rigid_groups(self.robot) if group.has_geometry]
+        links = self.robot.link_by_name
         return [next(name for name in group.links if links[name].has_geometry) for group in groups]
 
     @cached_property
     def poses(self) -> dict[str, FloatArray]:
         """Pose of every link at rest."""
-        return forward_kinematics(self.description, rest_configuration(self.description))
+        return forward_kinematics(self.robot, rest_configuration(self.robot))
 
-    def carried(self, joint: DescribedJoint) -> set[str]:
+    def carried(self, joint: Joint) -> set[str]:
         """Links that a joint moves."""
         found = [joint.child]
         for link in found:
-            found.extend(below.child for below in self.description.joints_below[link])
+            found.extend(below.child for below in self.robot.joints_below[link])
         return set(found)
 
-    def size(self, joint: DescribedJoint) -> float:
+    def size(self, joint: Joint) -> float:
         """Diagonal of the part that a joint moves [m]; 0 if it has no geometry."""
-        link = self.description.link_by_name[joint.child]
+        link = self.robot.link_by_name[joint.child]
         return link_part(link).diagonal if link.has_geometry else 0.0
 
 
-def movable_joints(description: RobotDescription) -> list[DescribedJoint]:
+def movable_joints(robot: Robot) -> list[Joint]:
     """Joints that a fault can be planted in: they move geometry against geometry, and no other joint follows them."""
-    model = _Model(description)
-    leaders = {joint.mimic.joint for joint in description.joints if joint.mimic is not None}
+    model = _Model(robot)
+    leaders = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     with_geometry = {model.body_of[name] for name in model.bodies}
     return [
         joint
-        for joint in description.joints
+        for joint in robot.joints
         if joint.kind is not JointType.FIXED
         and joint.mimic is None
         and joint.name not in leaders
@@ -84,7 +84,7 @@ def movable_joints(description: RobotDescription) -> list[DescribedJoint]:
     ]
 
 
-def _element(robot: _Element, joint: DescribedJoint) -> _Element:
+def _element(robot: _Element, joint: Joint) -> _Element:
     return next(item for item in robot.findall("joint") if item.get("name") == joint.name)
 
 
@@ -96,7 +96,7 @@ def _child(element: _Element, tag: str) -> _Element:
     return found
 
 
-def _planted(joint: DescribedJoint, how: str) -> Planted:
+def _planted(joint: Joint, how: str) -> Planted:
     return Planted(how=how, joint=joint.name, links=(joint.child,))
 
 
@@ -107,17 +107,13 @@ def _across(axis: FloatArray, random: np.random.Generator) -> FloatArray:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
-def _turn_axis_20(
-    robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator
-) -> Planted:
+def _turn_axis_20(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted:
     axis = rotation_about(_across(joint.axis, random), np.radians(20.0)) @ joint.axis
     _child(_element(robot, joint), "axis").set("xyz", words(axis))
     return _planted(joint, "axis turned by 20 deg")
 
 
-def _turn_axis_90(
-    robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator
-) -> Planted:
+def _turn_axis_90(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted:
     """About another axis of the joint's own frame, as when x and z are confused; at random for a slanted axis."""
     across = [row for row in np.eye(3) if abs(row @ joint.axis) < 1e-6]
     about = across[random.integers(len(across))] if len(across) > 1 else _across(joint.axis, random)
@@ -125,9 +121,7 @@ def _turn_axis_90(
     return _planted(joint, "axis turned by 90 deg")
 
 
-def _move_pivot(
-    robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator
-) -> Planted | None:
+def _move_pivot(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
     if not joint.kind.turns:
         return None  # the place of a slide's axis means nothing
     shift = PIVOT_SHARE * _Model(model).size(joint) * _across(joint.axis, random)
@@ -147,7 +141,7 @@ def _shift_frame(robot: _Element, link: str, shift: FloatArray) -> None:
         origin.set("xyz", words(before + shift))
 
 
-def _swap_type(robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator) -> Planted:
+def _swap_type(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted:
     """The range becomes one of about the same motion at the middle of the part."""
     lever = 0.5 * _Model(model).size(joint)
     element = _element(robot, joint)
@@ -169,9 +163,7 @@ def _set_limits(element: _Element, lower: float, upper: float) -> None:
         limit.set(name, limit.get(name) or "10")
 
 
-def _double_range(
-    robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator
-) -> Planted | None:
+def _double_range(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
     """A range that begins at zero keeps its beginning; others grow about their middle."""
     if not np.isfinite(joint.upper):
         return None
@@ -184,9 +176,7 @@ def _double_range(
     return _planted(joint, f"range of {width:.3g} doubled")
 
 
-def _flip(
-    robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator
-) -> Planted | None:
+def _flip(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
     """Only where the range is one-sided: turning the axis of a symmetric one round changes nothing."""
     short, long = sorted((abs(joint.lower), abs(joint.upper)))
     if not np.isfinite(long) or short >= ONE_SIDED * long or joint.lower > 0.0 or joint.upper < 0.0:
@@ -195,9 +185,7 @@ def _flip(
     return _planted(joint, "direction flipped")
 
 
-def _change_parent(
-    robot: _Element, joint: DescribedJoint, model: RobotDescription, random: np.random.Generator
-) -> Planted | None:
+def _change_parent(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
     known = _Model(model)
     carried = known.carried(joint)
     own = known.body_of[joint.parent]

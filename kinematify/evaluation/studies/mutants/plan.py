@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.studies.mutants.base import BaseModel
     from kinematify.evaluation.studies.mutants.fault import Fault, Planted
-    from kinematify.robot.robot import DescribedJoint, DescribedLink, RobotDescription
+    from kinematify.robot.robot import Joint, Link, Robot
 
 FAULTS: tuple[Fault, ...] = KINEMATIC_FAULTS + FILE_DEFECTS
 
@@ -71,11 +71,11 @@ def _of_kind(fault: Fault, bases: Sequence[BaseModel], count: int, seed: int) ->
 
 def _chances(fault: Fault, base: BaseModel, random: np.random.Generator, seed: int) -> Iterator[Mutant]:
     """Faults of one kind in one object: every place once."""
-    description = base.description()
-    places = movable_joints(description) if fault.plant_joint else moving_links(description)
+    model = base.robot()
+    places = movable_joints(model) if fault.plant_joint else moving_links(model)
     for number, index in enumerate(random.permutation(len(places))):
         robot = base.tree()
-        planted = _plant(fault, robot, places[index], description, random)
+        planted = _plant(fault, robot, places[index], model, random)
         if planted is None:
             continue
         urdf = base.folder / f"{fault.name.replace(' ', '_').replace('%', 'percent')}-{seed}-{number}.urdf"
@@ -86,11 +86,11 @@ def _chances(fault: Fault, base: BaseModel, random: np.random.Generator, seed: i
 def _plant(
     fault: Fault,
     robot: _Element,
-    place: DescribedJoint | DescribedLink,
-    description: RobotDescription,
+    place: Joint | Link,
+    model: Robot,
     random: np.random.Generator,
 ) -> Planted | None:
     planter = fault.plant_joint or fault.plant_link
     if planter is None:
         raise ValueError(f"The fault {fault.name} has no way of being planted.")
-    return planter(robot, place, description, random)  # type: ignore[arg-type]
+    return planter(robot, place, model, random)  # type: ignore[arg-type]

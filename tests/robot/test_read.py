@@ -11,14 +11,9 @@ import pytest
 import trimesh
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.description import (
-    forward_kinematics,
-    joint_values,
-    read_description,
-    rest_configuration,
-    rigid_groups,
-)
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
 from tests.places import BENCH
 
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")
@@ -50,7 +45,7 @@ def visual(shape: str, origin: str = "", scale: str = "") -> str:
 
 
 def bounds(path: Path) -> np.ndarray:
-    mesh = read_description(path).links[0].meshes[0]
+    mesh = read_robot(path).links[0].meshes[0]
     return np.stack([mesh.vertices.min(0), mesh.vertices.max(0)])
 
 
@@ -82,7 +77,7 @@ def test_meshes_of_every_format_are_scaled_then_placed(tmp_path: Path, suffix: s
 
 def test_mirroring_scale_keeps_the_outside_outside(tmp_path: Path) -> None:
     trimesh.creation.box().export(tmp_path / "m.stl")
-    mesh = read_description(urdf(tmp_path, link("a", visual('<mesh filename="m.stl" scale="1 -1 1"/>'))))
+    mesh = read_robot(urdf(tmp_path, link("a", visual('<mesh filename="m.stl" scale="1 -1 1"/>'))))
     read = mesh.links[0].meshes[0]
     assert trimesh.Trimesh(read.vertices, read.faces).volume == pytest.approx(1.0)
 
@@ -109,16 +104,17 @@ def test_collada_axes_agree_with_pinocchio(tmp_path: Path) -> None:
 
 
 def test_collision_geometry_stands_in_for_a_missing_visual(tmp_path: Path) -> None:
-    description = read_description(
+    robot = read_robot(
         urdf(
             tmp_path,
             link("a", BOX.replace("visual", "collision")),
             link("b", BOX + BOX.replace("visual", "collision")),
             joint("j", "fixed", "a", "b"),
-        )
+        ),
+        geometry="shown",
     )
-    assert [len(item.collisions) for item in description.links] == [1, 0], "what is not shown is not read"
-    assert [len(item.meshes) for item in description.links] == [1, 1]
+    assert [len(item.collisions) for item in robot.links] == [1, 0], "what is not shown is not read"
+    assert [len(item.meshes) for item in robot.links] == [1, 1]
 
 
 @pytest.mark.parametrize("how", ["beside", "above", "package-dir parent", "package-dir itself"])
@@ -130,19 +126,19 @@ def test_package_addresses_are_found(tmp_path: Path, how: str) -> None:
     inside = {"beside": package, "above": package / "urdf"}.get(how, tmp_path)
     dirs = {"package-dir parent": [package.parent], "package-dir itself": [package]}.get(how, [])
     path = urdf(inside, link("a", visual('<mesh filename="package://my_robot/meshes/m.stl"/>')))
-    assert read_description(path, package_dirs=dirs).links[0].has_geometry
+    assert read_robot(path, package_dirs=dirs).links[0].has_geometry
 
 
 def test_missing_mesh_names_link_file_and_option(tmp_path: Path) -> None:
     path = urdf(tmp_path, link("arm", visual('<mesh filename="package://nowhere/m.stl"/>')))
     with pytest.raises(DescriptionError, match=r"package://nowhere/m\.stl.*link arm.*--package-dir"):
-        read_description(path)
+        read_robot(path)
 
 
 def test_broken_mesh_names_its_link(tmp_path: Path) -> None:
     (tmp_path / "m.stl").write_bytes(b"nonsense" * 50)
     with pytest.raises(DescriptionError, match=r"link arm.*m\.stl"):
-        read_description(urdf(tmp_path, link("arm", visual('<mesh filename="m.stl"/>'))))
+        read_robot(urdf(tmp_path, link("arm", visual('<mesh filename="m.stl"/>'))))
 
 
 def two(kind: str, inside: str = "") -> tuple[str, ...]:
@@ -180,7 +176,7 @@ def two(kind: str, inside: str = "") -> tuple[str, ...]:
 )
 def test_mistakes_are_named(tmp_path: Path, elements: tuple[str, ...], message: str) -> None:
     with pytest.raises(DescriptionError, match=message):
-        read_description(urdf(tmp_path, *elements))
+        read_robot(urdf(tmp_path, *elements))
 
 
 @pytest.mark.parametrize(
@@ -198,12 +194,12 @@ def test_files_that_are_no_urdf(tmp_path: Path, text: str, message: str) -> None
     path = tmp_path / "robot.urdf"
     path.write_text(text)
     with pytest.raises(DescriptionError, match=message):
-        read_description(path)
+        read_robot(path)
 
 
 def test_missing_file(tmp_path: Path) -> None:
     with pytest.raises(DescriptionError, match="There is no file"):
-        read_description(tmp_path / "robot.urdf")
+        read_robot(tmp_path / "robot.urdf")
 
 
 def test_free_root_joint_is_fixed_and_noted(tmp_path: Path) -> None:
@@ -211,27 +207,28 @@ def test_free_root_joint_is_fixed_and_noted(tmp_path: Path) -> None:
         tmp_path, link("world"), link("mid"), *two("continuous"), joint("f", "planar", "world", "mid"),
         joint("g", "floating", "mid", "a"),
     )  # fmt: skip
-    description = read_description(path)
-    assert [group.links for group in rigid_groups(description)] == [("world", "mid", "a"), ("b",)]
-    assert len(description.notes) == 2
+    robot = read_robot(path)
+    assert [group.links for group in rigid_groups(robot)] == [("world", "mid", "a"), ("b",)]
+    assert len(robot.notes) == 2
 
 
 def test_revolute_without_limits_is_continuous_and_noted(tmp_path: Path) -> None:
-    description = read_description(urdf(tmp_path, *two("revolute")))
-    assert description.joints[0].kind is JointType.CONTINUOUS
-    assert description.joints[0].upper == math.inf
-    assert "j" in description.notes[0]
+    robot = read_robot(urdf(tmp_path, *two("revolute")))
+    assert robot.joints[0].kind is JointType.CONTINUOUS
+    assert robot.joints[0].upper == math.inf
+    assert "j" in robot.notes[0]
 
 
 def test_axis_is_normalised_and_defaults_to_x(tmp_path: Path) -> None:
     np.testing.assert_allclose(
-        read_description(urdf(tmp_path, *two("continuous", '<axis xyz="0 3 4"/>'))).joints[0].axis, [0, 0.6, 0.8]
+        read_robot(urdf(tmp_path, *two("continuous", '<axis xyz="0 3 4"/>'))).joints[0].axis,
+        [0, 0.6, 0.8],
     )
-    np.testing.assert_allclose(read_description(urdf(tmp_path, *two("continuous"))).joints[0].axis, [1, 0, 0])
+    np.testing.assert_allclose(read_robot(urdf(tmp_path, *two("continuous"))).joints[0].axis, [1, 0, 0])
 
 
 def test_mimic_chains_follow_their_leader(tmp_path: Path) -> None:
-    description = read_description(
+    robot = read_robot(
         urdf(
             tmp_path,
             link("a"),
@@ -243,24 +240,24 @@ def test_mimic_chains_follow_their_leader(tmp_path: Path) -> None:
             joint("second", "continuous", "b", "c", '<mimic joint="first" multiplier="-1"/>'),
         )
     )
-    assert joint_values(description, {"first": 1.0, "second": 9.0}) == {"third": -1.5, "first": 1.0, "second": -1.0}
+    assert joint_values(robot, {"first": 1.0, "second": 9.0}) == {"third": -1.5, "first": 1.0, "second": -1.0}
 
 
 def test_rest_is_zero_or_mid_limits(tmp_path: Path) -> None:
     follower = '<mimic joint="j" multiplier="2"/>' + limit(-9, 9)
     elements = (*two("prismatic", limit(1, 2)), link("c"), joint("k", "revolute", "b", "c", follower))
-    assert rest_configuration(read_description(urdf(tmp_path, *elements))) == {"j": 1.5, "k": 3.0}
-    assert rest_configuration(read_description(urdf(tmp_path, *two("prismatic", limit(-1, 3))))) == {"j": 0.0}
+    assert rest_configuration(read_robot(urdf(tmp_path, *elements))) == {"j": 1.5, "k": 3.0}
+    assert rest_configuration(read_robot(urdf(tmp_path, *two("prismatic", limit(-1, 3))))) == {"j": 0.0}
 
 
 def test_unknown_joint_in_a_configuration(tmp_path: Path) -> None:
     with pytest.raises(DescriptionError, match="no joint knee"):
-        forward_kinematics(read_description(urdf(tmp_path, *two("continuous"))), {"knee": 1.0})
+        forward_kinematics(read_robot(urdf(tmp_path, *two("continuous"))), {"knee": 1.0})
 
 
-def random_configuration(description, seed: int) -> dict[str, float]:  # type: ignore[no-untyped-def]
+def random_configuration(robot, seed: int) -> dict[str, float]:  # type: ignore[no-untyped-def]
     random = np.random.default_rng(seed)
-    leaders = [j for j in description.joints if j.mimic is None and j.kind is not JointType.FIXED]
+    leaders = [j for j in robot.joints if j.mimic is None and j.kind is not JointType.FIXED]
     return {j.name: float(random.uniform(max(j.lower, -3.0), min(j.upper, 3.0))) for j in leaders}
 
 
@@ -269,17 +266,17 @@ def random_configuration(description, seed: int) -> dict[str, float]:  # type: i
 def test_forward_kinematics_agrees_with_pinocchio(name: str) -> None:
     pin = pytest.importorskip("pinocchio")
     path = BENCH / "robots" / name / "model.urdf"
-    description = read_description(path)
+    robot = read_robot(path)
     model = pin.buildModelFromUrdf(str(path))
     data = model.createData()
-    values = joint_values(description, random_configuration(description, seed=3))
+    values = joint_values(robot, random_configuration(robot, seed=3))
     q = pin.neutral(model)
     for joint_name, value in values.items():
         if model.existJointName(joint_name):
             item = model.joints[model.getJointId(joint_name)]
             q[item.idx_q : item.idx_q + item.nq] = (math.cos(value), math.sin(value)) if item.nq == 2 else value
     pin.framesForwardKinematics(model, data, q)
-    poses = forward_kinematics(description, values)
+    poses = forward_kinematics(robot, values)
     for link_name, pose in poses.items():
         frame = model.getFrameId(link_name, pin.FrameType.BODY)
         np.testing.assert_allclose(pose, data.oMf[frame].homogeneous, atol=1e-9)
@@ -290,17 +287,17 @@ def test_forward_kinematics_agrees_with_pinocchio(name: str) -> None:
 def test_poses_and_meshes_agree_with_yourdfpy(name: str) -> None:
     yourdfpy = pytest.importorskip("yourdfpy")
     path = BENCH / "robots" / name / "model.urdf"
-    description = read_description(path)
+    robot = read_robot(path)
     other = yourdfpy.URDF.load(str(path))
-    q = random_configuration(description, seed=4)
+    q = random_configuration(robot, seed=4)
     other.update_cfg(q)
-    poses = forward_kinematics(description, q)
-    for item in description.links:
+    poses = forward_kinematics(robot, q)
+    for item in robot.links:
         np.testing.assert_allclose(poses[item.name], other.get_transform(item.name), atol=1e-6)
     ours = np.concatenate(
         [
             mesh.vertices[mesh.faces].reshape(-1, 3) @ poses[item.name][:3, :3].T + poses[item.name][:3, 3]
-            for item in description.links
+            for item in robot.links
             for mesh in item.meshes
         ]
     )
@@ -314,11 +311,11 @@ def test_every_benchmark_model_has_the_parts_that_its_record_states() -> None:
         if path.parent.name in ("h1", "fetch"):  # seconds each; the erase tests read all robots
             continue
         facts = json.loads((path.parent / "source.json").read_text())
-        description = read_description(path)
-        groups = rigid_groups(description)
+        robot = read_robot(path)
+        groups = rigid_groups(robot)
         counts = (len(groups), sum(group.has_geometry for group in groups))
-        rest = {k: v for k, v in rest_configuration(description).items() if v != 0.0}
-        leaders = {name: value for name, value in rest.items() if description.joint_by_name[name].mimic is None}
+        rest = {k: v for k, v in rest_configuration(robot).items() if v != 0.0}
+        leaders = {name: value for name, value in rest.items() if robot.joint_by_name[name].mimic is None}
         if counts != (facts["rigid_parts"], facts["rigid_parts_with_geometry"]) or leaders != pytest.approx(
             facts["rest"]
         ):
