@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from kinematify.formats.export import export
     from kinematify.joints.candidate import JointCandidate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline.infer import Inference, infer
+    from kinematify.pipeline.infer import infer
+    from kinematify.pipeline.inference import Inference
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
     from kinematify.topology.tree import KinematicTree

@@ -13,6 +13,7 @@ from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
+from kinematify.cli.words import words_of
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
@@ -189,21 +190,6 @@ def _inputs(given: str) -> tuple[str, ...]:
     from kinematify.evaluation.perturb import CLEAN, DEGRADED
 
     return (CLEAN,) if given == "none" else (CLEAN, *words_of(given, DEGRADED, "--degrade"))
-
-
-def words_of(given: str, known: Sequence[str], option: str) -> tuple[str, ...]:
-    """The words of a list, in the order in which they are known; all of them for ``all``.
-
-    Raises:
-        click.UsageError: A word is unknown.
-    """
-    if given == "all":
-        return tuple(known)
-    words = [word.strip() for word in given.split(",")]
-    unknown = [word for word in words if word not in known]
-    if unknown:
-        raise click.UsageError(f"{option} names {unknown[0]!r}. Known are all, {', '.join(known)}.")
-    return tuple(word for word in known if word in words)
 
 
 def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple[str, ...]:

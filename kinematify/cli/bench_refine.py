@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.answer import write_answer
-from kinematify.cli.bench import words_of
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS
 from kinematify.cli.table import format_table
+from kinematify.cli.words import words_of
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli.infer import describe
+from kinematify.cli.inferred import describe
 from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
 from kinematify.config import load_config

@@ -10,10 +10,9 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
+from kinematify.cli.inferred import confidences, describe
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
-from kinematify.cli.table import format_table
-from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,9 +20,6 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.pipeline import Inference
     from kinematify.robot.robot import Joint
-
-DOUBTFUL = 0.5
-"""Joints of less confidence are named as those to look at first."""
 
 
 @click.command(
@@ -202,72 +198,5 @@ def _joint_answer(inference: Inference, joint: Joint) -> dict[str, Any]:
         "axis": joint.axis.tolist(),
         "lower": joint.lower if math.isfinite(joint.lower) else None,
         "upper": joint.upper if math.isfinite(joint.upper) else None,
-        "confidence": _confidences(inference)[joint.child],
+        "confidence": confidences(inference)[joint.child],
     }
-
-
-def _confidences(inference: Inference) -> dict[str, float]:
-    """Confidence of the joint above every part, by the part's name."""
-    names = inference.assembly.names
-    return {names[estimate.child]: estimate.confidence for estimate in inference.joints}
-
-
-def describe(inference: Inference, out: Path) -> str:
-    """What was found, as people read it: the joints, what to look at first, and the files."""
-    confidences = _confidences(inference)
-    rows = [_describe_joint(joint, confidences[joint.child]) for joint in inference.model.joints]
-    lines = [
-        f"Base: {inference.model.root}",
-        "",
-        format_table(("joint", "type", "parent -> child", "range", "confidence"), rows),
-        "",
-        *_describe_doubts(inference),
-        *_describe_files(out),
-    ]
-    return "\n".join(lines)
-
-
-def _describe_joint(joint: Joint, confidence: float) -> tuple[str, ...]:
-    return (
-        joint.name,
-        joint.kind.value,
-        f"{joint.parent} -> {joint.child}",
-        _describe_range(joint),
-        f"{confidence:.0%}",
-    )
-
-
-def _describe_range(joint: Joint) -> str:
-    if joint.kind is JointType.FIXED:
-        return "-"
-    if not math.isfinite(joint.upper - joint.lower):
-        return "unlimited"
-    if joint.kind.turns:
-        return f"{math.degrees(joint.lower):z.0f} to {math.degrees(joint.upper):.0f} deg"
-    return f"{joint.lower * 1000:z.0f} to {joint.upper * 1000:.0f} mm"
-
-
-def _describe_doubts(inference: Inference) -> list[str]:
-    """What the user should look at, one line each, and an empty line if there is any."""
-    confidences = _confidences(inference)
-    doubtful = sorted(
-        (joint for joint in inference.model.joints if confidences[joint.child] < DOUBTFUL),
-        key=lambda joint: confidences[joint.child],
-    )
-    lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]
-    lines += [f"Note: {warning}" for warning in inference.warnings]
-    if doubtful:
-        names = ", ".join(joint.name for joint in doubtful)
-        count = f"{len(doubtful)} joint{'s' if len(doubtful) > 1 else ''} to look at"
-        lines.append(f"{count}, of which the geometry says least: {names}. What you know, tell with --hint.")
-    return [*lines, ""] if lines else []
-
-
-def _describe_files(out: Path) -> list[str]:
-    purposes = {
-        "model.urdf": "what a simulator loads, with meshes/ beside it",
-        "inference.json": "every alternative with its evidence, seed and timings",
-        "preview.png": "the object as given, and with every joint moved",
-    }
-    present = [name for name in purposes if (out / name).is_file()]
-    return [f"{out / name}: {purposes[name]}" for name in present]

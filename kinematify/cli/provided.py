@@ -9,7 +9,7 @@ import click
 
 from kinematify.assembly.load import load_assembly
 from kinematify.cli.generation import status_of, summary_of, validated, verdict_on, warn_if_interrupted
-from kinematify.cli.infer import describe
+from kinematify.cli.inferred import describe
 from kinematify.cli.verdict import say
 from kinematify.config import load_config
 from kinematify.generate.providers.command import CommandSource

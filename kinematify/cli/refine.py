@@ -9,12 +9,13 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
+from kinematify.cli.inferred import describe
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from kinematify.pipeline.infer import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.refinement import Refinement
 
 TIERS = ("geometry", "engines", "task")
@@ -102,7 +103,7 @@ def command(
     if json_to:
         write_answer(as_answer(refinement, folder), json_to)
     if json_to != "-":
-        click.echo(f"{describe_refinement(refinement.inference)}\n\n{_describe_joints(refinement.inference, folder)}")
+        click.echo(f"{describe_refinement(refinement.inference)}\n\n{describe(refinement.inference, folder)}")
     return exit_status(refinement)
 
 
@@ -176,9 +177,3 @@ def _write_report(files: Any, folder: Path) -> None:
     picture = folder / PREVIEW_FILE
     pictures = {report.model: picture.read_bytes()} if picture.is_file() else {}
     files.write([report], pictures, {report.model: scene_of(folder / MODEL_FILE)})
-
-
-def _describe_joints(inference: Inference, folder: Path) -> str:
-    from kinematify.cli.infer import describe
-
-    return describe(inference, folder)

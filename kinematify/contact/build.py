@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples
+from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, Pair
 from kinematify.contact.symmetry import find_clusters
 from kinematify.robot.arrays import read_only
 
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface, Samples
     from kinematify.robot.arrays import FloatArray, IntArray
-
-Pair = tuple[int, int]
 
 
 def build_contact_graph(

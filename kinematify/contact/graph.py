@@ -10,6 +10,15 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
+Pair = tuple[int, int]
+"""An undirected edge (a, b) with a < b."""
+
+
+def pair(a: int, b: int) -> Pair:
+    """Key of the undirected edge between two parts."""
+    return (a, b) if a < b else (b, a)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactSamples:
     """Surface samples of one part of a pair that lie near the other part."""
@@ -54,7 +63,7 @@ class ContactGraph:
     """Largest gap that counts as contact [m]."""
 
     @cached_property
-    def by_pair(self) -> dict[tuple[int, int], ContactEdge]:
+    def by_pair(self) -> dict[Pair, ContactEdge]:
         """Edges keyed by (a, b) with a < b."""
         return {(edge.a, edge.b): edge for edge in self.edges}
 

@@ -30,13 +30,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config import SeamConfig
+    from kinematify.contact.graph import Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
-
-Pair = tuple[int, int]
-
 _LINE = 1e-3  # what is narrower than this share of its length is a line
 _SMOOTH = np.cos(np.radians(30.0))  # facets of a cylinder of 12 sides go on
 

@@ -7,6 +7,7 @@ and the tangent bundle leaves the manifold.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.manipulation.place import Place
-    from kinematify.manipulation.pull import Puller
+    from kinematify.manipulation.pull import Pull, Puller
     from kinematify.robot.arrays import FloatArray
 
 _HALF_METRES = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
@@ -70,6 +71,32 @@ class _HoldsOn(ob.Constraint):  # type: ignore[misc]
     def residual(self, x: FloatArray) -> FloatArray:
         target = self._puller.target_at(self.targets, float(x[-1]))
         return np.asarray(_HALF_METRES * self._puller.arm.error(x[:-1], target))
+
+
+def search_pull(puller: Puller, pull: Pull, *, column: bool, seed: int) -> Pull:
+    """Look for another way to the end of the joint on the constraint manifold, where following fell short.
+
+    Args:
+        puller: Follows the joint.
+        pull: How far it came.
+        column: The robot stands on a column.
+        seed: Of OMPL.
+
+    Returns:
+        A complete pull from the same place; the given one where none was found.
+    """
+    place = pull.place
+    puller.world.place(place.T_world_base, puller.motion.T_world_object, column=column)
+    targets = puller.targets(place)
+    ends = [q for q in puller.arm.solve_anew(targets[-1], puller.settings.restarts) if puller.free_at(q, 1.0, place)]
+    if not ends:
+        return pull
+    start = np.append(pull.path[0], 0.0)
+    found = search_manifold(puller, place, start, [np.append(q, 1.0) for q in ends], seed=seed)
+    if found is None:
+        return pull
+    values = np.interp(found[:, -1], np.linspace(0.0, 1.0, len(targets)), puller.motion.values)
+    return replace(pull, path=found[:, :-1], values=values, fraction=1.0, stop=None, searched=True)
 
 
 def search_manifold(

@@ -12,6 +12,7 @@ import numpy as np
 from kinematify.manipulation.clearing import Clearing, Freedom, clear_way, pull_end
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
+from kinematify.manipulation.manifold import search_pull
 from kinematify.manipulation.place import Places, object_box, object_motion
 from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
 from kinematify.manipulation.reach import plan_reach
@@ -249,7 +250,7 @@ class _Planning:
         for pull in sorted(partial, key=lambda pull: -pull.fraction)[:2]:
             if self._spent > 0.8 * self._plan.seconds:
                 return
-            found = puller.search(pull, column=column, seed=self._seed)
+            found = search_pull(puller, pull, column=column, seed=self._seed)
             if found.searched:
                 yield found
 

@@ -1,19 +1,16 @@
 """The pull: hand and part are one body, and the object's own joint says where the hand must be at every moment.
 
 A pull is followed by inverse kinematics from pose to pose, out of the middle of the range to both ends: what freedom
-the arm has left keeps it away from its limits. Where that runs into something, OMPL searches the constraint manifold
-of arm and joint (`manifold`).
+the arm has left keeps it away from its limits. Where that runs into something, `manifold` searches for another way.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pinocchio as pin
-
-from kinematify.manipulation.manifold import search_manifold
 
 if TYPE_CHECKING:
     from kinematify.config.planning import PlanSettings
@@ -63,11 +60,11 @@ class Puller:
 
     def __init__(self, arm: Arm, world: CollisionWorld, motion: ObjectMotion, settings: PlanSettings) -> None:
         """Keep what is given."""
-        self._arm, self._world, self._motion, self._settings = arm, world, motion, settings
+        self.arm, self.world, self.motion, self.settings = arm, world, motion, settings
 
     def targets(self, place: Place) -> FloatArray:
         """Poses of the tool in the frame of the robot's root, shape (k, 4, 4)."""
-        return np.asarray(np.linalg.inv(place.T_world_base) @ self._motion.link_poses @ place.T_link_tool)
+        return np.asarray(np.linalg.inv(place.T_world_base) @ self.motion.link_poses @ place.T_link_tool)
 
     def follow(self, place: Place, *, column: bool, from_start: bool = False) -> Pull | Stop:
         """Follow the joint as far as the arm can from a place.
@@ -80,12 +77,12 @@ class Puller:
         Returns:
             The pull that goes farthest, or what keeps it from beginning.
         """
-        self._world.place(place.T_world_base, self._motion.T_world_object, column=column)
+        self.world.place(place.T_world_base, self.motion.T_world_object, column=column)
         targets = self.targets(place)
         anchor = 0 if from_start else len(targets) // 2
         best: Pull | None = None
         stop: Stop | None = None
-        for q in self._arm.solve_anew(targets[anchor], self._settings.restarts):
+        for q in self.arm.solve_anew(targets[anchor], self.settings.restarts):
             stop = self._blocked(q, anchor, place)
             if stop is not None:
                 continue
@@ -100,33 +97,6 @@ class Puller:
                 break
         return best or stop or Stop(kind=UNREACHED, words="its inverse kinematics finds no posture at the grasp")
 
-    def search(self, pull: Pull, *, column: bool, seed: int) -> Pull:
-        """Look for another way to the end of the joint on the constraint manifold, where following fell short."""
-        place = pull.place
-        self._world.place(place.T_world_base, self._motion.T_world_object, column=column)
-        targets = self.targets(place)
-        last = len(targets) - 1
-        ends = [q for q in self._arm.solve_anew(targets[-1], self._settings.restarts) if not self._hit(q, last, place)]
-        if not ends:
-            return pull
-        start = np.append(pull.path[0], 0.0)
-        goals = [np.append(q, 1.0) for q in ends]
-        found = search_manifold(self, place, start, goals, seed=seed)
-        if found is None:
-            return pull
-        values = np.interp(found[:, -1], np.linspace(0.0, 1.0, len(targets)), self._motion.values)
-        return replace(pull, path=found[:, :-1], values=values, fraction=1.0, stop=None, searched=True)
-
-    @property
-    def arm(self) -> Arm:
-        """The robot."""
-        return self._arm
-
-    @property
-    def settings(self) -> PlanSettings:
-        """Thresholds."""
-        return self._settings
-
     def target_at(self, targets: FloatArray, share: float) -> FloatArray:
         """Pose of the tool where a share of the range is open, between two of the targets (k, 4, 4), shape (4, 4)."""
         position = min(max(share, 0.0), 1.0) * (len(targets) - 1)
@@ -136,7 +106,7 @@ class Puller:
 
     def free_at(self, q: FloatArray, share: float, place: Place) -> bool:
         """True if nothing collides where a share of the range is open."""
-        row = round(min(max(share, 0.0), 1.0) * (len(self._motion.values) - 1))
+        row = round(min(max(share, 0.0), 1.0) * (len(self.motion.values) - 1))
         return self._hit(q, row, place) is None
 
     def _continued(
@@ -146,10 +116,10 @@ class Puller:
         found: list[FloatArray] = []
         before = q
         for row in rows:
-            now = self._arm.solve(targets[row], q + (q - before) if found else q)
+            now = self.arm.solve(targets[row], q + (q - before) if found else q)
             if now is None:
                 return found, self._why_not(q, targets[row])
-            if float(np.abs(now - q).max()) > self._settings.jump:
+            if float(np.abs(now - q).max()) > self.settings.jump:
                 return found, Stop(kind=JUMP, words="its posture would have to change all at once")
             stop = self._blocked(now, row, place)
             if stop is not None:
@@ -166,24 +136,24 @@ class Puller:
         return Stop(kind=_KINDS[hit.kind], words=words, pair=(hit.first, hit.second))
 
     def _hit(self, q: FloatArray, row: int, place: Place) -> Hit | None:
-        self._world.pose_object(self._motion.body_poses[row], place.grasp.spread)
-        return self._world.hit(q, holding=True)
+        self.world.pose_object(self.motion.body_poses[row], place.grasp.spread)
+        return self.world.hit(q, holding=True)
 
     def _why_not(self, q: FloatArray, target: FloatArray) -> Stop:
         """Why inverse kinematics gets no farther than a posture."""
-        arm, near = self._arm, self._settings.near_limit * (self._arm.upper - self._arm.lower)
+        arm, near = self.arm, self.settings.near_limit * (self.arm.upper - self.arm.lower)
         jacobian = arm.jacobian(q)
         step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + 1e-4 * np.eye(6), arm.error(q, target))
         held = ((q < arm.lower + near) & (step < 0.0)) | ((q > arm.upper - near) & (step > 0.0))
         if held.any():
             name = arm.robot.arm_joints[int(np.argmax(held * np.abs(step)))]
             return Stop(kind=LIMIT, words=f"its {name} is at the end of its range")
-        if arm.manipulability(q) < self._settings.singular:
+        if arm.manipulability(q) < self.settings.singular:
             return Stop(kind=SINGULAR, words="it is stretched out or its wrist is aligned (singular)")
         return Stop(kind=UNREACHED, words="the next pose is out of its reach")
 
     def _pull(self, place: Place, path: FloatArray, stop: Stop | None) -> Pull:
-        values = self._motion.values[: len(path)]
-        whole = float(self._motion.values[-1] - self._motion.values[0])
+        values = self.motion.values[: len(path)]
+        whole = float(self.motion.values[-1] - self.motion.values[0])
         fraction = abs(float(values[-1] - values[0]) / whole)
         return Pull(place=place, path=path, values=values, fraction=fraction, stop=stop)

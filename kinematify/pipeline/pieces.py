@@ -3,20 +3,60 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.graph import pair
+from kinematify.contact.seams import largest_piece
 from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.pipeline.warnings import cut_parts
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.pipeline.inference import Inference
 
-Pair = tuple[int, int]
 Groups = tuple[tuple[int, ...], ...]
+
+
+def piece_standing_for(name: str | None, assembly: Assembly, groups: Groups) -> str | None:
+    """Name of the main piece of the group that a part belongs to; None for None."""
+    if name is None:
+        return None
+    group = next(group for group in groups if assembly.names.index(name) in group)
+    return assembly.names[largest_piece(assembly, group)]
+
+
+def inference_of_pieces(
+    whole: Inference, assembly: Assembly, graph: ContactGraph, groups: Groups, seconds: Mapping[str, float]
+) -> Inference:
+    """What was inferred with the pieces of every part as one, with the pieces fixed to each other.
+
+    Args:
+        whole: Of the joined parts; part i is group i.
+        assembly: The pieces.
+        graph: Their contacts.
+        groups: Pieces of every group.
+        seconds: Wall time that each stage had taken before [s].
+    """
+    mains = [largest_piece(assembly, group) for group in groups]
+    trees = tuple(tree_of_pieces(tree, groups, mains) for tree in whole.trees)
+    bearings = {pair_of_pieces(ends, mains): bearing for ends, bearing in whole.bearings.items()}
+    return replace(
+        whole,
+        assembly=assembly,
+        graph=graph,
+        bearings=MappingProxyType({ends: item for ends, item in bearings.items() if ends in graph.by_pair}),
+        trees=trees,
+        joints=joints_of_pieces(assembly, trees[0], whole.joints, groups, mains),
+        timings=MappingProxyType({name: seconds.get(name, 0.0) + t for name, t in whole.timings.items()}),
+        warnings=(*assembly.warnings, *whole.warnings, *cut_parts(assembly, groups, mains)),
+    )
 
 
 def tree_of_pieces(tree: KinematicTree, groups: Groups, mains: Sequence[int]) -> KinematicTree:
@@ -34,17 +74,16 @@ def tree_of_pieces(tree: KinematicTree, groups: Groups, mains: Sequence[int]) ->
             if piece != mains[node]:
                 parents[piece] = mains[node]
     broken, virtual = (
-        frozenset(pair_of_pieces(pair, mains) for pair in pairs) for pairs in (tree.broken, tree.virtual)
+        frozenset(pair_of_pieces(ends, mains) for ends in pairs) for pairs in (tree.broken, tree.virtual)
     )
     return KinematicTree(
         parents=tuple(parents), broken=broken, virtual=virtual, reward=tree.reward, terms=dict(tree.terms)
     )
 
 
-def pair_of_pieces(pair: Pair, mains: Sequence[int]) -> Pair:
+def pair_of_pieces(ends: Pair, mains: Sequence[int]) -> Pair:
     """The main pieces of two groups, ascending."""
-    a, b = sorted((mains[pair[0]], mains[pair[1]]))
-    return a, b
+    return pair(mains[ends[0]], mains[ends[1]])
 
 
 def joints_of_pieces(

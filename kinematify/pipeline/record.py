@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.joints.hypotheses.bearing_line import BearingLine
-    from kinematify.pipeline.infer import Inference
+    from kinematify.pipeline.inference import Inference
     from kinematify.topology.tree import KinematicTree
 
 SCHEMA = 1

@@ -21,12 +21,11 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.joints.hypotheses.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
-    from kinematify.topology.evidence import Pair
     from kinematify.topology.tree import KinematicTree
 
 _SAME = np.cos(np.radians(1.0))  # directions that no check tells apart

@@ -19,11 +19,9 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
-
-Pair = tuple[int, int]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,7 +25,7 @@ from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
-    from kinematify.pipeline.infer import Inference
+    from kinematify.pipeline.inference import Inference
 
 _OURS = {MODEL_FILE, RECORD_FILE, MESH_FOLDER, PREVIEW_FILE}
 _STALE = {"validation.html", "validation.json"}

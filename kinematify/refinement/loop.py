@@ -30,7 +30,8 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
-    from kinematify.pipeline.infer import Inference, Progress
+    from kinematify.pipeline.clock import Progress
+    from kinematify.pipeline.inference import Inference
     from kinematify.refinement.simulate import Verdict
     from kinematify.validation.feedback import Feedback
 

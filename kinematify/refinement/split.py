@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinematify.contact.seams import joined, largest_piece, rigid_pieces
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.pieces import joints_of_pieces, tree_of_pieces
@@ -9,7 +11,8 @@ from kinematify.refinement.history import Change
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.topology import Contacts
 
-Pair = tuple[int, int]
+if TYPE_CHECKING:
+    from kinematify.contact.graph import Pair
 
 
 def infer_joined(

@@ -11,24 +11,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.pipeline.infer import choose_joints, gather_evidence
+from kinematify.pipeline.stages import choose_joints, find_trees
 from kinematify.refinement.history import Change
 from kinematify.refinement.plan import Plan
 from kinematify.topology.reward import SimulatedEdges
-from kinematify.topology.search import search_trees
-from kinematify.topology.stats import assembly_stats
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.topology.tree import KinematicTree
     from kinematify.validation.feedback import EdgeSignal
 
-Pair = tuple[int, int]
 Edge = tuple[int, int]
 """Parent and child."""
 
@@ -68,20 +65,10 @@ def search_again(
     base: int | None,
 ) -> tuple[KinematicTree, ...]:
     """Search the trees again, warm, with what the simulation had against edges."""
-    evidence = gather_evidence(assembly, contacts.graph, contacts.bearings, config)
     simulated = SimulatedEdges(
         survival={edge: memory.survival(edge) for edge in memory.against}, weight=config.refine.survival_weight
     )
-    return search_trees(
-        contacts.graph,
-        assembly_stats(assembly),
-        evidence,
-        config.topology,
-        seed=config.seed,
-        base=base,
-        simulated=simulated,
-        warm=warm,
-    )
+    return find_trees(assembly, contacts.graph, contacts.bearings, config, base=base, simulated=simulated, warm=warm)
 
 
 def replanned(plan: Plan, contacts: Contacts, tree: KinematicTree) -> tuple[Plan, list[Change]]:

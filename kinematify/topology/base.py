@@ -1,7 +1,7 @@
-"""Which part is the base link: the paper's degree rule, and a scored rule that knows how machines stand.
+"""Which part is the base link, by a scored rule that knows how machines stand.
 
 No single cue finds the base (feasibility.md 3): it is the end of an arm, the hub of a hand, the junction of legs.
-The scored rule therefore asks seven physical questions, each a function that returns one value in [0, 1] per part,
+The rule therefore asks seven physical questions, each a function that returns one value in [0, 1] per part,
 and ranks the parts by their best answer. Only the vertical direction of the world is used.
 """
 
@@ -14,15 +14,15 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import shortest_path
 
-from kinematify.topology.evidence import pair
+from kinematify.contact.graph import pair
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.config import BaseConfig
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import Pair
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.evidence import EdgeEvidence, Pair
+    from kinematify.topology.evidence import EdgeEvidence
     from kinematify.topology.stats import PartStats
 
 
@@ -35,16 +35,6 @@ class BaseCandidate:
     """In [0, 1]; comparable within one assembly."""
     reason: str
     """Why, one sentence for the record."""
-
-
-def base_by_degree(graph: ContactGraph) -> tuple[BaseCandidate, ...]:
-    """Rank parts as the paper does (III-C): highest undirected degree first, lowest index on a tie."""
-    degree = [len(items) for items in graph.neighbours]
-    top = max(*degree, 1)
-    order = sorted(range(graph.n_parts), key=lambda part: (-degree[part], part))
-    return tuple(
-        BaseCandidate(part=part, score=degree[part] / top, reason=f"It touches {degree[part]} parts.") for part in order
-    )
 
 
 def rank_bases(

@@ -1,21 +1,27 @@
-"""What the joint stage tells the topology stage about a contact edge before the tree is known."""
+"""What is known of the joint of each contact edge before the tree is: its quality, its line, and what holds it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.graph import pair
+from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, passing_pairs
+from kinematify.joints.measure.quality import edge_quality
+from kinematify.joints.measure.workspace import PartCache
 from kinematify.robot.arrays import read_only
+from kinematify.topology.spanning import on_cycles
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.robot.arrays import FloatArray
-
-Pair = tuple[int, int]
-"""An undirected edge (a, b) with a < b."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,11 +60,6 @@ class EdgeEvidence:
         return bool(abs(float(self.axis @ other.axis)) > np.cos(np.radians(angle)) and offset < distance)
 
 
-def pair(a: int, b: int) -> Pair:
-    """Key of the undirected edge between two parts."""
-    return (a, b) if a < b else (b, a)
-
-
 def coaxial_carriers(
     evidence: Mapping[Pair, EdgeEvidence], *, angle: float, distance: float
 ) -> dict[Pair, frozenset[int]]:
@@ -87,3 +88,49 @@ def coaxial_carriers(
         if carriers:
             found[a, b] = carriers
     return found
+
+
+def gather_evidence(
+    assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
+) -> dict[Pair, EdgeEvidence]:
+    """What the tree search needs to know of each contact edge: quality and line of its best joint, and what holds it.
+
+    Costly questions are asked only of edges whose answer the search needs: those that others could replace and that
+    have no clear bearing or join congruent parts, and those between parts that a third one bears on the same line.
+    """
+    lines = {pair: bearing.lines[0] for pair, bearing in bearings.items() if bearing.lines}
+    evidence = {
+        pair: EdgeEvidence(
+            quality=edge_quality(edge, bearings.get(pair), config.quality),
+            axis=lines[pair].axis if pair in lines else None,
+            point=lines[pair].pivot if pair in lines else None,
+        )
+        for pair, edge in graph.by_pair.items()
+    }
+    topology = config.topology
+    bounds = {"angle": topology.stack_deg, "distance": topology.stack_distance * assembly.diagonal}
+    carriers = coaxial_carriers(evidence, **bounds)
+    contested = [pair for pair in on_cycles(graph.by_pair, graph.n_parts) if pair in lines]
+    doubtful = [
+        pair for pair in contested if evidence[pair].quality < topology.journal_quality or _are_twins(graph, pair)
+    ]
+    cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
+    journals = journal_pairs(cache, doubtful, config.joints)
+    passing = passing_pairs(cache, {pair: lines[pair] for pair in carriers}, config.joints)
+    triples = sorted({tuple(sorted((a, b, c))) for (a, b), found in carriers.items() for c in found})
+    adjacent, skipping = leaf_pairs(cache, triples, lines, passing, config.joints)
+    return {
+        pair: replace(
+            item,
+            has_journal=pair in journals,
+            passing=pair in passing,
+            is_adjacent_leaf=pair in adjacent,
+            skips_leaf=pair in skipping,
+        )
+        for pair, item in evidence.items()
+    }
+
+
+def _are_twins(graph: ContactGraph, pair: Pair) -> bool:
+    first, second = (graph.cluster_of[part] for part in pair)
+    return first >= 0 and first == second

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.topology.evidence import pair
+from kinematify.contact.graph import pair
 from kinematify.topology.virtual import nearest_pair
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from kinematify.contact.graph import Pair
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.evidence import Pair
 
 Action = tuple[int, int]
 """A directed edge (parent, child)."""

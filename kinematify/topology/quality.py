@@ -10,16 +10,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
+from kinematify.topology.spanning import maximum_spanning_edges, tree_path
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping
 
     from kinematify.config import TopologyConfig
-    from kinematify.contact.graph import ContactGraph
-    from kinematify.topology.evidence import EdgeEvidence, Pair
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.topology.evidence import EdgeEvidence
 
 
 def effective_quality(
@@ -52,51 +50,6 @@ def bottleneck(weights: Mapping[Pair, float], n: int, ends: Pair) -> float:
     """Weakest edge of the strongest path between two parts; 0 where there is no path."""
     path = tree_path(maximum_spanning_edges(weights, n), n, ends)
     return min((weights[step] for step in path), default=0.0)
-
-
-def maximum_spanning_edges(weights: Mapping[Pair, float], n: int) -> tuple[Pair, ...]:
-    """Exact maximum spanning forest, edges in ascending order."""
-    if not weights:
-        return ()
-    rows, columns = np.array(list(weights)).T
-    costs = 2.0 - np.array(list(weights.values()))  # positive: scipy reads a stored 0 as no edge
-    forest = minimum_spanning_tree(csr_matrix((costs, (rows, columns)), shape=(n, n))).tocoo()
-    return tuple(sorted((int(min(a, b)), int(max(a, b))) for a, b in zip(forest.row, forest.col, strict=True)))
-
-
-def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
-    """Edges of a forest on the way between two parts, empty where they are not connected."""
-    previous = parents_from(edges, n, ends[0])
-    steps = []
-    node = ends[1]
-    while previous[node] >= 0:
-        parent = previous[node]
-        steps.append((min(node, parent), max(node, parent)))
-        node = parent
-    return tuple(steps) if node == ends[0] else ()
-
-
-def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
-    """Edges that others could replace: without one of them, all parts that it joins are still connected."""
-    kept = list(edges)
-    replaceable = []
-    for edge in kept:
-        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
-        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
-        labels = connected_components(matrix, directed=False)[1]
-        if labels[edge[0]] == labels[edge[1]]:
-            replaceable.append(edge)
-    return replaceable
-
-
-def parents_from(edges: Sequence[Pair], n: int, root: int) -> list[int]:
-    """Orient a forest away from `root`: parent of every part, -1 for the root and for what it does not reach."""
-    if not edges:
-        return [-1] * n
-    rows, columns = np.array(edges).T
-    matrix = csr_matrix((np.ones(len(edges)), (rows, columns)), shape=(n, n))
-    _, previous = breadth_first_order(matrix, root, directed=False)
-    return [max(int(item), -1) for item in previous]
 
 
 def _quality_with_tie_break(

@@ -1,7 +1,6 @@
-"""How good a rooted spanning tree is: the five terms of the paper (III-C, Reward) and our variants of them.
+"""How good a rooted spanning tree is: terms of the paper (III-C, Reward) that we keep, and our own.
 
-The paper's terms stand first, each as written; the variants that `default.yaml` uses follow, each in [0, 1].
-`TreeReward` binds one set to an assembly and returns the weighted sum, normalised to [0, 1].
+Each term is in [0, 1]. `TreeReward` binds them to an assembly and returns the weighted sum, normalised to [0, 1].
 """
 
 from __future__ import annotations
@@ -11,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.topology.evidence import coaxial_carriers, pair
+from kinematify.contact.graph import pair
+from kinematify.errors import InputError
+from kinematify.topology.evidence import coaxial_carriers
 from kinematify.topology.quality import effective_quality
 
 if TYPE_CHECKING:
@@ -22,12 +23,12 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
     from kinematify.config import TopologyConfig
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.evidence import EdgeEvidence, Pair
+    from kinematify.topology.evidence import EdgeEvidence
     from kinematify.topology.stats import PartStats
 
-_EPSILON = 1e-9
+EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""
 _MAD_TO_SIGMA = 1.4826
 """Median absolute deviation to standard deviation of a normal distribution."""
@@ -115,32 +116,13 @@ def torque_scale(centroids: FloatArray, volumes: FloatArray) -> float:
     centre = np.average(centroids, axis=0, weights=volumes)
     arms = np.hypot(*(centroids - centre)[:, :2].T) * volumes
     deviation = np.median(np.abs(arms - np.median(arms)))
-    floor = 0.01 * volumes.sum() * max(float(np.ptp(centroids, axis=0).max()), _EPSILON)
+    floor = 0.01 * volumes.sum() * max(float(np.ptp(centroids, axis=0).max()), EPSILON)
     return float(max(_MAD_TO_SIGMA * deviation * len(volumes), floor))
 
 
 def mean_over_edges(tree: TreeLayout, weights: FloatArray) -> float:
     """``R_contact = 1/|E| sum s(u, v)``: mean edge weight, `weights` of shape (n, n) in [0, 1]."""
     return float(weights[tree.parents[tree.children], tree.children].mean())
-
-
-def symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]]) -> float:
-    """``R_sym = mean_k S_k``, ``S_k = 1 / (1 + Var d) + [1 - (|P_k| - 1) / (|C_k| - 1 + eps)]``, in [0, 2].
-
-    0 where there is no cluster, a constant of the assembly.
-    """
-    scores = []
-    for cluster in clusters:
-        parents = {int(tree.parents[part]) for part in cluster} - {-1}
-        shared = 1 - (len(parents) - 1) / (len(cluster) - 1 + _EPSILON)
-        scores.append(_equal_depth(tree, cluster) + shared)
-    return float(np.mean(scores)) if scores else 0.0
-
-
-def hierarchy(tree: TreeLayout, volumes: FloatArray) -> float:
-    """``R_hier = 1 / (1 + sum max(0, v_v / (v_u + eps) - 1))`` over edges u -> v."""
-    ratio = volumes[tree.children] / (volumes[tree.parents[tree.children]] + _EPSILON * volumes.max())
-    return float(1 / (1 + np.maximum(ratio - 1, 0).sum()))
 
 
 def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], cluster_of: Sequence[int]) -> float:
@@ -153,7 +135,7 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
     for cluster in clusters:
         kinds = _parent_kinds([int(tree.parents[part]) for part in cluster], cluster_of)
         excess = min(kinds - 1, len(cluster) - 1)
-        scores.append(0.5 * _equal_depth(tree, cluster) + 0.5 * (1 - excess / (len(cluster) - 1)))
+        scores.append(0.5 * equal_depth(tree, cluster) + 0.5 * (1 - excess / (len(cluster) - 1)))
     return float(np.mean(scores)) if scores else 1.0
 
 
@@ -198,7 +180,13 @@ def log_hierarchy(tree: TreeLayout, hulls: FloatArray) -> float:
 
 
 class TreeReward:
-    """The reward of one assembly: weighted sum of the terms, normalised to [0, 1]."""
+    """The reward of one assembly: weighted sum of the terms, normalised to [0, 1].
+
+    `paper.trees.PaperReward` has the terms and weights of the paper instead.
+    """
+
+    searches_all_contacts = False
+    """Whether a search tries every contact, or only the spanning tree and what could compete with it."""
 
     def __init__(
         self,
@@ -213,11 +201,21 @@ class TreeReward:
         Args:
             graph: Contacts and clusters.
             stats: Size and place of every part.
-            evidence: Best joint of each contact edge; not used by the paper's reward.
-            config: `reward` chooses the terms, `weights` their weights.
-            simulated: What a simulation had against edges, if there was one.
+            evidence: Best joint of each contact edge, keyed (a, b) with a < b.
+            config: Weights of the terms.
+            simulated: What a simulation had against edges, if there was one; adds R_sim and weakens these edges.
+
+        Raises:
+            InputError: There are fewer than two parts, or not one measurement of each.
         """
+        if graph.n_parts < 2 or len(stats) != graph.n_parts:
+            raise InputError(
+                f"The topology search was given {graph.n_parts} parts in the contact graph and measurements of "
+                f"{len(stats)}; it needs two or more parts and one measurement of each."
+            )
         self.graph = graph
+        self.stats = stats
+        self.evidence = evidence
         self.simulated = simulated
         self.config = config
         self.centroids = np.array([item.centroid for item in stats])
@@ -226,8 +224,7 @@ class TreeReward:
         self.scale = torque_scale(self.centroids, self.volumes)
         corners = np.array([item.bounds for item in stats])
         self.diagonal = float(np.linalg.norm(corners[:, 1].max(axis=0) - corners[:, 0].min(axis=0)))
-        self.is_paper = config.reward == "paper"
-        self.quality = contact_strength(graph) if self.is_paper else effective_quality(graph, evidence, config)
+        self.quality = self.edge_quality()
         if simulated is not None:
             self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
         stacks = coaxial_carriers(evidence, angle=config.stack_deg, distance=config.stack_distance * self.diagonal)
@@ -238,13 +235,17 @@ class TreeReward:
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
             self.touches[a, b] = self.touches[b, a] = True
 
+    def edge_quality(self) -> dict[Pair, float]:
+        """Weight of every contact edge in [0, 1], before what a simulation had against it."""
+        return effective_quality(self.graph, self.evidence, self.config)
+
     def weights_for(self, base: int) -> dict[Pair, float]:
         """Edge weights whose maximum spanning tree has about the best sum of R_contact and R_direct for a base link.
 
         None is below 0: what competes with an edge is told by ratios.
         """
         weights = self.config.weights
-        loss = 0.0 if self.is_paper or weights.contact <= 0.0 else weights.direct / weights.contact
+        loss = weights.direct / weights.contact if weights.contact > 0.0 else 0.0
         return {
             (a, b): max(value - loss * self._elsewhere(base, a, b, value), 0.0)
             for (a, b), value in self.quality.items()
@@ -255,32 +256,30 @@ class TreeReward:
         return base not in (a, b) and value < self.config.journal_quality and bool(self.touches[base, [a, b]].any())
 
     def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
-        """Value of every term in [0, 1]; the paper's R_sym is halved here and its weight doubled in `total`.
+        """Value of every term in [0, 1].
 
         Args:
             parents: Parent of every part, -1 for the root.
             base_score: Score of the root under the base rule, in [0, 1].
         """
         tree = layout_tree(parents)
-        clusters = self.graph.clusters
-        if self.is_paper:
-            sym = 0.5 * symmetry(tree, clusters)
-            hier = hierarchy(tree, self.volumes)
-        else:
-            sym = corresponding_symmetry(tree, clusters, self.graph.cluster_of)
-            hier = log_hierarchy(tree, self.hulls)
         found = {
             "struct": structure(tree, self.config.preferred_degree),
             "static": static_support(tree, self.centroids, self.volumes, self.scale),
             "contact": mean_over_edges(tree, self.edge_weights),
-            "sym": sym,
-            "hier": hier,
-            "base": base_score,
+            **self.own_terms(tree, base_score),
         }
-        if not self.is_paper:
-            found["stack"] = side_by_side(tree, self.stacks)
-            found["direct"] = on_the_base(tree, self.touches, self.edge_weights >= self.config.journal_quality)
         return found if self.simulated is None else {**found, "sim": self._survived(tree)}
+
+    def own_terms(self, tree: TreeLayout, base_score: float) -> dict[str, float]:
+        """The terms in which this reward differs from other ones."""
+        return {
+            "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.cluster_of),
+            "hier": log_hierarchy(tree, self.hulls),
+            "base": base_score,
+            "stack": side_by_side(tree, self.stacks),
+            "direct": on_the_base(tree, self.touches, self.edge_weights >= self.config.journal_quality),
+        }
 
     def _survived(self, tree: TreeLayout) -> float:
         """``R_sim``: mean survival of the edges in simulation, in [0, 1]."""
@@ -288,31 +287,25 @@ class TreeReward:
         children = tree.children.tolist()
         return float(np.mean([known.get((int(tree.parents[child]), child), 1.0) for child in children]))
 
+    def term_weights(self) -> dict[str, float]:
+        """Weight of every term but R_sim."""
+        return self.config.weights.model_dump()
+
     def total(self, terms: Mapping[str, float]) -> float:
         """Weighted mean of the terms, in [0, 1]."""
-        weights = {name: value for name, value in self.config.weights.model_dump().items() if name in terms}
-        if self.is_paper:
-            weights["sym"] *= 2
+        weights = {name: value for name, value in self.term_weights().items() if name in terms}
         if self.simulated is not None:
             weights["sim"] = self.simulated.weight
         return float(sum(weights[name] * value for name, value in terms.items()) / sum(weights.values()))
 
     def gain(self, parent: int, child: int) -> float:
-        """Immediate score of an action: the paper's contact strength, or the growth of our reward (times n)."""
-        value = float(self.edge_weights[parent, child])
-        if self.is_paper:
-            return value
+        """Immediate score of an action: the growth of the reward (times n)."""
         growth = max(float(np.log(self.hulls[child] / self.hulls[parent])), 0.0)
-        return self.config.weights.contact * value - self.config.weights.hier * growth
+        return self.config.weights.contact * float(self.edge_weights[parent, child]) - self.config.weights.hier * growth
 
 
-def contact_strength(graph: ContactGraph) -> dict[Pair, float]:
-    """The paper's edge weight ``s(u, v)``; parts that a virtual edge joins do not touch and have none."""
-    return {pair: 0.0 if edge.bridge else edge.strength for pair, edge in graph.by_pair.items()}
-
-
-def _equal_depth(tree: TreeLayout, cluster: Sequence[int]) -> float:
-    """``1 / (1 + Var(d(i): i in C_k))``."""
+def equal_depth(tree: TreeLayout, cluster: Sequence[int]) -> float:
+    """``1 / (1 + Var(d(i): i in C_k))``: 1 where all parts of a cluster are equally deep in the tree."""
     return float(1 / (1 + np.var(tree.depth[list(cluster)])))
 
 

@@ -1,4 +1,4 @@
-"""From a contact graph with edge evidence to ranked kinematic trees (paper III-C)."""
+"""From edge weights and base links to ranked kinematic trees (paper III-C)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,10 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from kinematify.errors import InputError
-from kinematify.topology.base import BaseCandidate, base_by_degree, rank_bases
-from kinematify.topology.baselines import breadth_first_tree, spanning_edges
-from kinematify.topology.evidence import pair
+from kinematify.contact.graph import pair
+from kinematify.topology.base import rank_bases
 from kinematify.topology.mcts import SearchProblem, TreeSearch
-from kinematify.topology.quality import parents_from, tree_path
-from kinematify.topology.reward import TreeReward
+from kinematify.topology.spanning import breadth_first_tree, parents_from, spanning_edges, tree_path
 from kinematify.topology.tree import KinematicTree
 from kinematify.topology.virtual import virtual_costs
 
@@ -20,74 +17,42 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from kinematify.config import TopologyConfig
-    from kinematify.contact.graph import ContactGraph
-    from kinematify.topology.evidence import EdgeEvidence, Pair
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.topology.base import BaseCandidate
     from kinematify.topology.mcts import Parents
-    from kinematify.topology.reward import SimulatedEdges
-    from kinematify.topology.stats import PartStats
+    from kinematify.topology.reward import TreeReward
 
 
 def search_trees(
-    graph: ContactGraph,
-    stats: Sequence[PartStats],
-    evidence: Mapping[Pair, EdgeEvidence],
-    config: TopologyConfig,
-    *,
-    seed: int,
-    base: int | None = None,
-    simulated: SimulatedEdges | None = None,
-    warm: Sequence[KinematicTree] = (),
+    reward: TreeReward, bases: Sequence[BaseCandidate], *, seed: int, warm: Sequence[KinematicTree] = ()
 ) -> tuple[KinematicTree, ...]:
     """Find the best kinematic trees of an assembly.
 
     Args:
-        graph: Contacts, bridges and clusters of congruent parts.
-        stats: Size and support of every part, world frame, z up.
-        evidence: Best joint of each contact edge, keyed (a, b) with a < b.
-        config: Mode, reward, base rule and budget.
+        reward: Of its trees; its configuration has the mode and the budget.
+        bases: Base links to try.
         seed: Seed of the search; it only breaks ties.
-        base: Index of the base link where it is known.
-        simulated: What a simulation had against edges; adds R_sim to the reward and weakens these edges.
         warm: Trees to begin with, beside the spanning tree of each base; the search never returns less.
 
     Returns:
         At most `config.keep` distinct trees, highest reward first.
-
-    Raises:
-        InputError: There are fewer than two parts, `base` is no part, or the lengths do not match.
     """
-    _check_input(graph, stats, base)
-    reward = TreeReward(graph, stats, evidence, config, simulated)
-    edges = spanning_edges(reward.quality, reward.centroids)
-    bases = plausible_bases(graph, stats, evidence, config, edges=edges, base=base)
+    keep = reward.config.keep
     found: dict[Parents, tuple[float, dict[str, float]]] = {}
     for candidate in bases:
         known = [tree.parents for tree in warm if tree.root == candidate.part]
         seen = _trees_of_base(reward, candidate, len(bases), seed=seed, known=known)
-        best = sorted(seen, key=lambda parents: -seen[parents])[: config.keep]
+        best = sorted(seen, key=lambda parents: -seen[parents])[:keep]
         found |= {parents: (seen[parents], reward.terms(parents, candidate.score)) for parents in best}
-    ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[: config.keep]
-    return tuple(_finish(graph, parents, *found[parents]) for parents in ranked)
+    ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[:keep]
+    return tuple(_finish(reward.graph, parents, *found[parents]) for parents in ranked)
 
 
-def plausible_bases(
-    graph: ContactGraph,
-    stats: Sequence[PartStats],
-    evidence: Mapping[Pair, EdgeEvidence],
-    config: TopologyConfig,
-    *,
-    edges: Sequence[Pair],
-    base: int | None = None,
-) -> tuple[BaseCandidate, ...]:
-    """Base links worth a search, best first: the given one, the paper's one, or the scored ones near the best.
-
-    `edges` is the undirected spanning tree of the best joints.
-    """
-    if base is not None:
-        return (BaseCandidate(part=base, score=1.0, reason="It was given."),)
-    if config.base_rule == "degree":
-        return base_by_degree(graph)[:1]
-    ranked = rank_bases(edges, stats, graph.clusters, evidence, config.base)
+def plausible_bases(reward: TreeReward) -> tuple[BaseCandidate, ...]:
+    """Base links worth a search, best first: those whose score is near the best."""
+    config = reward.config
+    edges = spanning_edges(reward.quality, reward.centroids)
+    ranked = rank_bases(edges, reward.stats, reward.graph.clusters, reward.evidence, config.base)
     near = [item for item in ranked if item.score >= ranked[0].score - config.base_margin]
     return tuple(near[: config.max_bases])
 
@@ -147,7 +112,7 @@ def _trees_of_base(
         return {breadth_first: judge(breadth_first)}
     problem = _search_problem(reward, weights, edges, candidate.part, judge)
     warm = oriented
-    if reward.is_paper or problem.forbidden:
+    if reward.searches_all_contacts or problem.forbidden:
         warm = breadth_first_tree(graph, candidate.part, reward.centroids, problem.forbidden)
     search = TreeSearch(
         problem, exploration=config.exploration, normalise=config.normalise_returns, seed=seed, warm=[warm, *known]
@@ -163,9 +128,8 @@ def _search_problem(
     root: int,
     judge: Callable[[Parents], float],
 ) -> SearchProblem:
-    """The paper's search uses every contact; ours the spanning tree and what could compete with it."""
     graph, config = reward.graph, reward.config
-    if reward.is_paper:
+    if reward.searches_all_contacts:
         usable = OpenEdges(usable=frozenset(touching_pairs(graph)), certain=frozenset())
     else:
         usable = open_edges(weights, edges, graph.n_parts, config)
@@ -207,14 +171,3 @@ def _finish(graph: ContactGraph, parents: Parents, total: float, terms: Mapping[
         reward=total,
         terms=terms,
     )
-
-
-def _check_input(graph: ContactGraph, stats: Sequence[PartStats], base: int | None) -> None:
-    n = graph.n_parts
-    if n < 2 or len(stats) != n:
-        raise InputError(
-            f"The topology search was given {n} parts in the contact graph and measurements of {len(stats)}; "
-            "it needs two or more parts and one measurement of each."
-        )
-    if base is not None and not 0 <= base < n:
-        raise InputError(f"Part {base} was given as base link, but the parts are numbered 0 to {n - 1}.")

@@ -1,21 +1,21 @@
-"""Trees without a search: the paper's breadth-first orientation, and the exact maximum spanning tree."""
+"""Spanning trees without a search: the maximum one, and the paper's breadth-first orientation."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
-from kinematify.topology.quality import maximum_spanning_edges, parents_from
 from kinematify.topology.virtual import nearest_pair, virtual_costs
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from collections.abc import Set as AbstractSet
 
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.evidence import Pair
 
 
 def breadth_first_tree(
@@ -53,20 +53,6 @@ def breadth_first_tree(
         queue = [child]
 
 
-def spanning_tree(weights: Mapping[Pair, float], centroids: FloatArray, root: int) -> tuple[int, ...]:
-    """Orient the exact maximum spanning tree away from a root.
-
-    Args:
-        weights: Weight of every usable edge (a, b), a < b, in [0, 1].
-        centroids: Part centroids [m], shape (n, 3); components are joined where they are nearest.
-        root: The base link.
-
-    Returns:
-        Parent of every part, -1 for the root.
-    """
-    return tuple(parents_from(spanning_edges(weights, centroids), len(centroids), root))
-
-
 def spanning_edges(weights: Mapping[Pair, float], centroids: FloatArray) -> tuple[Pair, ...]:
     """Edges of the exact maximum spanning tree; components are joined by virtual edges between nearest centroids."""
     n = len(centroids)
@@ -76,6 +62,51 @@ def spanning_edges(weights: Mapping[Pair, float], centroids: FloatArray) -> tupl
         a, b = nearest_pair(virtual_costs(centroids), reached)
         edges.append((min(a, b), max(a, b)))
     return tuple(sorted(edges))
+
+
+def maximum_spanning_edges(weights: Mapping[Pair, float], n: int) -> tuple[Pair, ...]:
+    """Exact maximum spanning forest, edges in ascending order."""
+    if not weights:
+        return ()
+    rows, columns = np.array(list(weights)).T
+    costs = 2.0 - np.array(list(weights.values()))  # positive: scipy reads a stored 0 as no edge
+    forest = minimum_spanning_tree(csr_matrix((costs, (rows, columns)), shape=(n, n))).tocoo()
+    return tuple(sorted((int(min(a, b)), int(max(a, b))) for a, b in zip(forest.row, forest.col, strict=True)))
+
+
+def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
+    """Edges of a forest on the way between two parts, empty where they are not connected."""
+    previous = parents_from(edges, n, ends[0])
+    steps = []
+    node = ends[1]
+    while previous[node] >= 0:
+        parent = previous[node]
+        steps.append((min(node, parent), max(node, parent)))
+        node = parent
+    return tuple(steps) if node == ends[0] else ()
+
+
+def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
+    """Edges that others could replace: without one of them, all parts that it joins are still connected."""
+    kept = list(edges)
+    replaceable = []
+    for edge in kept:
+        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
+        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
+        labels = connected_components(matrix, directed=False)[1]
+        if labels[edge[0]] == labels[edge[1]]:
+            replaceable.append(edge)
+    return replaceable
+
+
+def parents_from(edges: Sequence[Pair], n: int, root: int) -> list[int]:
+    """Orient a forest away from `root`: parent of every part, -1 for the root and for what it does not reach."""
+    if not edges:
+        return [-1] * n
+    rows, columns = np.array(edges).T
+    matrix = csr_matrix((np.ones(len(edges)), (rows, columns)), shape=(n, n))
+    _, previous = breadth_first_order(matrix, root, directed=False)
+    return [max(int(item), -1) for item in previous]
 
 
 def _spread(

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from kinematify.contact.graph import Pair
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.evidence import Pair
 
 
 def virtual_costs(centroids: FloatArray, *, limit: float = np.inf, forbidden: Iterable[Pair] = ()) -> FloatArray:

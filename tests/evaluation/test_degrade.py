@@ -12,7 +12,7 @@ from objects import BUILDERS
 from test_benchmark_run import request, write_object
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.cli.bench import words_of
+from kinematify.cli.words import words_of
 from kinematify.config import load_config
 from kinematify.evaluation.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
 from kinematify.evaluation.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed

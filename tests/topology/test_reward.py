@@ -9,15 +9,11 @@ from hypothesis import strategies as st
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
+from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
 from kinematify.topology.evidence import EdgeEvidence, coaxial_carriers
-from kinematify.topology.quality import (
-    bottleneck,
-    effective_quality,
-    maximum_spanning_edges,
-    on_cycles,
-    parents_from,
-)
+from kinematify.topology.quality import bottleneck, effective_quality
+from kinematify.topology.spanning import maximum_spanning_edges, on_cycles, parents_from
 from kinematify.topology.stats import part_stats
 from tests.topology.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
 
@@ -68,12 +64,12 @@ def test_contact_is_the_mean_over_tree_edges() -> None:
 
 def test_symmetry_of_the_paper() -> None:
     # Children 1, 2 of one root: no variance, one parent.
-    assert terms.symmetry(STAR, [(1, 2, 3)]) == pytest.approx(2.0)
+    assert symmetry(STAR, [(1, 2, 3)]) == pytest.approx(2.0)
     # In the chain depths 1, 2, 3 have variance 2/3 and the parents 0, 1, 2 differ.
-    assert terms.symmetry(CHAIN, [(1, 2, 3)]) == pytest.approx(1 / (1 + 2 / 3), abs=1e-6)
+    assert symmetry(CHAIN, [(1, 2, 3)]) == pytest.approx(1 / (1 + 2 / 3), abs=1e-6)
     # Two knees on two thighs: equal depth, but no shared parent.
     legs = terms.layout_tree([-1, 0, 0, 1, 2])
-    assert terms.symmetry(legs, [(1, 2), (3, 4)]) == pytest.approx((2 + 1) / 2, abs=1e-6)
+    assert symmetry(legs, [(1, 2), (3, 4)]) == pytest.approx((2 + 1) / 2, abs=1e-6)
 
 
 def test_corresponding_parents_count_as_symmetric() -> None:
@@ -88,23 +84,25 @@ def test_corresponding_parents_count_as_symmetric() -> None:
 
 def test_hierarchy_of_the_paper_and_ours() -> None:
     volumes = np.array([1.0, 3.0, 1.0, 0.5])
-    assert terms.hierarchy(CHAIN, volumes) == pytest.approx(1 / (1 + 2), abs=1e-6)
+    assert hierarchy(CHAIN, volumes) == pytest.approx(1 / (1 + 2), abs=1e-6)
     assert terms.log_hierarchy(CHAIN, volumes) == pytest.approx(1 / (1 + np.log(3) / 3))
 
 
 def test_total_is_the_weighted_mean() -> None:
     graph, stats, evidence = random_assembly(5, 2, seed=3, clusters=[(1, 2)])
-    reward = terms.TreeReward(graph, stats, evidence, PAPER)
+    reward = PaperReward(graph, stats, evidence, PAPER)
     values = reward.terms([-1, 0, 0, 1, 1])
     by_hand = (values["struct"] + values["static"] + values["contact"] + 2 * values["sym"] + values["hier"]) / 6
     assert reward.total(values) == pytest.approx(by_hand)
 
 
-@given(st.integers(2, 12), st.integers(0, 6), st.integers(0, 10_000), st.sampled_from([CONFIG, PAPER]))
-def test_every_term_and_the_total_stay_in_the_unit_interval(n: int, extra: int, seed: int, config: object) -> None:
+@given(st.integers(2, 12), st.integers(0, 6), st.integers(0, 10_000), st.sampled_from([terms.TreeReward, PaperReward]))
+def test_every_term_and_the_total_stay_in_the_unit_interval(
+    n: int, extra: int, seed: int, kind: type[terms.TreeReward]
+) -> None:
     clusters = [(0, 1)] if n < 5 else [(0, 1), (2, 3, 4)]
     graph, stats, evidence = random_assembly(n, extra, seed, clusters)
-    reward = terms.TreeReward(graph, stats, evidence, config)  # type: ignore[arg-type]
+    reward = kind(graph, stats, evidence, PAPER if kind is PaperReward else CONFIG)
     rng = np.random.default_rng(seed)
     parents = [-1] + [int(rng.integers(0, i)) for i in range(1, n)]
     values = reward.terms(parents, base_score=0.5)
@@ -208,7 +206,8 @@ def test_proximity_only_breaks_ties() -> None:
 def test_a_bridge_has_no_contact_strength() -> None:
     graph = graph_of(2, {})
     bridged = type(graph)(n_parts=2, edges=(edge(0, 1, 0.9, bridge=True),), clusters=(), tolerance=0.01)
-    assert terms.contact_strength(bridged) == {(0, 1): 0.0}
+    stats = [stat((0, 0, 0)), stat((1, 0, 0))]
+    assert PaperReward(bridged, stats, {}, PAPER).quality == {(0, 1): 0.0}
 
 
 def test_bottleneck_is_the_weakest_edge_of_the_strongest_path() -> None:

@@ -12,14 +12,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.config import TopologyConfig, load_config
-from kinematify.contact.graph import ContactGraph
+from kinematify.contact.graph import ContactGraph, pair
 from kinematify.errors import InputError
-from kinematify.topology.baselines import breadth_first_tree, spanning_edges, spanning_tree
-from kinematify.topology.evidence import EdgeEvidence, pair
+from kinematify.paper.trees import PaperReward
+from kinematify.pipeline.stages import rank_trees
+from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.mcts import SearchProblem, SearchState
-from kinematify.topology.quality import parents_from
 from kinematify.topology.reward import TreeReward
-from kinematify.topology.search import open_edges, plausible_bases, search_trees
+from kinematify.topology.search import open_edges, plausible_bases
+from kinematify.topology.spanning import breadth_first_tree, parents_from, spanning_edges
 from kinematify.topology.virtual import virtual_costs
 from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
 
@@ -64,11 +65,10 @@ def test_default_search_finds_the_optimum_over_all_trees_and_roots(shapes: list[
         config = EXACT.model_copy(update={"max_bases": n, "base_margin": 1.0})
         graph, stats, evidence = dress(shape, number, ((0, 1),) if n < 5 else ((0, 1), (2, 3, 4)))
         reward = TreeReward(graph, stats, evidence, config)
-        edges = spanning_edges(reward.quality, reward.centroids)
-        bases = plausible_bases(graph, stats, evidence, config, edges=edges)
+        bases = plausible_bases(reward)
         assert len(bases) == n
         best = brute_force(graph, reward, {item.part: item.score for item in bases}, set())
-        found = search_trees(graph, stats, evidence, config, seed=0)[0]
+        found = rank_trees(graph, stats, evidence, config, seed=0)[0]
         assert found.reward == pytest.approx(best, abs=1e-9), shape.edges
 
 
@@ -83,10 +83,10 @@ def test_paper_search_finds_the_optimum_without_edges_inside_clusters(shapes: li
         remaining.remove_edges_from(banned)
         if not nx.is_connected(remaining):
             continue
-        reward = TreeReward(graph, stats, evidence, PAPER)
+        reward = PaperReward(graph, stats, evidence, PAPER)
         for root in range(0, n, 2):
             best = brute_force(graph, reward, {root: 1.0}, banned)
-            found = search_trees(graph, stats, evidence, EXACT_PAPER, seed=0, base=root)[0]
+            found = rank_trees(graph, stats, evidence, EXACT_PAPER, seed=0, base=root)[0]
             assert found.reward == pytest.approx(best, abs=1e-9), (shape.edges, root)
             compared += 1
     assert compared > 20
@@ -99,9 +99,9 @@ def test_search_never_returns_less_than_its_warm_start(n: int, extra: int, seed:
     graph, stats, evidence = random_assembly(n, extra, seed, clusters)
     for config in (DEFAULT, PAPER.model_copy(update={"cluster_edges": "penalise"})):
         small = config.model_copy(update={"iterations": iterations})
-        found = search_trees(graph, stats, evidence, small, seed=seed)[0]
+        found = rank_trees(graph, stats, evidence, small, seed=seed)[0]
         warm_mode = "bfs" if config.reward == "paper" else "mst"
-        warm = search_trees(graph, stats, evidence, small.model_copy(update={"mode": warm_mode}), seed=seed)[0]
+        warm = rank_trees(graph, stats, evidence, small.model_copy(update={"mode": warm_mode}), seed=seed)[0]
         assert found.reward >= warm.reward - 1e-12
 
 
@@ -119,8 +119,8 @@ def test_permuting_the_parts_permutes_the_tree(n: int, extra: int, seed: int) ->
     new_stats = [stats[int(old)] for old in order]
     new_evidence = {moved(key): item for key, item in evidence.items()}
     for config in (EXACT.model_copy(update={"iterations": 3000}), DEFAULT.model_copy(update={"mode": "mst"})):
-        first = search_trees(graph, stats, evidence, config, seed=0)[0]
-        second = search_trees(shuffled, new_stats, new_evidence, config, seed=0)[0]
+        first = rank_trees(graph, stats, evidence, config, seed=0)[0]
+        second = rank_trees(shuffled, new_stats, new_evidence, config, seed=0)[0]
         expected = [-1] * n
         for child, parent in enumerate(first.parents):
             expected[int(place[child])] = -1 if parent < 0 else int(place[parent])
@@ -131,8 +131,8 @@ def test_permuting_the_parts_permutes_the_tree(n: int, extra: int, seed: int) ->
 @pytest.mark.parametrize("config", [DEFAULT, PAPER], ids=["default", "paper"])
 def test_same_seed_same_trees(config: TopologyConfig) -> None:
     graph, stats, evidence = random_assembly(30, 12, 5, [(4, 5, 6), (10, 11)])
-    first = search_trees(graph, stats, evidence, config, seed=3)
-    assert first == search_trees(graph, stats, evidence, config, seed=3)
+    first = rank_trees(graph, stats, evidence, config, seed=3)
+    assert first == rank_trees(graph, stats, evidence, config, seed=3)
 
 
 @settings(max_examples=30)
@@ -140,7 +140,7 @@ def test_same_seed_same_trees(config: TopologyConfig) -> None:
 def test_every_tree_spans_and_every_contact_is_used_or_broken(n: int, extra: int, seed: int) -> None:
     graph, stats, evidence = random_assembly(n, extra, seed, [(0, 1)])
     for config in (DEFAULT, PAPER):
-        for tree in search_trees(graph, stats, evidence, config, seed=seed):
+        for tree in rank_trees(graph, stats, evidence, config, seed=seed):
             used = {pair(parent, child) for parent, child in tree.edges()}
             assert len(used) == n - 1
             assert tree.parents.count(-1) == 1
@@ -154,13 +154,13 @@ def test_paper_mode_never_joins_parts_of_one_cluster(n: int, extra: int, seed: i
     clusters = [(0, 1, 2), (3, 4)]
     graph, stats, evidence = random_assembly(n, extra, seed, clusters)
     banned = {item for cluster in clusters for item in combinations(cluster, 2)}
-    tree = search_trees(graph, stats, evidence, PAPER, seed=seed)[0]
+    tree = rank_trees(graph, stats, evidence, PAPER, seed=seed)[0]
     assert not banned & {pair(parent, child) for parent, child in tree.edges()}
 
 
 def test_two_equal_parts_are_joined_even_when_forbidden() -> None:
     graph = graph_of(2, {(0, 1): 0.5}, [(0, 1)])
-    tree = search_trees(graph, [stat((0, 0, 0)), stat((1, 0, 0))], {}, PAPER, seed=0)[0]
+    tree = rank_trees(graph, [stat((0, 0, 0)), stat((1, 0, 0))], {}, PAPER, seed=0)[0]
     assert sorted(tree.parents) == [-1, 0]
 
 
@@ -169,13 +169,13 @@ def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
     graph = graph_of(4, {(0, 1): 0.5, (1, 2): 0.5, (2, 3): 0.5}, [(1, 2)])
     stats = [stat((0, 0, float(k)), 2.0 if k == 0 else 1.0) for k in range(4)]
     evidence = {key: EdgeEvidence(quality=0.3, axis=None) for key in graph.by_pair}
-    assert search_trees(graph, stats, evidence, DEFAULT, seed=0, base=0)[0].parents == (-1, 0, 1, 2)
-    assert search_trees(graph, stats, evidence, PAPER, seed=0, base=0)[0].parents[2] != 1
+    assert rank_trees(graph, stats, evidence, DEFAULT, seed=0, base=0)[0].parents == (-1, 0, 1, 2)
+    assert rank_trees(graph, stats, evidence, PAPER, seed=0, base=0)[0].parents[2] != 1
 
 
 def test_kept_trees_are_distinct_and_sorted() -> None:
     graph, stats, evidence = random_assembly(12, 8, 2)
-    trees = search_trees(graph, stats, evidence, EXACT.model_copy(update={"iterations": 500}), seed=0)
+    trees = rank_trees(graph, stats, evidence, EXACT.model_copy(update={"iterations": 500}), seed=0)
     assert len(trees) == DEFAULT.keep
     assert len({tree.parents for tree in trees}) == len(trees)
     rewards = [tree.reward for tree in trees]
@@ -187,7 +187,7 @@ def test_kept_trees_are_distinct_and_sorted() -> None:
 def test_parts_that_touch_nothing_are_joined_to_the_nearest(config: TopologyConfig, mode: str) -> None:
     graph = graph_of(4, {(0, 1): 0.5})
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0), 4.0), stat((4, 0, 0), 2.0), stat((100, 0, 0))]
-    tree = search_trees(graph, stats, {}, config.model_copy(update={"mode": mode}), seed=0, base=0)[0]
+    tree = rank_trees(graph, stats, {}, config.model_copy(update={"mode": mode}), seed=0, base=0)[0]
     assert tree.parents == (-1, 0, 1, 2)
     assert tree.virtual == {(1, 2), (2, 3)}
 
@@ -196,7 +196,7 @@ def test_a_bridge_is_used_and_reported_as_virtual() -> None:
     edges = (edge(0, 1), edge(0, 2, bridge=True))
     graph = ContactGraph(n_parts=3, edges=edges, clusters=(), tolerance=0.01)
     stats = [stat((0, 0, 0), 9.0), stat((2, 0, 0)), stat((3, 0, 0))]
-    tree = search_trees(graph, stats, {}, DEFAULT, seed=0)[0]
+    tree = rank_trees(graph, stats, {}, DEFAULT, seed=0)[0]
     assert tree.parents == (-1, 0, 0)
     assert tree.virtual == {(0, 2)}
     assert tree.broken == frozenset()
@@ -237,26 +237,26 @@ def test_breadth_first_tree_of_a_ring() -> None:
 
 def test_spanning_tree_takes_the_heaviest_edges() -> None:
     weights = {(0, 1): 0.1, (1, 2): 0.9, (0, 2): 0.8}
-    assert spanning_tree(weights, np.eye(3), 0) == (-1, 2, 0)
+    assert parents_from(spanning_edges(weights, np.eye(3)), 3, 0) == [-1, 2, 0]
 
 
 def test_given_base_is_the_root() -> None:
     graph, stats, evidence = random_assembly(8, 3, 1)
     for config in (DEFAULT, PAPER):
-        assert {tree.root for tree in search_trees(graph, stats, evidence, config, seed=0, base=5)} == {5}
+        assert {tree.root for tree in rank_trees(graph, stats, evidence, config, seed=0, base=5)} == {5}
 
 
 @pytest.mark.parametrize("base", [-1, 8])
 def test_a_base_that_is_no_part_is_refused(base: int) -> None:
     graph, stats, evidence = random_assembly(8, 3, 1)
     with pytest.raises(InputError, match="numbered 0 to 7"):
-        search_trees(graph, stats, evidence, DEFAULT, seed=0, base=base)
+        rank_trees(graph, stats, evidence, DEFAULT, seed=0, base=base)
 
 
 def test_too_few_parts_or_measurements_are_refused() -> None:
     graph, stats, evidence = random_assembly(8, 3, 1)
     with pytest.raises(InputError, match="measurements of 7"):
-        search_trees(graph, stats[:-1], evidence, DEFAULT, seed=0)
+        rank_trees(graph, stats[:-1], evidence, DEFAULT, seed=0)
 
 
 @pytest.mark.parametrize("config", [DEFAULT, PAPER], ids=["default", "paper"])
@@ -264,6 +264,6 @@ def test_two_hundred_parts_take_seconds(config: TopologyConfig) -> None:
     clusters = [tuple(range(k, k + 4)) for k in range(2, 190, 8)]
     graph, stats, evidence = random_assembly(200, 60, 1, clusters)
     start = time.process_time()
-    trees = search_trees(graph, stats, evidence, config, seed=0)
+    trees = rank_trees(graph, stats, evidence, config, seed=0)
     assert time.process_time() - start < 10.0
     assert len(trees[0].parents) == 200

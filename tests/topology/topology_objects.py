@@ -8,7 +8,8 @@ import numpy as np
 
 from kinematify.assembly.part import Part
 from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples
-from kinematify.topology.evidence import EdgeEvidence, pair
+from kinematify.contact.graph import pair
+from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.stats import PartStats, part_stats
 
 if TYPE_CHECKING:

@@ -27,12 +27,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import BearingConfig
-    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.hypotheses.bearing_evidence import Sides
     from kinematify.robot.arrays import FloatArray, IntArray
-
-Pair = tuple[int, int]
 
 
 def shared_by_twins(

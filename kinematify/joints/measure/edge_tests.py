@@ -16,11 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from kinematify.config import JointsConfig
+    from kinematify.contact.graph import Pair
     from kinematify.joints.hypotheses.bearing_line import BearingLine
     from kinematify.joints.measure.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
-
-Pair = tuple[int, int]
 
 
 def journal_pairs(cache: PartCache, pairs: Iterable[Pair], config: JointsConfig) -> frozenset[Pair]:

@@ -1,0 +1,57 @@
+"""The answer of a run: parts, contacts, trees, joints and what the user should know."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from kinematify.model.build import build_model
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.joints.candidate import JointEstimate
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.topology.tree import KinematicTree
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Inference:
+    """Everything that was inferred, with every alternative that was kept."""
+
+    assembly: Assembly
+    config: Config
+    graph: ContactGraph
+    bearings: Mapping[Pair, EdgeBearing]
+    """Bearing lines of every contact edge, keyed (a, b) with a < b; empty where the method fits none."""
+    trees: tuple[KinematicTree, ...]
+    """Best first; `joints` belong to the first."""
+    joints: tuple[JointEstimate, ...]
+    """One per edge of `trees[0]`, in the order of `trees[0].edges()`."""
+    timings: Mapping[str, float]
+    """Wall time of every stage [s]."""
+    peak_mb: float
+    """Peak resident memory of the process so far [MB]."""
+    warnings: tuple[str, ...] = field(default=())
+    """What the user should know, one sentence each; those of the assembly included."""
+    refinement: Mapping[str, Any] | None = None
+    """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
+    provenance: Mapping[str, Any] | None = None
+    """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
+
+    @cached_property
+    def model(self) -> KinematicModel:
+        """The kinematic model of the best tree."""
+        return build_model(
+            self.assembly, self.trees[0], self.joints, name=_model_name(self.assembly.source), config=self.config.model
+        )
+
+
+def _model_name(source: str) -> str:
+    stem = source.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1].split(".")[0]
+    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in stem) or "model"

@@ -1,0 +1,126 @@
+"""The stages of a run whose method the configuration chooses: ours, or those of the paper as printed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kinematify.errors import InputError
+from kinematify.joints.choice.decide import estimate_joints
+from kinematify.paper.trees import PaperReward, base_by_degree
+from kinematify.topology.base import BaseCandidate
+from kinematify.topology.evidence import gather_evidence
+from kinematify.topology.reward import TreeReward
+from kinematify.topology.search import plausible_bases, search_trees
+from kinematify.topology.stats import assembly_stats
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.config import Config, TopologyConfig
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.joints.candidate import JointEstimate
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.topology.evidence import EdgeEvidence
+    from kinematify.topology.reward import SimulatedEdges
+    from kinematify.topology.stats import PartStats
+    from kinematify.topology.tree import KinematicTree
+
+
+def find_trees(
+    assembly: Assembly,
+    graph: ContactGraph,
+    bearings: Mapping[Pair, EdgeBearing],
+    config: Config,
+    *,
+    base: int | None = None,
+    simulated: SimulatedEdges | None = None,
+    warm: Sequence[KinematicTree] = (),
+) -> tuple[KinematicTree, ...]:
+    """The best kinematic trees of an assembly; arguments as in `rank_trees`."""
+    evidence = gather_evidence(assembly, graph, bearings, config)
+    return rank_trees(
+        graph,
+        assembly_stats(assembly),
+        evidence,
+        config.topology,
+        seed=config.seed,
+        base=base,
+        simulated=simulated,
+        warm=warm,
+    )
+
+
+def rank_trees(
+    graph: ContactGraph,
+    stats: Sequence[PartStats],
+    evidence: Mapping[Pair, EdgeEvidence],
+    config: TopologyConfig,
+    *,
+    seed: int,
+    base: int | None = None,
+    simulated: SimulatedEdges | None = None,
+    warm: Sequence[KinematicTree] = (),
+) -> tuple[KinematicTree, ...]:
+    """Search trees by the reward and the base rule of the configuration.
+
+    Args:
+        graph: Contacts, bridges and clusters of congruent parts.
+        stats: Size and support of every part, world frame, z up.
+        evidence: Best joint of each contact edge, keyed (a, b) with a < b.
+        config: Mode, reward, base rule and budget.
+        seed: Seed of the search; it only breaks ties.
+        base: Index of the base link where it is known.
+        simulated: What a simulation had against edges.
+        warm: Trees to begin with, beside the spanning tree of each base; the search never returns less.
+
+    Returns:
+        At most `config.keep` distinct trees, highest reward first.
+
+    Raises:
+        InputError: There are fewer than two parts, `base` is no part, or the lengths do not match.
+    """
+    reward = (PaperReward if config.reward == "paper" else TreeReward)(graph, stats, evidence, config, simulated)
+    if base is not None and not 0 <= base < graph.n_parts:
+        raise InputError(f"Part {base} was given as base link, but the parts are numbered 0 to {graph.n_parts - 1}.")
+    if base is not None:
+        bases: tuple[BaseCandidate, ...] = (BaseCandidate(part=base, score=1.0, reason="It was given."),)
+    else:
+        bases = base_by_degree(graph)[:1] if config.base_rule == "degree" else plausible_bases(reward)
+    return search_trees(reward, bases, seed=seed, warm=warm)
+
+
+def choose_joints(
+    assembly: Assembly,
+    graph: ContactGraph,
+    tree: KinematicTree,
+    bearings: Mapping[Pair, EdgeBearing],
+    config: Config,
+) -> tuple[JointEstimate, ...]:
+    """The joint of every edge of a tree, in the order of `tree.edges()`, by the method of the configuration."""
+    if config.joints.method == "geometry":
+        return estimate_joints(assembly, graph, tree, bearings, config=config.joints, seed=config.seed)
+    # torch takes seconds to import, and only this branch needs it.
+    from kinematify.paper.joints import estimate_paper_joints  # noqa: PLC0415
+
+    return estimate_paper_joints(assembly, graph, tuple(tree.edges()), config=config)
+
+
+def with_doubt_of_parents(
+    joints: Sequence[JointEstimate], trees: Sequence[KinematicTree], margin: float
+) -> tuple[JointEstimate, ...]:
+    """Joints with less confidence where trees that are nearly as good hang the part on another one."""
+    best = trees[0]
+    found = []
+    for joint in joints:
+        rivals: dict[int, float] = {}
+        for tree in trees[1:]:
+            above = tree.parents[joint.child]
+            if above != joint.parent:
+                rivals[above] = max(rivals.get(above, -math.inf), tree.reward)
+        right = 1.0 / (1.0 + sum(math.exp((reward - best.reward) / margin) for reward in rivals.values()))
+        evidence = {**joint.evidence, "parent_likely": right}
+        found.append(replace(joint, confidence=joint.confidence * right, evidence=evidence))
+    return tuple(found)
