@@ -11,8 +11,8 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.model.kinematic_model import Joint
     from kinematify.pipeline import Inference
+    from kinematify.robot.robot import Joint
 
 DOUBTFUL = 0.5
 """Joints of less confidence are named as those to look at first."""

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""
+_LEAST_WEIGHT = 1e-6
+"""Share of its quality that an edge keeps which a base link speaks against."""
 _MAD_TO_SIGMA = 1.4826
 """Median absolute deviation to standard deviation of a normal distribution."""
 
@@ -242,12 +244,12 @@ class TreeReward:
     def weights_for(self, base: int) -> dict[Pair, float]:
         """Edge weights whose maximum spanning tree has about the best sum of R_contact and R_direct for a base link.
 
-        None is below 0: what competes with an edge is told by ratios.
+        All are above 0 and keep their order: what competes with an edge is told by ratios.
         """
         weights = self.config.weights
         loss = weights.direct / weights.contact if weights.contact > 0.0 else 0.0
         return {
-            (a, b): max(value - loss * self._elsewhere(base, a, b, value), 0.0)
+            (a, b): max(value - loss * self._elsewhere(base, a, b, value), _LEAST_WEIGHT * value)
             for (a, b), value in self.quality.items()
         }
 
