@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import Part
-from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples
-from kinematify.contact.graph import pair
+from kinematify.contact.graph import ContactEdge, ContactGraph, ContactSamples, pair
 from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.stats import PartStats, part_stats
 
