@@ -1,17 +1,17 @@
-"""`kinematify bench`: accuracy on models whose joints are known, beside the paper's."""
+"""`kinematify bench`: accuracy on models whose joints are known, beside the paper's, and studies of other questions."""
 
 from __future__ import annotations
 
 import os
-from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
+from kinematify.cli.study import print_studies, study_command
 from kinematify.cli.table import format_table
 from kinematify.cli.words import words_of
 from kinematify.errors import ExitStatus
@@ -20,13 +20,45 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.evaluation.job import JobResult
+    from kinematify.evaluation.record import Report
     from kinematify.evaluation.regression import Regression
-    from kinematify.evaluation.run import BenchmarkReport, Variant
+    from kinematify.evaluation.run import Variant
+
+
+class _BenchCommand(click.Command):
+    """The benchmark, or the study that the first word names."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
+    ) -> click.Context:
+        """Hand over to the study's own command where one is named."""
+        study = study_command(args[0]) if args and not args[0].startswith("-") else None
+        if study is None:
+            return super().make_context(info_name, args, parent, **extra)
+        study.params += [parameter for parameter in self.params if parameter.name == "traceback"]
+        return study.make_context(f"{info_name} {args[0]}", args[1:], parent, **extra)
+
+
+def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
+    if asked:
+        print_studies()
+        context.exit()
+
+
+def _write_readme(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
+    if asked:
+        from kinematify.evaluation.readme import write_readme
+
+        write_readme(Path("README.md"), Path("results"))
+        click.echo("README.md has the results of the reports in results/.")
+        context.exit()
 
 
 @click.command(
     "bench",
+    cls=_BenchCommand,
     short_help="Accuracy on models with known joints, beside the paper's.",
+    options_metavar="[OPTIONS]",
     epilog=examples(
         "kinematify bench --data pip",
         "kinematify bench models/ -o results --name robots",
@@ -35,10 +67,23 @@ if TYPE_CHECKING:
         "kinematify bench models/ --baseline results/robots.json",
         "kinematify bench models/ --degrade voxels-150,cut-2 --conditions rest --name degraded",
         "kinematify bench models/ --errors 20",
-        "kinematify bench models/ --refine --tiers geometry,engines --perturb all --conditions rest",
+        "kinematify bench --list",
+        "kinematify bench detection --only kinematic",
+        "kinematify bench detection --help",
     ),
 )
 @click.argument("folder", metavar="[DATA]", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "--list", is_flag=True, expose_value=False, is_eager=True, callback=_list, help="Name the studies and end."
+)
+@click.option(
+    "--readme",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_write_readme,
+    help="Write the results of the README in this folder from the reports in results/, and end.",
+)
 @click.option("--data", metavar="pip|PATH", help="Same as DATA; pip: robots of the package example-robot-data.")
 @click.option(
     "--config",
@@ -90,22 +135,6 @@ if TYPE_CHECKING:
     metavar="N",
     help="Also write a page with pictures of the N worst joints, truth beside inference.",
 )
-@click.option("--refine", is_flag=True, help="Measure what simulation and choosing again change, instead of accuracy.")
-@click.option(
-    "--tiers",
-    metavar="LIST",
-    default="geometry",
-    show_default=True,
-    help="With --refine: how far it simulates, of geometry, engines and task.",
-)
-@click.option(
-    "--perturb",
-    metavar="LIST",
-    default="none",
-    show_default=True,
-    help="With --refine: input that is a little wrong too; all, or some of "
-    "tolerance-half, tolerance-double, noise, contacts-missing, contacts-spurious, split, gaps.",
-)
 @json_option
 def command(
     *,
@@ -122,15 +151,13 @@ def command(
     fresh: bool,
     degrade: str,
     shown: int | None,
-    refine: bool,
-    tiers: str,
-    perturb: str,
     json_to: str | None,
 ) -> int:
     """Erase the joints of every URDF below DATA, infer them again and measure how far off they are.
 
-    DATA is a folder with URDF files at any depth, one URDF file, or the word pip. Without it the folder that the
-    variable KINEMATIFY_BENCH names is used, else ../shared/bench beside the repository.
+    DATA is a folder with URDF files at any depth, one URDF file, or one of the words pip, robots, everyday and
+    everyday2. Without it robots and everyday objects are measured. The sets are looked for in the folder that the
+    variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
 
     The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
@@ -140,36 +167,31 @@ def command(
     1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or in each other,
     open where parts meet (open), or with a part cut in two or three (cut-2, cut-3), which must come out as fixed.
 
-    With --refine each object is inferred once and refined by every tier; the table says what that mends, what it costs
-    and where it does harm. --perturb adds input with wrong tolerances, noise, faulty contacts, cut parts or gaps.
+    `kinematify bench STUDY` answers another question; --list names the studies, and each has options of its own.
     """
+    from kinematify.evaluation.record import as_json, load_report, write_report
     from kinematify.evaluation.regression import find_regressions
-    from kinematify.evaluation.report import as_json, load_report, write_report
-    from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
+    from kinematify.evaluation.run import RESULTS, BenchmarkRequest, run_benchmark
+    from kinematify.evaluation.tables import benchmark_blocks
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
     chosen = data if data is not None else folder
-    if degrade != "none" and (refine or baseline is not None):
-        raise click.UsageError("--degrade cannot be combined with --refine or --baseline. Give one of them.")
-    earlier = load_report(baseline) if baseline is not None else None
+    if degrade != "none" and baseline is not None:
+        raise click.UsageError("--degrade cannot be combined with --baseline. Give one of them.")
+    earlier = load_report(baseline, RESULTS) if baseline is not None else None
     request = BenchmarkRequest(
         data=chosen,
         variants=_variants(configs, ablation=ablation),
         conditions=tuple(word.strip() for word in conditions.split(",")),
         inputs=_inputs(degrade),
-        only=_matching_objects(chosen, patterns),
+        only=patterns,
         fresh=fresh,
         workers=jobs or os.cpu_count() or 1,
     )
-    if refine:
-        from kinematify.cli.bench_refine import measure_refinement
-
-        measure_refinement(request, tiers=tiers, perturb=perturb, out=out, name=name, json_to=json_to)
-        return 0
     with progress_reporter() as progress:
         report = run_benchmark(request, progress)
-        written: tuple[Path, ...] = write_report(report, out, name=name, baseline=earlier)
+        written = write_report(report, RESULTS, benchmark_blocks(report, earlier), out, name=name, title=name)
         if shown is not None:
             from kinematify.evaluation.errors import write_error_gallery
 
@@ -177,7 +199,7 @@ def command(
             written = (*written, page)
     regressions = find_regressions(report, earlier) if earlier is not None else ()
     if json_to:
-        write_answer(as_json(report), json_to)
+        write_answer(as_json(report, RESULTS), json_to)
     if json_to != "-":
         click.echo(f"{_describe(report)}\n\nReport: {', '.join(map(str, written))}")
     for regression in regressions:
@@ -192,22 +214,6 @@ def _inputs(given: str) -> tuple[str, ...]:
     return (CLEAN,) if given == "none" else (CLEAN, *words_of(given, DEGRADED, "--degrade"))
 
 
-def _matching_objects(data: str | Path | None, patterns: Sequence[str]) -> tuple[str, ...]:
-    from kinematify.errors import InputError
-    from kinematify.evaluation.datasets import find_objects
-
-    if not patterns:
-        return ()
-    objects = find_objects(data)
-    words = sorted({word for item in objects for word in (item.name, item.category, item.kind)})
-    chosen = tuple(word for word in words if any(fnmatchcase(word, pattern) for pattern in patterns))
-    if not chosen:
-        raise InputError(
-            f"No object, category or kind matches --objects {' '.join(patterns)}. There are {', '.join(words)}."
-        )
-    return chosen
-
-
 def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
     """Return one variant per configuration; `paper` stands for its ablations too, `default` if they are asked for."""
     from kinematify.evaluation.run import DEFAULT_ABLATION, PAPER_VARIANTS, Variant
@@ -217,13 +223,13 @@ def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
     return tuple(variant for one in own for variant in several.get(one.label, (one,)))
 
 
-def _describe(report: BenchmarkReport) -> str:
+def _describe(report: Report[JobResult]) -> str:
     """Return the means per configuration and kind of object, the paper's below them."""
     from kinematify.evaluation.paper import TABLE_I, mean_over_robots
 
     rows = [
-        _summary_row(key, [run for run in report.results if (run.variant, run.kind, run.input) == key])
-        for key in dict.fromkeys((run.variant, run.kind, run.input) for run in report.results)
+        _summary_row(key, [run for run in report.records if (run.variant, run.kind, run.input) == key])
+        for key in dict.fromkeys((run.variant, run.kind, run.input) for run in report.records)
     ]
     for paper in (mean_over_robots(), TABLE_I["everyday"]):
         rows.append(("(the paper)", paper.label, "", f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}", "", "", "", ""))
@@ -244,20 +250,17 @@ def _describe(report: BenchmarkReport) -> str:
 
 def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
     from kinematify.evaluation.perturb import CLEAN
+    from kinematify.evaluation.record import number
     from kinematify.evaluation.summary import summarise
 
     summary = summarise(runs)
     columns = (("angle_deg", 1.0, 2), ("line_m", 1e3, 2), ("ted", 1.0, 2), ("root", 1.0, 2), ("types", 100.0, 1))
     cells = [
-        _number(summary.values.get(metric), scale, digits) for metric, scale, digits in (*columns, ("seconds", 1.0, 1))
+        number(summary.values.get(metric), digits, scale) for metric, scale, digits in (*columns, ("seconds", 1.0, 1))
     ]
     variant, kind, given = key
     objects = kind if given == CLEAN else f"{kind}, {given}"
     return (variant, objects, str(summary.objects), *cells, str(summary.failed_runs + summary.unscored_runs))
-
-
-def _number(value: float | None, scale: float, digits: int) -> str:
-    return "-" if value is None else f"{value * scale:.{digits}f}"
 
 
 def _describe_regression(regression: Regression) -> str:

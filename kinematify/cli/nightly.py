@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -89,7 +88,7 @@ def command(
     request = NightRequest(
         settings=settings,
         out=folder,
-        only=_matching(settings, patterns),
+        only=patterns,
         baseline=baseline,
         smoke=smoke,
         pages=pages,
@@ -124,21 +123,6 @@ def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
     if smoke:
         changes |= {"conditions": settings.smoke.conditions, "engines": settings.smoke.engines}
     return settings.model_copy(update=changes)
-
-
-def _matching(settings: NightlySettings, patterns: Sequence[str]) -> tuple[str, ...]:
-    from kinematify.errors import InputError
-    from kinematify.evaluation.datasets import find_objects
-
-    if not patterns:
-        return ()
-    words = sorted({word for item in find_objects(settings.data) for word in (item.name, item.category, item.kind)})
-    chosen = tuple(word for word in words if any(fnmatchcase(word, pattern) for pattern in patterns))
-    if not chosen:
-        raise InputError(
-            f"No object, category or kind matches --objects {' '.join(patterns)}. There are {', '.join(words)}."
-        )
-    return chosen
 
 
 def _answer(result: NightResult) -> dict[str, object]:

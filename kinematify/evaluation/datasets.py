@@ -7,12 +7,16 @@ import json
 import os
 from collections import Counter
 from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
 from functools import cached_property
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinematify.errors import EnvironmentFault, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
 
 BENCH_VARIABLE = "KINEMATIFY_BENCH"
 PIP_DATA = "pip"
@@ -106,6 +110,31 @@ def find_objects(data: str | Path | None = None) -> tuple[BenchObject, ...]:
         f"There is no benchmark data at {path}. Give a folder with URDF files, one URDF file, or one of "
         f"the words {', '.join((*SETS, PIP_DATA))}."
     )
+
+
+def matching(objects: Iterable[BenchObject], patterns: Sequence[str]) -> tuple[BenchObject, ...]:
+    """Return the objects whose name, category or kind matches one of the patterns.
+
+    Args:
+        objects: To choose from.
+        patterns: As file names are matched; none for all objects.
+
+    Raises:
+        InputError: None matches.
+    """
+    found = tuple(objects)
+    chosen = tuple(
+        item
+        for item in found
+        if not patterns
+        or any(fnmatchcase(word, pattern) for word in (item.name, item.category, item.kind) for pattern in patterns)
+    )
+    if not chosen:
+        known = sorted({word for item in found for word in (item.name, item.category, item.kind)})
+        raise InputError(
+            f"No object, category or kind matches --objects {' '.join(patterns)}. There are {', '.join(known)}."
+        )
+    return chosen
 
 
 def bench_folder() -> Path:

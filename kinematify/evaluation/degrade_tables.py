@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from kinematify.evaluation.perturb import CLEAN
+from kinematify.evaluation.record import number, table
 from kinematify.evaluation.summary import CLOSE_ANGLE, summarise
 
 if TYPE_CHECKING:
@@ -74,10 +74,10 @@ def _overview(kind: str, results: Sequence[JobResult]) -> list[str]:
     meant = [given for given in inputs if given not in NOT_MEANT]
     if len(meant) > 1:
         means = [_mean_of_groups([groups[given] for given in meant], metric) for _, metric, *_ in _COLUMNS]
-        cells = [_number(value, scale, digits) for value, (_, _, scale, digits) in zip(means, _COLUMNS, strict=True)]
+        cells = [number(value, digits, scale) for value, (_, _, scale, digits) in zip(means, _COLUMNS, strict=True)]
         joined = [result for given in meant for result in groups[given]]
         rows.append(["**mean, hulls left out**", "", *cells, *_counts(joined)])
-    return [f"### {kind}: every kind of input", "", *_table(titles, rows)]
+    return [f"### {kind}: every kind of input", table(titles, rows)]
 
 
 def _objects(kind: str, given: str, results: Sequence[JobResult]) -> list[str]:
@@ -88,12 +88,12 @@ def _objects(kind: str, given: str, results: Sequence[JobResult]) -> list[str]:
         [name, *_numbers(group), _cuts(group), "; ".join(sorted({fault for run in group for fault in _faults(run)}))]
         for name, group in groups.items()
     ]
-    return [f"### {kind}: {given}", "", *_table(["object", *_TITLES, "cuts fixed", "wrong"], rows)]
+    return [f"### {kind}: {given}", table(["object", *_TITLES, "cuts fixed", "wrong"], rows)]
 
 
 def _numbers(results: Sequence[JobResult]) -> list[str]:
     values = summarise(results).values
-    return [_number(values.get(metric), scale, digits) for _, metric, scale, digits in _COLUMNS]
+    return [number(values.get(metric), digits, scale) for _, metric, scale, digits in _COLUMNS]
 
 
 def _mean_of_groups(groups: Sequence[Sequence[JobResult]], metric: str) -> float | None:
@@ -124,12 +124,3 @@ def _fault(joint: JointScore) -> str:
     if not joint.type_right:
         return f"{joint.joint} called {joint.predicted_kind}"
     return f"{joint.joint} axis" if joint.angle_deg > CLOSE_ANGLE else ""
-
-
-def _number(value: float | None, scale: float, digits: int) -> str:
-    return "-" if value is None else f"{value * scale:.{digits}f}"
-
-
-def _table(titles: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    lines = ([cell.replace("|", "\\|").replace("\n", " ") for cell in row] for row in rows)
-    return [f"| {' | '.join(cells)} |" for cells in chain([list(titles), ["---"] * len(titles)], lines)]

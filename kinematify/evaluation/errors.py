@@ -14,12 +14,12 @@ import numpy as np
 
 from kinematify.errors import OutputError
 from kinematify.evaluation.axis_metrics import axis_angle
-from kinematify.evaluation.calibration import CLOSE_LINE, is_right
 from kinematify.evaluation.error_pictures import ShownJoint, draw_error
-from kinematify.evaluation.job import erased_model, shown_parts
+from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.perturb import CLEAN, perturbed
+from kinematify.evaluation.record import document, replace_text
 from kinematify.evaluation.run import jobs_of
-from kinematify.evaluation.summary import CLOSE_ANGLE
+from kinematify.evaluation.summary import CLOSE_ANGLE, CLOSE_LINE, is_right
 from kinematify.pipeline import infer
 
 if TYPE_CHECKING:
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.evaluation.job import Job, JobResult
     from kinematify.evaluation.metrics import JointScore
-    from kinematify.evaluation.run import BenchmarkReport, BenchmarkRequest
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.run import BenchmarkRequest
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
 
@@ -70,7 +71,7 @@ def wrong_joints(results: Iterable[JobResult]) -> list[WrongJoint]:
 
 
 def write_error_gallery(
-    report: BenchmarkReport,
+    report: Report[JobResult],
     request: BenchmarkRequest,
     folder: Path,
     *,
@@ -91,7 +92,7 @@ def write_error_gallery(
     Raises:
         OutputError: The folder cannot be written.
     """
-    wrong = wrong_joints(report.results)
+    wrong = wrong_joints(report.records)
     jobs = {(job.item.name, job.condition.name, job.variant, job.input): job for job in jobs_of(request)}
     pictures = folder / name
     try:
@@ -107,7 +108,8 @@ def write_error_gallery(
                 seen[key] = _seen(jobs[key])
             sections.append(_section(item, seen[key], number, pictures))
         page = folder / f"{name}.md"
-        page.write_text("\n".join([_head(report, wrong, name, count), *sections]), encoding="utf-8")
+        title = f"{name}: the worst {min(count, len(wrong))} of {len(wrong)} wrong joints"
+        replace_text(page, document(report.header, title, [*_blocks(report, wrong), *sections]))
     except OSError as error:
         raise OutputError(
             f"The gallery of errors cannot be written to {folder}: {error}. Give a folder that can be written."
@@ -152,7 +154,7 @@ class _Seen:
 
 
 def _seen(job: Job) -> _Seen:
-    erased = erased_model(job)
+    erased = erased_item(job.item, job.condition)
     given = perturbed(job.input, shown_parts(erased), job.config, seed=job.condition.seed)
     inference = infer(given.assembly, config=given.config)
     place = {name: index for index, name in enumerate(inference.assembly.names)}
@@ -179,14 +181,11 @@ def _section(item: WrongJoint, seen: _Seen, number: int, pictures: Path) -> str:
     given = "" if item.run.input == CLEAN else f", {item.run.input}"
     lines = [
         f"## {number}. {item.run.object}, {item.joint.joint}: {_fault(item.run, item.joint)}",
-        "",
         f"![{item.run.object}, {item.joint.joint}: truth and inference]({pictures.name}/{number:02d}.webp)",
-        "",
-        f"Shown: {item.run.condition}{given}; wrong in {item.runs} of {item.of} runs. {_facts(item)}",
-        _told(guess, parent, truth, assembly),
-        "",
+        f"Shown: {item.run.condition}{given}; wrong in {item.runs} of {item.of} runs. {_facts(item)}\n"
+        + _told(guess, parent, truth, assembly),
     ]
-    return "\n".join(lines)
+    return "\n\n".join(lines)
 
 
 def _shown(parents: Mapping[int, int], joint: TrueJoint | JointEstimate, child: int) -> ShownJoint:
@@ -227,25 +226,19 @@ def _place_of_truth(guess: JointEstimate, truth: TrueJoint, diagonal: float) -> 
 # ---- all of them ---------------------------------------------------------------------------------------------------
 
 
-def _head(report: BenchmarkReport, wrong: Sequence[WrongJoint], name: str, count: int) -> str:
-    runs = [result for result in report.results if result.score is not None]
+def _blocks(report: Report[JobResult], wrong: Sequence[WrongJoint]) -> list[str]:
+    runs = [result for result in report.records if result.score is not None]
     joints = {
         (run.object, joint.joint, run.variant, run.input) for run in runs if run.score for joint in run.score.joints
     }
-    lines = [
-        f"# {name}: the worst {min(count, len(wrong))} of {len(wrong)} wrong joints",
-        "",
-        f"- command: `{report.header['command']}`",
-        f"- date: {report.header['date']}, code {report.header['code']}",
-        "",
-        "A joint is wrong if it hangs on the wrong part, has the wrong type (continuous counts as revolute), or its",
-        f"axis is off by more than {CLOSE_ANGLE:.0f} deg or runs more than {CLOSE_LINE:.0%} of the diagonal away.",
-        "Orange: the part that moves, moved. Blue: what it hangs on. Red arrows turn, blue ones slide.",
-        "",
+    return [
+        (
+            "A joint is wrong if it hangs on the wrong part, has the wrong type (continuous counts as revolute), or "
+            f"its axis is off by more than {CLOSE_ANGLE:.0f} deg or runs more than {CLOSE_LINE:.0%} of the diagonal "
+            "away. Orange: the part that moves, moved. Blue: what it hangs on. Red arrows turn, blue ones slide."
+        ),
         f"{len(wrong)} of {len(joints)} joints are wrong in at least one run. {_patterns(wrong)}",
-        "",
     ]
-    return "\n".join(lines)
 
 
 def _patterns(wrong: Sequence[WrongJoint]) -> str:

@@ -8,9 +8,7 @@ import json
 import resource
 import sys
 import time
-import traceback
 from dataclasses import asdict, dataclass, field, replace
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Literal
 
 from kinematify.assembly.erase import erase
@@ -19,14 +17,16 @@ from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import ObjectScore, score_object
 from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
+from kinematify.evaluation.pool import sentence
 from kinematify.evaluation.prediction import NOTHING_PREDICTED, prediction_of
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from kinematify.assembly.erase import ErasedModel
     from kinematify.evaluation.perturb import Perturbed
+    from kinematify.evaluation.pool import Failure
     from kinematify.evaluation.prediction import Prediction
     from kinematify.pipeline import Inference
 
@@ -68,7 +68,6 @@ class Job:
 class JobResult:
     """What came of a job."""
 
-    key: str
     object: str
     kind: str
     category: str
@@ -92,57 +91,49 @@ class JobResult:
     """Cuts whose two sides came out as fixed to each other."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Failure:
-    """How an inference ended that gave no answer."""
-
-    status: Status
-    message: str
-    seconds: float
-
-
-def run_job(job: Job, *, key: str, failure: Failure | None = None) -> JobResult:
+def run_job(job: Job, failure: Failure | None = None) -> JobResult:
     """Pose an object, erase its kinematics, infer from the parts alone, and score the answer.
 
     Every exception becomes a result, so that one object never ends the run.
 
     Args:
         job: The object, its condition and the configuration.
-        key: Name under which the result is filed.
-        failure: Given where the inference has already taken a worker down: it is not run again, and its missing
+        failure: Given where the inference has already taken a process down: it is not run again, and its missing
             answer is scored.
     """
     try:
-        erased = erased_model(job)
+        erased = erased_item(job.item, job.condition)
         given = perturbed(job.input, shown_parts(erased), job.config, seed=job.condition.seed)
     except Exception as error:
-        return unscored(job, key, Failure(status="unreadable", message=_sentence(error), seconds=0.0))
-    answer = _Answer() if failure is not None else _infer(job, erased, given)
-    failure = failure or answer.failure
-    score = score_object(
+        return _result(job, "unreadable", sentence(error), _Answer(), None)
+    answer = (
+        _infer(job, erased, given) if failure is None else _Answer(seconds=failure.seconds, message=failure.message)
+    )
+    status: Status = failure.status if failure is not None else "error" if answer.message else "ok"
+    score = score_erased(erased, answer.prediction, gripper_joints=job.item.gripper_joints)
+    return replace(_result(job, status, answer.message, answer, score), cuts=len(given.pieces))
+
+
+def unscored(job: Job, failure: Failure) -> JobResult:
+    """Return the result of a job whose truth cannot be read either."""
+    return _result(job, failure.status, failure.message, _Answer(seconds=failure.seconds), None)
+
+
+def score_erased(erased: ErasedModel, prediction: Prediction, *, gripper_joints: Sequence[str] = ()) -> ObjectScore:
+    """Compare a prediction with the joints that were erased; `score_object` says how."""
+    return score_object(
         erased.truth,
-        answer.prediction,
+        prediction,
         centroids=[part.centroid for part in erased.parts],
         diagonal=erased.assembly.diagonal,
-        gripper_joints=job.item.gripper_joints,
+        gripper_joints=gripper_joints,
     )
-    return replace(_result(job, key, failure, answer, score), cuts=len(given.pieces))
 
 
-def erased_model(job: Job) -> ErasedModel:
-    """The object in the pose of its condition, without its kinematics."""
-    robot = read_robot(job.item.urdf, package_dirs=job.item.package_dirs, geometry="shown")
-    condition = job.condition
+def erased_item(item: BenchObject, condition: Condition) -> ErasedModel:
+    """An object in the pose of a condition, without its kinematics."""
+    robot = read_robot(item.urdf, package_dirs=item.package_dirs, geometry="shown")
     return erase(robot, pose=condition.pose, seed=condition.seed, yaw_deg=condition.yaw_deg)
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Answer:
-    prediction: Prediction = NOTHING_PREDICTED
-    seconds: float = 0.0
-    stage_seconds: dict[str, float] = field(default_factory=dict)
-    failure: Failure | None = None
-    cuts_mended: int = 0
 
 
 def shown_parts(erased: ErasedModel) -> Assembly:
@@ -150,52 +141,53 @@ def shown_parts(erased: ErasedModel) -> Assembly:
     return Assembly(parts=erased.parts, source="benchmark")
 
 
+def predicted(erased: ErasedModel, given: Perturbed, inference: Inference) -> tuple[Prediction, int]:
+    """Return an inference by the parts of the truth, and how many cuts it mended."""
+    part_index = {name: index for index, name in enumerate((*erased.truth.part_names, *given.pieces))}
+    prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, part_index)
+    pieces = {part_index[piece]: part_index[whole] for piece, whole in given.pieces.items()}
+    return without_pieces(prediction, pieces)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Answer:
+    prediction: Prediction = NOTHING_PREDICTED
+    seconds: float = 0.0
+    stage_seconds: dict[str, float] = field(default_factory=dict)
+    message: str = ""
+    cuts_mended: int = 0
+
+
 def _infer(job: Job, erased: ErasedModel, given: Perturbed) -> _Answer:
-    infer = _function(job.infer)
     start = time.perf_counter()
     try:
-        inference = infer(given.assembly, config=given.config)
+        inference = imported(job.infer)(given.assembly, config=given.config)
         seconds = time.perf_counter() - start
-        part_index = {name: index for index, name in enumerate((*erased.truth.part_names, *given.pieces))}
-        prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, part_index)
-        pieces = {part_index[piece]: part_index[whole] for piece, whole in given.pieces.items()}
-        prediction, mended = without_pieces(prediction, pieces)
+        prediction, mended = predicted(erased, given, inference)
     except Exception as error:
-        seconds = time.perf_counter() - start
-        return _Answer(seconds=seconds, failure=Failure(status="error", message=_sentence(error), seconds=seconds))
+        return _Answer(seconds=time.perf_counter() - start, message=sentence(error))
     return _Answer(prediction=prediction, seconds=seconds, stage_seconds=dict(inference.timings), cuts_mended=mended)
 
 
-def _function(dotted: str) -> Callable[..., Inference]:
+def imported(dotted: str) -> Callable[..., Inference]:
+    """Return a function under test by ``module:name``."""
     module, _, name = dotted.partition(":")
     function: Callable[..., Inference] = getattr(importlib.import_module(module), name)
     return function
 
 
-def _sentence(error: Exception) -> str:
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    return f"{type(error).__name__}: {error} ({place.name}, line {place.lineno} of {PurePath(place.filename).name})"
-
-
-def unscored(job: Job, key: str, failure: Failure) -> JobResult:
-    """Return the result of a job whose truth cannot be read either."""
-    return _result(job, key, failure, _Answer(), None)
-
-
-def _result(job: Job, key: str, failure: Failure | None, answer: _Answer, score: ObjectScore | None) -> JobResult:
-    stopped = failure is not None and failure.status in ("timeout", "crash")
+def _result(job: Job, status: Status, message: str, answer: _Answer, score: ObjectScore | None) -> JobResult:
     return JobResult(
-        key=key,
         object=job.item.name,
         kind=job.item.kind,
         category=job.item.category,
         condition=job.condition.name,
         variant=job.variant,
-        status="ok" if failure is None else failure.status,
-        message="" if failure is None else failure.message,
-        seconds=answer.seconds if failure is None else failure.seconds,
+        status=status,
+        message=message,
+        seconds=answer.seconds,
         stage_seconds=answer.stage_seconds,
-        peak_mb=None if stopped else _peak_mb(),
+        peak_mb=None if status in ("timeout", "crash") else _peak_mb(),
         score=score,
         input=job.input,
         cuts_mended=answer.cuts_mended,

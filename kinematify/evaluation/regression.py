@@ -10,7 +10,7 @@ from kinematify.evaluation.summary import Summary, summarise
 
 if TYPE_CHECKING:
     from kinematify.evaluation.job import JobResult
-    from kinematify.evaluation.run import BenchmarkReport
+    from kinematify.evaluation.record import Report
 
     Group = tuple[list[JobResult], list[JobResult]]
 
@@ -41,7 +41,7 @@ _SLACK = {
 better. The inference is deterministic, so that this only has to cover other versions of numeric libraries."""
 
 
-def find_regressions(report: BenchmarkReport, baseline: BenchmarkReport) -> tuple[Regression, ...]:
+def find_regressions(report: Report[JobResult], baseline: Report[JobResult]) -> tuple[Regression, ...]:
     """Compare means over the runs that both reports hold, per configuration and kind of object.
 
     Times are left out: they depend on the machine.
@@ -57,10 +57,10 @@ def find_regressions(report: BenchmarkReport, baseline: BenchmarkReport) -> tupl
     )
 
 
-def _common_runs(report: BenchmarkReport, baseline: BenchmarkReport) -> dict[tuple[str, str], Group]:
-    before = {(result.object, result.condition, result.variant): result for result in baseline.results}
+def _common_runs(report: Report[JobResult], baseline: Report[JobResult]) -> dict[tuple[str, str], Group]:
+    before = {(result.object, result.condition, result.variant): result for result in baseline.records}
     groups: dict[tuple[str, str], Group] = defaultdict(lambda: ([], []))
-    for result in report.results:
+    for result in report.records:
         earlier = before.get((result.object, result.condition, result.variant))
         if earlier is not None:
             old, new = groups[result.variant, result.kind]

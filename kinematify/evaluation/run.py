@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-import datetime
 import os
-import platform
-import shlex
-import sys
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, TypedDict
+
+from pydantic import TypeAdapter
 
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects
-from kinematify.evaluation.job import INFER, Job, JobResult
-from kinematify.evaluation.ledger import RESULT, Ledger, code_version
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
+from kinematify.evaluation.job import INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.perturb import CLEAN
-from kinematify.evaluation.workers import run_jobs
-from kinematify.versions import package_versions
+from kinematify.evaluation.pool import WORK_FOLDER, Failure, Pool
+from kinematify.evaluation.record import Header, Report, new_header
+from kinematify.evaluation.sources import NOT_INFERRING, code_version
+from kinematify.evaluation.summary import summaries
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    Progress = Callable[[str, float], None]
+    from kinematify.evaluation.pool import Progress
 
-
-class _OfObject(Protocol):
-    @property
-    def object(self) -> str: ...
-
+RESULT = TypeAdapter(JobResult)
+RESULTS = TypeAdapter(tuple[JobResult, ...])
 
 DEFAULT_TIMEOUT = 900.0
 """Wall time for one object [s]; H1 is allowed 40 s."""
@@ -85,8 +82,8 @@ class BenchmarkRequest:
     inputs: tuple[str, ...] = (CLEAN,)
     """What is done to the meshes: `CLEAN` and some of `kinematify.evaluation.perturb.DEGRADED`."""
     only: tuple[str, ...] = ()
-    """Names of objects or categories or kinds; empty for all."""
-    work_folder: Path = Path(".kinematify-bench")
+    """Patterns for names of objects, categories or kinds; empty for all."""
+    work_folder: Path = WORK_FOLDER
     """Where finished jobs are kept between runs."""
     fresh: bool = False
     """Forget what the work folder holds; otherwise finished jobs are not run again."""
@@ -97,21 +94,15 @@ class BenchmarkRequest:
     """Function under test, as ``module:name``; tests give a quick one."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class BenchmarkReport:
-    """What came of a run, in the order of the request."""
-
-    header: dict[str, Any]
-    """Command, date, versions, machine, seeds, number of objects."""
-    results: tuple[JobResult, ...]
-
-
-def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -> BenchmarkReport:
+def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -> Report[JobResult]:
     """Run the benchmark, taking up what an earlier run with the same code and configuration has finished.
 
     Args:
         request: Objects, conditions, configurations and where to work.
         progress: Told what has just finished and the fraction done in [0, 1].
+
+    Returns:
+        The results in the order of the request.
 
     Raises:
         InputError: There is no such data, object, condition or configuration.
@@ -119,26 +110,41 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
         KeyboardInterrupt: Ctrl-C; workers are stopped, finished jobs are kept.
     """
     jobs = jobs_of(request)
-    version_hash = code_version()
-    keyed = [(job.key(version_hash), job) for job in jobs]
-    total = len({key for key, _ in keyed})
-    with Ledger(request.work_folder / "jobs.jsonl", RESULT) as ledger:
-        if request.fresh:
-            ledger.clear()
-        results = ledger.read()
-        missing = {key: job for key, job in keyed if key not in results}
-        finished = total - len(missing)
-        if progress is not None and finished:
-            progress("taken up from an earlier run", finished / total)
-        for result in run_jobs(_longest_first(missing), workers=request.workers, timeout=request.timeout):
-            ledger.append(result)
-            results[result.key] = result
-            finished += 1
-            if progress is not None:
-                progress(_line(result), finished / total)
+    code = code_version(without=NOT_INFERRING)
+    keyed = [(job.key(code), job) for job in jobs]
+    # The largest objects first, so that no worker is left alone with one at the end.
+    by_key = dict(sorted(keyed, key=lambda entry: entry[1].item.mesh_bytes, reverse=True))
+    pool = Pool(folder=request.work_folder, workers=request.workers, fresh=request.fresh)
+    pool = pool if progress is None else replace(pool, progress=progress)
+    torch_too = ["kinematify.paper.joints"] if any(job.config.joints.method == "cavl" for job in jobs) else []
+    how: _How = {
+        "ledger": "jobs",
+        "timeout": request.timeout,
+        "said": lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
+        "preload": ("kinematify.pipeline", "kinematify.evaluation.job", *torch_too),
+    }
+    answers = pool.run({key: partial(run_job, job) for key, job in by_key.items()}, RESULT, **how)
+    # A job that crashed or ran out of time gets a second process, which only scores the missing answer.
+    failed = {key: answer for key, answer in answers.items() if isinstance(answer, Failure)}
+    again = {key + _SCORED: partial(run_job, by_key[key], failure) for key, failure in failed.items()}
+    scored = replace(pool, fresh=False).run(again, RESULT, **how) if again else {}
+    results: dict[str, JobResult] = {}
+    for key, job in by_key.items():
+        answer = scored.get(key + _SCORED, answers[key])
+        results[key] = unscored(job, failed[key]) if isinstance(answer, Failure) else answer
     # Two labels can name the same configuration, which is run once.
     ordered = tuple(replace(results[key], variant=job.variant) for key, job in keyed)
-    return BenchmarkReport(header=header_of(request, ordered), results=ordered)
+    return Report(header=_header(request, ordered, code), records=ordered, summary={"groups": summaries(ordered)})
+
+
+class _How(TypedDict):
+    ledger: str
+    timeout: float
+    said: Callable[[str, JobResult | Failure], str]
+    preload: tuple[str, ...]
+
+
+_SCORED = " scored"
 
 
 def changed(config: Config, changes: Mapping[str, Any]) -> Config:
@@ -172,7 +178,7 @@ def selected_objects(request: BenchmarkRequest) -> list[BenchObject]:
     Raises:
         InputError: There is no such data or object.
     """
-    return _selected(find_objects(request.data), request.only)
+    return list(matching(find_objects(request.data), request.only))
 
 
 def selected_conditions(request: BenchmarkRequest) -> list[Condition]:
@@ -201,20 +207,6 @@ def jobs_of(request: BenchmarkRequest) -> list[Job]:
     ]
 
 
-def _selected(objects: Sequence[BenchObject], only: Sequence[str]) -> list[BenchObject]:
-    if not only:
-        return list(objects)
-    chosen = [item for item in objects if {item.name, item.category, item.kind} & set(only)]
-    known = {word for item in objects for word in (item.name, item.category, item.kind)}
-    unknown = sorted(set(only) - known)
-    if unknown:
-        raise InputError(
-            f"The benchmark data has no object, category or kind called {', '.join(unknown)}. It has "
-            f"{', '.join(sorted(known))}."
-        )
-    return chosen
-
-
 def _condition(name: str) -> Condition:
     for condition in CONDITIONS:
         if condition.name == name:
@@ -223,49 +215,24 @@ def _condition(name: str) -> Condition:
     raise InputError(f"There is no condition {name}. Give some of {known}.")
 
 
-def _longest_first(jobs: Mapping[str, Job]) -> list[tuple[str, Job]]:
-    """Start the largest objects first, so that no worker is left alone with one at the end."""
-    return sorted(jobs.items(), key=lambda entry: entry[1].item.mesh_bytes, reverse=True)
-
-
-def _line(result: JobResult) -> str:
-    given = "" if result.input == CLEAN else f", {result.input}"
-    place = f"{result.object}, {result.condition}{given}, {result.variant}"
-    if result.status == "ok":
+def _line(job: Job, result: JobResult | Failure) -> str:
+    given = "" if job.input == CLEAN else f", {job.input}"
+    place = f"{job.item.name}, {job.condition.name}{given}, {job.variant}"
+    if isinstance(result, JobResult) and result.status == "ok":
         return f"{place}: {result.seconds:.1f} s"
     return f"{place}: {result.status}, {result.message}"
 
 
-def header_of(request: BenchmarkRequest, results: Sequence[_OfObject]) -> dict[str, Any]:
-    """Command, date, versions, machine, seeds, number of objects."""
-    seeds = {condition.seed for condition in CONDITIONS if condition.name in request.conditions}
-    return {
-        "command": _command(),
-        "date": datetime.datetime.now(tz=datetime.UTC).date().isoformat(),
-        "code": code_version()[:12],
-        "objects": len({result.object for result in results}),
-        "conditions": list(request.conditions),
-        "seeds": sorted(seeds),
-        "inputs": list(request.inputs),
-        "variants": [variant.label for variant in request.variants],
-        "workers": request.workers,
-        "processor": _processor(),
-        "python": platform.python_version(),
-        "packages": package_versions(("kinematify", "numpy", "scipy", "torch", "trimesh", "libigl")),
-    }
-
-
-def _command() -> str:
-    """The command that is running, as a user types it, also where it was started as `python -m kinematify`."""
-    program = Path(sys.argv[0]).name
-    return shlex.join(["kinematify" if program == "__main__.py" else program, *sys.argv[1:]])
-
-
-def _processor() -> str:
-    """Model and count of the processors."""
-    model = platform.processor() or platform.machine()
-    facts = Path("/proc/cpuinfo")
-    if facts.is_file():
-        lines = facts.read_text(encoding="utf-8").splitlines()
-        model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), model)
-    return f"{os.cpu_count()} x {model}"
+def _header(request: BenchmarkRequest, results: Sequence[JobResult], code: str) -> Header:
+    return new_header(
+        "bench",
+        workers=request.workers,
+        seeds=[condition.seed for condition in selected_conditions(request)],
+        configuration={
+            "objects": len({result.object for result in results}),
+            "conditions": list(request.conditions),
+            "inputs": list(request.inputs),
+            "variants": [variant.label for variant in request.variants],
+        },
+        code=code,
+    )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from statistics import fmean, median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kinematify.robot.joint_type import JointType
 
@@ -19,6 +19,19 @@ if TYPE_CHECKING:
 
 CLOSE_ANGLE = 5.0
 """An axis counts as found within this angle [deg]; S2O and others use the same."""
+CLOSE_LINE = 0.05
+"""An axis line counts as found within this share of the object's diagonal."""
+
+
+def is_right(joint: JointScore, diagonal: float) -> bool:
+    """Whether parent, type and axis are right.
+
+    Args:
+        joint: Against the truth.
+        diagonal: Of the object [m].
+    """
+    close = joint.angle_deg <= CLOSE_ANGLE and (joint.line_m is None or joint.line_m <= CLOSE_LINE * diagonal)
+    return joint.matched and joint.type_right and close
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,6 +119,24 @@ def _type_summary(kind: str, joints: Sequence[JointScore]) -> TypeSummary:
         close=fmean(joint.angle_deg <= CLOSE_ANGLE for joint in joints),
         close_given_type=fmean(joint.angle_given_type_deg <= CLOSE_ANGLE for joint in joints),
     )
+
+
+def summaries(results: Iterable[JobResult]) -> list[dict[str, Any]]:
+    """Return plain values of every configuration, kind of object and input, with gripper fingers and without."""
+    groups: dict[tuple[str, str, str], list[JobResult]] = defaultdict(list)
+    for result in results:
+        groups[result.variant, result.kind, result.input].append(result)
+    return [
+        {
+            "variant": variant,
+            "kind": kind,
+            "input": given,
+            "with_gripper": asdict(summarise(group)),
+            "without_gripper": asdict(summarise(group, with_gripper=False)),
+            "types": [asdict(summary) for summary in summarise_types(group)],
+        }
+        for (variant, kind, given), group in groups.items()
+    ]
 
 
 def median_seconds(results: Iterable[JobResult]) -> float | None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from itertools import chain
 from statistics import fmean
 from typing import TYPE_CHECKING
 
 from kinematify.evaluation.degrade_tables import degradation_sections, degraded
 from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.record import number, table
 from kinematify.evaluation.summary import (
     CLOSE_ANGLE,
     Summary,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.metrics import JointScore
-    from kinematify.evaluation.run import BenchmarkReport
+    from kinematify.evaluation.record import Report
 
 READING = """\
 Every number is the mean over an object's joints, then over its conditions, then over objects. A joint whose
@@ -71,38 +71,25 @@ COLUMNS = (
 )
 
 
-def markdown(report: BenchmarkReport, name: str, baseline: BenchmarkReport | None = None) -> str:
-    """Return the whole report as a Markdown document.
+def benchmark_blocks(report: Report[JobResult], baseline: Report[JobResult] | None = None) -> list[str]:
+    """Return the tables of a report as blocks of Markdown.
 
     Args:
         report: What a run gave.
-        name: Title of the document.
         baseline: An earlier report to compare with.
     """
-    sections = [[f"# {name}", "", *_header_lines(report), "", READING]]
-    for variant in report.header["variants"]:
-        results = [result for result in report.results if result.variant == variant]
+    sections = [[READING]]
+    variants = list(dict.fromkeys(result.variant for result in report.records))
+    for variant in variants:
+        results = [result for result in report.records if result.variant == variant]
         sections.append([f"## Configuration: {variant}"])
         sections += degradation_sections(results) if degraded(results) else _variant_sections(results)
-    if len(report.header["variants"]) > 1:
-        sections.append(_ablation(report))
+    if len(variants) > 1:
+        sections.append(_ablation(report.records, variants))
     if baseline is not None:
         sections.append(comparison(report, baseline))
-    sections.append(_failures(report.results))
-    return "\n\n".join("\n".join(lines) for lines in sections if lines) + "\n"
-
-
-def _header_lines(report: BenchmarkReport) -> list[str]:
-    header = report.header
-    seeds = ", ".join(map(str, header["seeds"]))
-    packages = ", ".join(f"{package} {version}" for package, version in header["packages"].items())
-    return [
-        f"- command: `{header['command']}`",
-        f"- date: {header['date']}, code {header['code']}",
-        f"- {header['objects']} objects; conditions {', '.join(header['conditions'])}; seeds {seeds}",
-        f"- machine: {header['processor']}, {header['workers']} workers",
-        f"- Python {header['python']}, {packages}",
-    ]
+    sections.append(_failures(report.records))
+    return ["\n\n".join(blocks) for blocks in sections if blocks]
 
 
 def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
@@ -134,7 +121,7 @@ def _robot_table(results: Sequence[JobResult]) -> list[str]:
         rows.append(_row("**mean, robots of the paper**", of_paper, paper=mean_over_robots() if six else None))
     if len(of_paper) < len(results):
         rows.append(_row("**mean, all robots**", results))
-    return ["### Robots", "", *_table(["object", "joints", *(column.title for column in COLUMNS)], rows)]
+    return ["### Robots", table(["object", "joints", *(column.title for column in COLUMNS)], rows)]
 
 
 def _without_gripper(results: Sequence[JobResult]) -> list[str]:
@@ -155,16 +142,14 @@ def _without_gripper(results: Sequence[JobResult]) -> list[str]:
     note = "The paper's 13 joints of Fetch count its two fingers as one; both are left out here."
     return [
         "### Robots without gripper fingers",
-        "",
-        *_table(["object", "joints", *(column.title for column in columns)], rows),
-        "",
+        table(["object", "joints", *(column.title for column in columns)], rows),
         note,
     ]
 
 
 def _everyday_summary(results: Sequence[JobResult]) -> list[str]:
     rows = [_row("**mean**", results, paper=TABLE_I["everyday"])]
-    return ["### Everyday objects", "", *_table(["", "joints", *(column.title for column in COLUMNS)], rows)]
+    return ["### Everyday objects", table(["", "joints", *(column.title for column in COLUMNS)], rows)]
 
 
 def _category_table(results: Sequence[JobResult]) -> list[str]:
@@ -172,7 +157,7 @@ def _category_table(results: Sequence[JobResult]) -> list[str]:
     for result in results:
         groups[result.category].append(result)
     rows = [_row(category, group) for category, group in sorted(groups.items())]
-    return ["### Everyday objects by category", "", *_table(["category", "joints", *_plain_titles()], rows)]
+    return ["### Everyday objects by category", table(["category", "joints", *_plain_titles()], rows)]
 
 
 def _family_table(results: Sequence[JobResult]) -> list[str]:
@@ -188,13 +173,13 @@ def _family_table(results: Sequence[JobResult]) -> list[str]:
     worst_first = sorted(groups, key=goodness)
     rows = [_row(family, groups[family]) for family in worst_first]
     rows.append(_row("**mean over objects**", results))
-    return ["### Generated objects by family, worst first", "", *_table(["family", "joints", *_plain_titles()], rows)]
+    return ["### Generated objects by family, worst first", table(["family", "joints", *_plain_titles()], rows)]
 
 
 def _object_table(title: str, results: Sequence[JobResult]) -> list[str]:
     rows = [_row(name, group) for name, group in _by_object(results).items()]
     rows.append(_row("**mean**", results))
-    return [f"### {title}", "", *_table(["object", "joints", *_plain_titles()], rows)]
+    return [f"### {title}", table(["object", "joints", *_plain_titles()], rows)]
 
 
 def _plain_titles() -> list[str]:
@@ -215,12 +200,12 @@ def _condition_table(results: Sequence[JobResult]) -> list[str]:
             for condition in conditions
         }
         numbers = (
-            _number(cells[condition].values.get(metric), digits, scale)
+            number(cells[condition].values.get(metric), digits, scale)
             for _, metric, digits, scale in metrics
             for condition in conditions
         )
         rows.append([name, *numbers])
-    return ["### By condition", "", *_table(titles, rows)]
+    return ["### By condition", table(titles, rows)]
 
 
 def _means_by_kind(results: Sequence[JobResult]) -> dict[str, list[JobResult]]:
@@ -234,11 +219,11 @@ def _type_table(results: Sequence[JobResult]) -> list[str]:
         [
             f"{kind}, {summary.kind}",
             str(summary.joints),
-            _number(summary.types_right, 1, 100.0),
-            _number(summary.angle_deg, 2),
-            _number(summary.close, 1, 100.0),
-            _number(summary.angle_given_type_deg, 2),
-            _number(summary.close_given_type, 1, 100.0),
+            number(summary.types_right, 1, 100.0),
+            number(summary.angle_deg, 2),
+            number(summary.close, 1, 100.0),
+            number(summary.angle_given_type_deg, 2),
+            number(summary.close_given_type, 1, 100.0),
         ]
         for kind in dict.fromkeys(result.kind for result in results)
         for summary in summarise_types(result for result in results if result.kind == kind)
@@ -246,7 +231,7 @@ def _type_table(results: Sequence[JobResult]) -> list[str]:
     close = f"within {CLOSE_ANGLE:.0f} deg [%]"
     titles = ["true type", "joints x runs", "types [%]", "angle [deg]", close]
     titles += ["angle given type", f"{close} given type"]
-    return ["### By true joint type", "", *_table(titles, rows)]
+    return ["### By true joint type", table(titles, rows)]
 
 
 def _stage_table(results: Sequence[JobResult]) -> list[str]:
@@ -256,16 +241,16 @@ def _stage_table(results: Sequence[JobResult]) -> list[str]:
     rows = [
         [
             kind,
-            *(_number(fmean(run.stage_seconds.get(stage, 0.0) for run in runs), 2) for stage in stages),
-            _number(median_seconds(runs), 2),
-            _number(max(run.seconds for run in runs), 2),
-            _number(max(run.peak_mb or 0.0 for run in runs), 0),
+            *(number(fmean(run.stage_seconds.get(stage, 0.0) for run in runs), 2) for stage in stages),
+            number(median_seconds(runs), 2),
+            number(max(run.seconds for run in runs), 2),
+            number(max(run.peak_mb or 0.0 for run in runs), 0),
         ]
         for kind in dict.fromkeys(result.kind for result in answered)
         if (runs := [result for result in answered if result.kind == kind])
     ]
     titles = ["objects", *stages, "whole, median", "whole, longest", "peak [MB]"]
-    return ["### Time by stage [s]", "", *_table(titles, rows)]
+    return ["### Time by stage [s]", table(titles, rows)]
 
 
 def _joint_errors(results: Sequence[JobResult]) -> list[str]:
@@ -277,14 +262,14 @@ def _joint_errors(results: Sequence[JobResult]) -> list[str]:
             if kind:
                 faults[result.object, joint.joint, kind].append((joint.angle_deg, result.condition, joint.kind))
     if not faults:
-        return ["### Wrong joints", "", "None."]
+        return ["### Wrong joints", "None."]
     ordered = sorted(faults.items(), key=lambda entry: (-max(angle for angle, *_ in entry[1]), entry[0]))
     rows = [
-        [item, joint, runs[0][2], kind, _number(max(angle for angle, *_ in runs), 1), ", ".join(run[1] for run in runs)]
+        [item, joint, runs[0][2], kind, number(max(angle for angle, *_ in runs), 1), ", ".join(run[1] for run in runs)]
         for (item, joint, kind), runs in ordered
     ]
     titles = ["object", "joint", "true type", "fault", "angle [deg]", "conditions"]
-    return ["### Wrong joints, worst first", "", *_table(titles, rows)]
+    return ["### Wrong joints, worst first", table(titles, rows)]
 
 
 def _fault(joint: JointScore) -> str:
@@ -296,11 +281,11 @@ def _fault(joint: JointScore) -> str:
     return ", ".join(faults)
 
 
-def _ablation(report: BenchmarkReport) -> list[str]:
+def _ablation(runs: Sequence[JobResult], variants: Sequence[str]) -> list[str]:
     """All configurations side by side on what the paper's ablation shows."""
     rows = []
-    for variant in report.header["variants"]:
-        results = [result for result in report.results if result.variant == variant]
+    for variant in variants:
+        results = [result for result in runs if result.variant == variant]
         groups = {
             "everyday": [result for result in results if result.kind == "everyday"],
             "robots": [result for result in results if result.kind == "robot"],
@@ -310,18 +295,18 @@ def _ablation(report: BenchmarkReport) -> list[str]:
             if group:
                 rows.append([variant, name, *_ablation_cells(variant, name, summarise(group))])
     titles = ["configuration", "objects", "angle [deg] paper / ours", "pivot [m] paper / ours", "TED paper / ours"]
-    return ["## Configurations beside the paper's ablation", "", *_table([*titles, "types [%]", "time [s]"], rows)]
+    return ["## Configurations beside the paper's ablation", table([*titles, "types [%]", "time [s]"], rows)]
 
 
 def _ablation_cells(variant: str, name: str, summary: Summary) -> list[str]:
     paper = ABLATION.get(variant, {}).get(name)
     ours = [("angle_deg", 2), ("pivot_m", 3), ("ted", 2)]
     cells = [
-        _beside(None if paper is None else paper[place], _number(summary.values.get(metric), digits))
+        _beside(None if paper is None else paper[place], number(summary.values.get(metric), digits))
         for place, (metric, digits) in enumerate(ours)
     ]
     types, seconds = summary.values.get("types"), summary.values.get("seconds")
-    return [*cells, _number(types, 1, 100.0), _number(seconds, 1)]
+    return [*cells, number(types, 1, 100.0), number(seconds, 1)]
 
 
 _COMPARED = (
@@ -334,15 +319,15 @@ _COMPARED = (
 """Title, metric and scale of what is compared with an earlier report."""
 
 
-def comparison(report: BenchmarkReport, baseline: BenchmarkReport) -> list[str]:
+def comparison(report: Report[JobResult], baseline: Report[JobResult]) -> list[str]:
     """Return a table of what has changed since an earlier report, object by object.
 
     Only runs that both reports hold are compared. Changes below a hundredth of the printed unit are left out.
     """
-    before = {(result.object, result.condition, result.variant): result for result in baseline.results}
+    before = {(result.object, result.condition, result.variant): result for result in baseline.records}
     pairs = [
         (before[key], result)
-        for result in report.results
+        for result in report.records
         if (key := (result.object, result.condition, result.variant)) in before
     ]
     groups: dict[str, list[tuple[JobResult, JobResult]]] = defaultdict(list)
@@ -355,16 +340,16 @@ def comparison(report: BenchmarkReport, baseline: BenchmarkReport) -> list[str]:
         cells = [_change(old_values.get(metric), new_values.get(metric), scale) for _, metric, scale in _COMPARED]
         if any(cells[:-1]) or name.startswith("**"):
             rows.append([name, *cells])
-    title = f"## Change since {baseline.header['date']}, code {baseline.header['code']}"
-    return [title, "", f"{len(pairs)} runs in both.", "", *_table(["object", *(name for name, *_ in _COMPARED)], rows)]
+    title = f"## Change since {baseline.header.date}, commit {baseline.header.commit}"
+    return [title, f"{len(pairs)} runs in both.", table(["object", *(name for name, *_ in _COMPARED)], rows)]
 
 
 def _change(old: float | None, new: float | None, scale: float) -> str:
     if old is None or new is None:
-        return "" if old is new else f"{_number(old, 2, scale)} -> {_number(new, 2, scale)}"
+        return "" if old is new else f"{number(old, 2, scale)} -> {number(new, 2, scale)}"
     if abs(new - old) * scale < 0.01:
         return ""
-    return f"{_number(old, 2, scale)} -> {_number(new, 2, scale)}"
+    return f"{number(old, 2, scale)} -> {number(new, 2, scale)}"
 
 
 def _failures(results: Sequence[JobResult]) -> list[str]:
@@ -374,9 +359,9 @@ def _failures(results: Sequence[JobResult]) -> list[str]:
         if result.status != "ok"
     ]
     if not rows:
-        return ["## Runs without an answer", "", "None."]
+        return ["## Runs without an answer", "None."]
     titles = ["object", "condition", "configuration", "what", "message"]
-    return ["## Runs without an answer", "", *_table(titles, rows)]
+    return ["## Runs without an answer", table(titles, rows)]
 
 
 def _row(
@@ -389,11 +374,11 @@ def _row(
 ) -> list[str]:
     summary = summarise(results, with_gripper=with_gripper)
     cells = [_cell(column, summary.values, paper) for column in columns]
-    return [name, _number(summary.values.get("joints"), 0), *cells]
+    return [name, number(summary.values.get("joints"), 0), *cells]
 
 
 def _cell(column: Column, values: Mapping[str, float | None], paper: PaperRow | None) -> str:
-    ours = _number(values.get(column.metric), column.digits, column.scale)
+    ours = number(values.get(column.metric), column.digits, column.scale)
     if column.metric == "types" and values.get("joints"):
         ours += f" ({values['types_right']:g}/{values['joints']:g})"
     if column.metric == "ted" and values.get("ted_exact", 1.0) != 1.0:
@@ -406,18 +391,8 @@ def _beside(paper: float | None, ours: str) -> str:
     return ours if paper is None else f"{paper:.2f} / {ours}"
 
 
-def _number(value: float | None, digits: int, scale: float = 1.0) -> str:
-    return "-" if value is None else f"{value * scale:.{digits}f}"
-
-
 def _by_object(results: Iterable[JobResult]) -> dict[str, list[JobResult]]:
     groups: dict[str, list[JobResult]] = defaultdict(list)
     for result in results:
         groups[result.object].append(result)
     return groups
-
-
-def _table(titles: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    lines = ([cell.replace("|", "\\|").replace("\n", " ") for cell in row] for row in rows)
-    head = [list(titles), ["---"] * len(titles)]
-    return [f"| {' | '.join(cells)} |" for cells in chain(head, lines)]

@@ -11,9 +11,10 @@ import pytest
 from kinematify.cli.app import run
 from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.metrics import JointScore, ObjectScore
+from kinematify.evaluation.record import Header, Report
 from kinematify.evaluation.regression import find_regressions
-from kinematify.evaluation.run import BenchmarkReport, BenchmarkRequest
-from kinematify.evaluation.tables import markdown
+from kinematify.evaluation.run import BenchmarkRequest
+from kinematify.evaluation.tables import benchmark_blocks
 from kinematify.evaluation.tree_metrics import TreeDistance
 
 NO_DISTANCE = TreeDistance(value=0, exact=True)
@@ -26,17 +27,17 @@ SCORE = ObjectScore(
     parent_errors=0, root_right=True,
 )  # fmt: skip
 RESULT = JobResult(
-    key="k", object="door", kind="everyday", category="door", condition="rest", variant="default", status="ok",
+    object="door", kind="everyday", category="door", condition="rest", variant="default", status="ok",
     message="", seconds=1.0, score=SCORE,
 )  # fmt: skip
-HEADER = {
-    "command": "kinematify bench", "date": "2025-01-01", "code": "0", "objects": 1, "conditions": ["rest"],
-    "seeds": [0], "variants": ["default"], "workers": 1, "processor": "none", "python": "3.11", "packages": {},
-}  # fmt: skip
+HEADER = Header(
+    study="bench", command="kinematify bench", date="2025-01-01", commit="0a1b2c3", code="0", seeds=(0,),
+    configuration={"objects": 1}, machine={"processor": "none", "workers": 1}, versions={"python": "3.11"},
+)  # fmt: skip
 
 
-def report(*results: JobResult) -> BenchmarkReport:
-    return BenchmarkReport(header=HEADER, results=results)
+def report(*results: JobResult) -> Report[JobResult]:
+    return Report(header=HEADER, records=results)
 
 
 def with_joint(**changes: object) -> JobResult:
@@ -75,7 +76,7 @@ def results(monkeypatch: pytest.MonkeyPatch) -> list[BenchmarkRequest]:
     """Let the benchmark answer at once; the list receives what it was asked."""
     asked: list[BenchmarkRequest] = []
 
-    def answer(request: BenchmarkRequest, progress: object) -> BenchmarkReport:
+    def answer(request: BenchmarkRequest, progress: object) -> Report[JobResult]:
         asked.append(request)
         return report(RESULT)
 
@@ -89,7 +90,7 @@ def test_arguments_become_a_request(results: list[BenchmarkRequest], tmp_path: P
     (request,) = results
     assert (request.data, request.workers, request.fresh) == ("pip", 3, True)
     assert request.conditions == ("rest", "yaw37")
-    assert request.only == ("panda",)
+    assert request.only == ("pan*",)
     assert [variant.label for variant in request.variants] == ["paper", "paper without MCTS", "paper without DW-CAVL"]
     assert run(["bench", *words, "--ablation", "-o", str(tmp_path)]) == 0
     assert [variant.label for variant in results[1].variants] == [
@@ -105,7 +106,7 @@ def test_report_is_written_and_summed_up(
     assert "16.06" not in text.splitlines()[2]
     assert "everyday" in text
     assert str(tmp_path / "out" / "doors.md") in text
-    assert json.loads((tmp_path / "out" / "doors.json").read_text())["results"][0]["object"] == "door"
+    assert json.loads((tmp_path / "out" / "doors.json").read_text())["records"][0]["object"] == "door"
 
 
 def test_generated_objects_are_summed_up_by_family_worst_first():
@@ -114,7 +115,7 @@ def test_generated_objects_are_summed_up_by_family_worst_first():
         replace(with_joint(angle_deg=9.0), object="toaster_000", kind="procedural", category="toaster"),
         replace(with_joint(predicted_kind="prismatic"), object="bottle_000", kind="procedural", category="bottle"),
     ]
-    text = markdown(report(*runs), "corpus")
+    text = "\n\n".join(benchmark_blocks(report(*runs)))
     table = text[text.index("by family, worst first") :].split("\n\n")[1]
     assert [row.split(" | ")[0].strip("| *") for row in table.splitlines()[2:]] == [
         "bottle",
@@ -128,7 +129,7 @@ def test_json_stands_alone_on_stdout(
     results: list[BenchmarkRequest], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["bench", str(tmp_path), "-o", str(tmp_path), "--json", "-"]) == 0
-    assert json.loads(capsys.readouterr().out)["schema"] == 1
+    assert json.loads(capsys.readouterr().out)["schema"] == 2
 
 
 def test_worse_than_the_baseline_ends_with_1(
@@ -139,7 +140,7 @@ def test_worse_than_the_baseline_ends_with_1(
     baseline = ["--baseline", str(tmp_path / "first.json")]
     assert run([*words, *baseline]) == 0
     values = json.loads((tmp_path / "first.json").read_text())
-    values["results"][0]["score"]["joints"][0]["angle_deg"] = 0.1
+    values["records"][0]["score"]["joints"][0]["angle_deg"] = 0.1
     (tmp_path / "first.json").write_text(json.dumps(values))
     capsys.readouterr()
     assert run([*words, *baseline]) == 1

@@ -17,18 +17,20 @@ import pytest
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
 from kinematify.evaluation.datasets import bench_folder, find_objects
+from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.paper import ABLATION
-from kinematify.evaluation.report import load_report, write_report
+from kinematify.evaluation.record import Report, load_report, write_report
 from kinematify.evaluation.run import (
     DEFAULT_ABLATION,
     PAPER_VARIANTS,
-    BenchmarkReport,
+    RESULTS,
     BenchmarkRequest,
     Variant,
     changed,
     run_benchmark,
 )
 from kinematify.evaluation.summary import summarise
+from kinematify.evaluation.tables import benchmark_blocks
 from tests.places import ROOT
 
 BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'
@@ -74,14 +76,20 @@ def request(data: Path, work: Path, infer: str, **changes: object) -> BenchmarkR
     return replace(base, **changes)  # type: ignore[arg-type]
 
 
-def without_costs(report: BenchmarkReport) -> list[object]:
-    return [replace(result, seconds=0.0, peak_mb=None) for result in report.results]
+def without_costs(report: Report[JobResult]) -> list[object]:
+    return [replace(result, seconds=0.0, peak_mb=None) for result in report.records]
+
+
+def written(report: Report[JobResult], folder: Path, name: str, baseline: Report[JobResult] | None = None) -> str:
+    """Text of the Markdown."""
+    blocks = benchmark_blocks(report, baseline)
+    return write_report(report, RESULTS, blocks, folder, name=name, title=name)[0].read_text()
 
 
 def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_path: Path) -> None:
     told: list[float] = []
     report = run_benchmark(request(data, tmp_path / "work", "star"), lambda _, fraction: told.append(fraction))
-    assert [(result.object, result.condition) for result in report.results[:6]] == [
+    assert [(result.object, result.condition) for result in report.records[:6]] == [
         ("three_parts", "rest"),
         ("three_parts", "random-0"),
         ("three_parts", "random-1"),
@@ -89,11 +97,11 @@ def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_p
         ("three_parts", "yaw37"),
         ("two_parts", "rest"),
     ]
-    assert all(result.status == "ok" for result in report.results)
-    assert all(result.peak_mb is not None and result.peak_mb > 1.0 for result in report.results)
+    assert all(result.status == "ok" for result in report.records)
+    assert all(result.peak_mb is not None and result.peak_mb > 1.0 for result in report.records)
     assert told == sorted(told)
     assert told[-1] == 1.0
-    for result in report.results:
+    for result in report.records:
         assert result.score is not None
         assert result.score.ted.value == 0
         assert result.score.root_right
@@ -107,7 +115,7 @@ def test_runs_every_object_under_every_condition_and_scores_it(data: Path, tmp_p
 
 def test_truth_never_reaches_the_inference(data: Path, tmp_path: Path) -> None:
     report = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest", "random-1")))
-    for result in report.results:
+    for result in report.records:
         assert result.status == "error"
         assert "SEEN" in result.message
         assert "given=['config']" in result.message
@@ -117,7 +125,7 @@ def test_truth_never_reaches_the_inference(data: Path, tmp_path: Path) -> None:
 
 def test_failed_inference_counts_as_if_nothing_was_predicted(data: Path, tmp_path: Path) -> None:
     report = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",)))
-    values = summarise(report.results).values
+    values = summarise(report.records).values
     assert values["angle_deg"] == 90.0
     assert values["types"] == 0.0
     assert values["ted"] == pytest.approx(2.5)
@@ -126,7 +134,7 @@ def test_failed_inference_counts_as_if_nothing_was_predicted(data: Path, tmp_pat
 
 def test_crashing_worker_ends_its_own_job_only(data: Path, tmp_path: Path) -> None:
     report = run_benchmark(request(data, tmp_path / "work", "crashing_on_three_parts", conditions=("rest",)))
-    crashed, fine = report.results
+    crashed, fine = report.records
     assert (crashed.status, crashed.peak_mb) == ("crash", None)
     assert "SIGSEGV" in crashed.message
     assert crashed.score is not None
@@ -136,7 +144,7 @@ def test_crashing_worker_ends_its_own_job_only(data: Path, tmp_path: Path) -> No
 
 def test_hanging_worker_is_stopped_and_its_answer_counts_as_missing(data: Path, tmp_path: Path) -> None:
     quick = request(data, tmp_path / "work", "endless", conditions=("rest",), only=("two_parts",), timeout=4.0)
-    (result,) = run_benchmark(quick).results
+    (result,) = run_benchmark(quick).records
     assert result.status == "timeout"
     assert 4.0 <= result.seconds < 20.0
     assert result.score is not None
@@ -147,13 +155,12 @@ def test_unreadable_description_is_reported_and_in_no_mean(data: Path, tmp_path:
     (data / "broken").mkdir()
     (data / "broken" / "model.urdf").write_text("<robot")
     report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",)))
-    (broken,) = [result for result in report.results if result.object == "broken"]
+    (broken,) = [result for result in report.records if result.object == "broken"]
     assert broken.status == "unreadable"
     assert broken.score is None
-    summary = summarise(report.results)
+    summary = summarise(report.records)
     assert (summary.objects, summary.unscored_runs) == (2, 1)
-    markdown = write_report(report, tmp_path / "out")[0].read_text()
-    assert "| broken | rest | default | unreadable |" in markdown
+    assert "| broken | rest | default | unreadable |" in written(report, tmp_path / "out", "bench")
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGINT])
@@ -187,7 +194,7 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     resumed = run_benchmark(request(data, work, "slow_star"))
     lines = ledger.read_bytes().splitlines()
     assert lines[: len(finished)] == finished
-    assert len(lines) == len(resumed.results) == 10
+    assert len(lines) == len(resumed.records) == 10
     uninterrupted = run_benchmark(request(data, tmp_path / "other", "slow_star"))
     assert without_costs(resumed) == without_costs(uninterrupted)
 
@@ -197,7 +204,7 @@ def test_finished_jobs_are_taken_up_unless_something_changed_or_fresh(data: Path
     first = run_benchmark(base)
     ledger = tmp_path / "work" / "jobs.jsonl"
     before = ledger.read_bytes()
-    assert run_benchmark(base).results == first.results
+    assert run_benchmark(base).records == first.records
     assert ledger.read_bytes() == before
     run_benchmark(replace(base, variants=(Variant(label="seeded", config="default", changes={"seed": 7}),)))
     assert ledger.read_bytes().count(b"\n") == 4
@@ -208,17 +215,17 @@ def test_finished_jobs_are_taken_up_unless_something_changed_or_fresh(data: Path
 def test_report_survives_the_disk_and_compares_with_a_baseline(data: Path, tmp_path: Path) -> None:
     both = (Variant(label="default", config="default"), Variant(label="other", config="default", changes={"seed": 1}))
     report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
-    markdown, values = write_report(report, tmp_path / "out", name="first")
-    text = markdown.read_text()
+    text = written(report, tmp_path / "out", "first")
+    values = tmp_path / "out" / "first.json"
     assert "2.92 / 22.50" in text
     assert "secret_slide" in text
     assert "Configurations beside the paper's ablation" in text
-    read = load_report(values)
-    assert read.results == report.results
-    assert json.loads(values.read_text())["summaries"][0]["with_gripper"]["values"]["ted"] == 0.0
+    read = load_report(values, RESULTS)
+    assert read.records == report.records
+    assert json.loads(values.read_text())["summary"]["groups"][0]["with_gripper"]["values"]["ted"] == 0.0
 
     worse = run_benchmark(request(data, tmp_path / "work", "telling_what_it_sees", conditions=("rest",)))
-    compared = write_report(worse, tmp_path / "out", name="second", baseline=read)[0].read_text()
+    compared = written(worse, tmp_path / "out", "second", read)
     assert "22.50 -> 90.00" in compared
     assert "2 runs in both" in compared
 
@@ -226,7 +233,7 @@ def test_report_survives_the_disk_and_compares_with_a_baseline(data: Path, tmp_p
 def test_same_configuration_under_two_labels_runs_once(data: Path, tmp_path: Path) -> None:
     both = (Variant(label="one", config="default"), Variant(label="two", config="default"))
     report = run_benchmark(request(data, tmp_path / "work", "star", conditions=("rest",), variants=both))
-    assert [result.variant for result in report.results] == ["one", "one", "two", "two"]
+    assert [result.variant for result in report.records] == ["one", "one", "two", "two"]
     assert (tmp_path / "work" / "jobs.jsonl").read_bytes().count(b"\n") == 2
 
 
@@ -244,14 +251,14 @@ def test_ablations_differ_from_the_paper_in_one_thing() -> None:
 
 
 def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no object, category or kind called piano"):
+    with pytest.raises(InputError, match="No object, category or kind matches --objects piano"):
         run_benchmark(request(data, tmp_path, "star", only=("piano",)))
     with pytest.raises(InputError, match="no condition upside-down"):
         run_benchmark(request(data, tmp_path, "star", conditions=("upside-down",)))
     with pytest.raises(ConfigError, match=r"no field topology\.colour"):
         changed(load_config("default"), {"topology.colour": "red"})
     with pytest.raises(InputError, match="is not a benchmark report"):
-        load_report(data / "two_parts" / "model.urdf")
+        load_report(data / "two_parts" / "model.urdf", RESULTS)
     blocked = tmp_path / "file"
     blocked.write_text("")
     with pytest.raises(OutputError, match="work folder"):

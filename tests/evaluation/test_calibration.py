@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +11,12 @@ import pytest
 from objects import BUILDERS
 
 from kinematify.config import Config, load_config
-from kinematify.evaluation.calibration import Judged, is_right, reliability, write_calibration
 from kinematify.evaluation.metrics import JointScore
+from kinematify.evaluation.record import Report, new_header
+from kinematify.evaluation.studies.calibration import Judged, reliability
+from kinematify.evaluation.study import write_study
+from kinematify.evaluation.summary import is_right
 from kinematify.pipeline import infer
-
-HEADER = {"command": "c", "date": "d", "code": "x", "objects": 1, "corpus_seed": 2, "conditions": ["rest"]}
 
 
 def judged(confidences: list[float], right: list[bool]) -> list[Judged]:
@@ -63,11 +65,15 @@ def test_right_means_parent_type_and_axis(predicted: str | None, angle: float, l
 
 def test_the_page_shows_the_curve_and_names_the_confident_errors(tmp_path: Path) -> None:
     joints = judged([0.2, 0.95, 0.9, 0.8], [False, False, True, True])
-    page, data, picture = write_calibration(joints, HEADER, tmp_path)
+    header = new_header("calibration", workers=1, seeds=[2], configuration={"count": 1})
+    records = tuple(asdict(joint) for joint in joints)
+    page, data, picture = write_study(
+        Report(header=header, records=records, summary=asdict(reliability(joints))), tmp_path
+    )
     text = page.read_text()
     assert "| joints right | 50.0% |" in text
     assert text.index("| o | j1 | 0.95 |") < text.index("| o | j0 | 0.20 |")
-    assert json.loads(data.read_text())["joints"] == 4
+    assert json.loads(data.read_text())["summary"]["joints"] == 4
     assert picture.stat().st_size > 1000
 
 

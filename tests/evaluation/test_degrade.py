@@ -17,7 +17,7 @@ from kinematify.config import load_config
 from kinematify.evaluation.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
 from kinematify.evaluation.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
 from kinematify.evaluation.run import run_benchmark
-from kinematify.evaluation.tables import markdown
+from kinematify.evaluation.tables import benchmark_blocks
 from kinematify.evaluation.voxels import voxel_remeshed
 
 CONFIG = load_config()
@@ -119,17 +119,19 @@ def test_every_kind_of_input_is_run_and_has_a_line_of_its_own(tmp_path: Path) ->
         tmp_path / "data", tmp_path / "work", "star", conditions=("rest",), inputs=(CLEAN, "gaps", "hulls", "cut-2")
     )
     report = run_benchmark(wanted)
-    assert [(run.input, run.status, run.cuts, run.cuts_mended) for run in report.results] == [
+    assert [(run.input, run.status, run.cuts, run.cuts_mended) for run in report.records] == [
         (CLEAN, "ok", 0, 0),
         ("gaps", "ok", 0, 0),
         ("hulls", "ok", 0, 0),
         ("cut-2", "ok", 1, 0),
     ]
     rows = [
-        line for line in markdown(report, "rough").splitlines() if line.startswith(("| clean", "| gaps", "| cut-2"))
+        line
+        for line in "\n".join(benchmark_blocks(report)).splitlines()
+        if line.startswith(("| clean", "| gaps", "| cut-2"))
     ]
     assert [row.split(" | ")[-2] for row in rows] == ["-", "-", "0 of 1"]
-    mean = next(line for line in markdown(report, "rough").splitlines() if "hulls left out" in line)
+    mean = next(line for line in "\n".join(benchmark_blocks(report)).splitlines() if "hulls left out" in line)
     assert mean.split(" | ")[-2] == "0 of 1"
 
 

@@ -23,7 +23,7 @@ def test_wrong_joints_are_shown_worst_first(tmp_path: Path) -> None:
     write_object(tmp_path / "data" / "three_parts", with_knob=True)
     wanted = request(tmp_path / "data", tmp_path / "work", "star", conditions=("rest", "yaw37"))
     report = run_benchmark(wanted)
-    wrong = wrong_joints(report.results)
+    wrong = wrong_joints(report.records)
     assert [(item.joint.joint, item.runs, item.of) for item in wrong] == [("secret_slide", 2, 2)]
     told: list[str] = []
     page = write_error_gallery(

@@ -11,10 +11,10 @@ from lxml import etree
 
 from kinematify.assembly.erase import ErasedModel, erase
 from kinematify.evaluation.datasets import BenchObject
-from kinematify.evaluation.studies.mutants.base import BaseModel, write_base
-from kinematify.evaluation.studies.mutants.fault import Planted
-from kinematify.evaluation.studies.mutants.outcome import Verdict, judge
-from kinematify.evaluation.studies.mutants.plan import FAULTS, Mutant, write_mutants
+from kinematify.evaluation.mutants.base import BaseModel, write_base
+from kinematify.evaluation.mutants.fault import Planted
+from kinematify.evaluation.mutants.outcome import Verdict, judge
+from kinematify.evaluation.mutants.plan import FAULTS, Mutant, write_mutants
 from kinematify.robot.read import read_robot
 from tests.household import barrel_hinge_door, nested_drawer
 from tests.known import KnownObject

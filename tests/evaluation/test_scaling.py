@@ -11,9 +11,11 @@ import quick_inference
 import trimesh
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.config import Config, load_config
-from kinematify.evaluation import scaling
-from kinematify.evaluation.scaling import chain_and_branch, measure_scaling, write_scaling
+from kinematify.config import Config
+from kinematify.evaluation.record import Report, new_header
+from kinematify.evaluation.studies import scaling
+from kinematify.evaluation.studies.scaling import chain_and_branch
+from kinematify.evaluation.study import write_study
 
 
 def distance(a: Part, b: Part) -> float:
@@ -57,11 +59,14 @@ class Clock:
 def test_exponent_is_fitted_and_the_report_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = Clock()
     monkeypatch.setattr(scaling, "time", clock)
-    report = measure_scaling(load_config("default"), clock.quadratic, sizes=(40, 80, 120))
-    assert report.exponent == pytest.approx(2.0)
+    monkeypatch.setattr(scaling, "imported", lambda name: clock.quadratic)
+    points = [scaling.timed(scaling.Sized(parts=parts, config="default")) for parts in (40, 80, 120)]
+    summary = scaling.fitted(points)
+    assert summary["exponent"] == pytest.approx(2.0)
     # A star on an inner trunk link joins it with its branch and the two trunk links beside it.
-    assert [point.pairs_right for point in report.points] == [3, 3, 3]
-    paths = write_scaling(report, tmp_path)
-    assert json.loads(paths[0].read_text())["points"][0]["parts"] == 40
-    assert "parts^" in paths[1].read_text()
-    assert paths[2].read_bytes().startswith(b"\x89PNG")
+    assert [point["pairs_right"] for point in points] == [3, 3, 3]
+    header = new_header("scaling", workers=1, seeds=[0], configuration={"sizes": [40, 80, 120]})
+    page, data, picture = write_study(Report(header=header, records=tuple(points), summary=summary), tmp_path)
+    assert json.loads(data.read_text())["records"][0]["parts"] == 40
+    assert "parts^" in page.read_text()
+    assert picture.read_bytes().startswith(b"\x89PNG")

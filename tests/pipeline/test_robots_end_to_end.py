@@ -30,7 +30,7 @@ def inferred_again(name: str) -> JobResult:
     items = [item for item in find_objects(BENCH) if item.name == name] if BENCH.is_dir() else []
     if not items:
         pytest.skip(f"There is no benchmark model {name} here; set KINEMATIFY_BENCH to the folder of the models.")
-    result = run_job(Job(item=items[0], condition=REST, variant="default", config=load_config()), key=name)
+    result = run_job(Job(item=items[0], condition=REST, variant="default", config=load_config()))
     assert result.status == "ok", result.message
     return result
 

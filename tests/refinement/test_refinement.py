@@ -21,8 +21,8 @@ from kinematify.errors import InputError
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
 from kinematify.evaluation.prediction import PredictedJoint, Prediction
-from kinematify.evaluation.refining import OFF, RefiningResult, TierResult
-from kinematify.evaluation.refining_report import harmed, load_refining_report, markdown
+from kinematify.evaluation.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
+from kinematify.evaluation.study import load_study_report
 from kinematify.evaluation.tree_metrics import TreeDistance
 from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
 from kinematify.pipeline import Inference, infer, write_inference
@@ -323,16 +323,15 @@ def test_bench_measures_refinement(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     write_inference(inferred("drawer"), tmp_path / "models" / "drawer", preview=False)
-    words = ["bench", "models", "--refine", "--perturb", "noise", "--conditions", "rest", "--jobs", "1"]
-    assert run([*words, "-o", "out", "--name", "refine"]) == 0
-    assert "Harm: none" in capsys.readouterr().out
-    results, header = load_refining_report(tmp_path / "out" / "refine.json")
-    assert [(item.object, item.perturbation, item.message) for item in results] == [
-        ("drawer", "clean", ""),
-        ("drawer", "noise", ""),
-    ]
+    words = ["bench", "refinement", "--data", "models", "--perturb", "noise", "--jobs", "1"]
+    assert run([*words, "-o", "out"]) == 0
+    assert "2 records" in capsys.readouterr().out
+    results = results_of(load_study_report(tmp_path / "out", "refinement").records)
+    assert [(item.object, item.perturbation) for item in results] == [("drawer", "clean"), ("drawer", "noise")]
     assert [tier.tier for tier in results[0].tiers] == [OFF, "geometry"]
-    assert "no feedback" in markdown(results, header, "refine")
+    text = (tmp_path / "out" / "refinement.md").read_text()
+    assert "no feedback" in text
+    assert "Nowhere." in text
     assert not harmed(results)
     assert run([*words, "--tiers", "cheap"]) == 2
 
@@ -350,9 +349,7 @@ def test_harm_is_told() -> None:
     before = TierResult(tier=OFF, score=score, seconds=1.0, errors=0, changes=())
     for changes in ({"predicted_kind": "prismatic"}, {"angle_deg": 90.0}, {"limit_iou": 0.5}):
         after = replace(before, tier="geometry", score=replace(score, joints=(replace(joint, **changes),)))
-        result = RefiningResult(
-            key="k", object="o", kind="other", condition="rest", perturbation="clean", message="", tiers=(before, after)
-        )
+        result = RefiningResult(object="o", kind="other", perturbation="clean", tiers=(before, after))
         assert len(harmed([result])) == 1
     assert not harmed([replace(result, tiers=(before, replace(before, tier="geometry")))])
 

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from kinematify.evaluation.studies.corruption.bases import Base, built_base
-from kinematify.evaluation.studies.corruption.cases import KINDS, write_case
-from kinematify.evaluation.studies.corruption.runner import READY, Plan, hurried, run_case
+from kinematify.evaluation.corruption.bases import Base, built_base
+from kinematify.evaluation.corruption.cases import KINDS, write_case
+from kinematify.evaluation.corruption.validation import READY, CorruptionTask, run_case
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.plan import later_stages, needed
 from kinematify.validation.run import validate
 
-FILE_CHECKS = frozenset(check for check in CATALOGUE if check.startswith(("KV1", "KV2")))
+FILE_CHECKS = tuple(check for check in CATALOGUE if check.startswith(("KV1", "KV2")))
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def test_the_model_that_is_corrupted_is_sound(base: Base, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("number", range(len(KINDS)))
 def test_every_kind_of_corruption_ends_with_a_report_or_a_refusal(number: int, base: Base) -> None:
-    result = run_case(number, Plan(seed=1, bases=(base,), settings=hurried(20.0), selected=FILE_CHECKS))
+    result = run_case(CorruptionTask(number=number, seed=1, bases=(base,), seconds=20.0, selected=FILE_CHECKS))
     assert result["outcome"] in READY, result["message"]
     assert not result.get("unexplained")
     assert result["seconds"] < 15.0

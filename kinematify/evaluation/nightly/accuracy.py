@@ -30,7 +30,6 @@ def accuracy_run(result: JobResult, scenario: str, settings: NightlySettings) ->
     """
     values = summarise([result]).values
     return Run(
-        key=result.key,
         scenario=scenario,
         object=result.object,
         kind=result.kind,

@@ -32,8 +32,6 @@ class Problem:
 class Run:
     """What came of one run."""
 
-    key: str = ""
-    """Under which it is filed while the night lasts; equal only where nothing that it depends on has changed."""
     scenario: str
     """Hash of all that makes two runs comparable: input, pose, thresholds, but not the code under test."""
     object: str

@@ -6,22 +6,21 @@ import os
 import shutil
 import time
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.errors import InputError
-from kinematify.evaluation.datasets import CONDITIONS, find_objects
+from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
 from kinematify.evaluation.job import INFER
-from kinematify.evaluation.ledger import Ledger
 from kinematify.evaluation.nightly.accuracy import accuracy_run
 from kinematify.evaluation.nightly.compare import compare, counts
 from kinematify.evaluation.nightly.junit import as_junit
 from kinematify.evaluation.nightly.pages.night import night_page
 from kinematify.evaluation.nightly.pages.trends import trend_page
 from kinematify.evaluation.nightly.record import RUN, SCHEMA
-from kinematify.evaluation.nightly.scenario import accuracy_scenario, digest, validation_scenario, whole_code_version
+from kinematify.evaluation.nightly.scenario import accuracy_scenario, digest, validation_scenario
 from kinematify.evaluation.nightly.smoke import write_smoke_objects
 from kinematify.evaluation.nightly.state import open_state
 from kinematify.evaluation.nightly.store import (
@@ -35,15 +34,16 @@ from kinematify.evaluation.nightly.store import (
     earlier_runs,
     load_nights,
     locked,
-    replace_text,
     write_night,
 )
-from kinematify.evaluation.nightly.validity import Unit, run_units, unit_request
+from kinematify.evaluation.nightly.validity import Validation, run_validation
+from kinematify.evaluation.pool import Failure, Pool
+from kinematify.evaluation.record import replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
-from kinematify.versions import package_versions
+from kinematify.evaluation.sources import code_version
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Iterator, Sequence
 
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.job import JobResult
@@ -51,11 +51,9 @@ if TYPE_CHECKING:
     from kinematify.evaluation.nightly.record import Run
     from kinematify.evaluation.nightly.settings import NightlySettings
     from kinematify.evaluation.nightly.state import State
-    from kinematify.evaluation.run import BenchmarkReport
+    from kinematify.evaluation.pool import Progress
+    from kinematify.evaluation.record import Report
 
-    Progress = Callable[[str, float], None]
-
-_ENGINES = ("mujoco", "pybullet", "pin", "python-fcl", "libigl", "trimesh")
 _ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are done, on the benchmark
 
 
@@ -67,7 +65,7 @@ class NightRequest:
     out: Path
     """Folder of all nights."""
     only: tuple[str, ...] = ()
-    """Names of objects, categories or kinds; empty for all."""
+    """Patterns for names of objects, categories or kinds; empty for all."""
     baseline: str | None = None
     """Name of a night to compare with instead of the accepted one."""
     smoke: bool = False
@@ -133,14 +131,7 @@ def _objects(request: NightRequest) -> list[BenchObject]:
     if request.smoke:
         data = request.out / UNFINISHED / "objects"
         write_smoke_objects(data, request.settings.smoke.sentences)
-    found = find_objects(data)
-    chosen_objects = [o for o in found if not request.only or {o.name, o.category, o.kind} & set(request.only)]
-    if not chosen_objects:
-        raise InputError(
-            f"No object is called, or is of the kind or category, {', '.join(request.only)}. There are "
-            f"{', '.join(item.name for item in found)}."
-        )
-    return chosen_objects
+    return list(matching(find_objects(data), request.only))
 
 
 class _Work:
@@ -151,14 +142,14 @@ class _Work:
         self.folder = request.out / UNFINISHED
         self.pages = self.folder / MODELS if request.pages else None
         self.thresholds = load_settings(self.settings.validation_config)
-        self.code = whole_code_version()
+        self.code = code_version(without=("cli", "evaluation/nightly", "evaluation/studies"))
         self.method = digest(load_config(self.settings.infer_config).model_dump(mode="json"))
         hashes = {item.name: item.content_hash for item in objects}
         self.plan = digest(
             [self.settings.model_dump(mode="json"), hashes, self.code, request.infer, self.thresholds.model_dump()]
         )
 
-    def accuracy(self, progress: Progress) -> tuple[BenchmarkReport, list[Run]]:
+    def accuracy(self, progress: Progress) -> tuple[Report[JobResult], list[Run]]:
         """Infer every object in every condition."""
         report = run_benchmark(
             BenchmarkRequest(
@@ -173,7 +164,7 @@ class _Work:
             ),
             lambda what, share: progress(what.replace(", nightly", ""), _ACCURACY * share),
         )
-        return report, [self._accuracy_run(result) for result in report.results]
+        return report, [self._accuracy_run(result) for result in report.records]
 
     def _data(self) -> str | Path | None:
         return self.folder / "objects" if self.request.smoke else self.settings.data
@@ -185,31 +176,48 @@ class _Work:
 
     def validations(self, progress: Progress) -> list[Run]:
         """Validate the models of every object."""
-        units = {unit.key: unit for unit in self._units()}
-        with Ledger(self.folder / "validations.jsonl", RUN) as ledger:
-            known = {key: run for key, run in ledger.read().items() if key in units}
-            missing = [unit for key, unit in units.items() if key not in known]
-            missing.sort(key=lambda unit: unit.item.mesh_bytes, reverse=True)  # so that nobody waits for one at the end
-            for run in run_units(missing, workers=self.request.workers, timeout=self.settings.validation_timeout):
-                ledger.append(run)
-                known[run.key] = run
-                share = _ACCURACY + (_VALIDATION - _ACCURACY) * len(known) / len(units)
-                progress(f"{run.object}, {run.case} model: {run.status}, {run.seconds:.1f} s", share)
-        return [known[key] for key in units]
-
-    def _units(self) -> list[Unit]:
-        return [self._unit(item, source) for item in self.objects for source in self.settings.sources]
-
-    def _unit(self, item: BenchObject, source: str) -> Unit:
-        scenario = validation_scenario(item, source, self.settings, self.thresholds)
-        facts = [item.name, source, scenario, self.code, self.request.infer, self.settings.budget]
-        return Unit(
-            key=digest(facts),
-            scenario=scenario,
-            item=item,
-            source=source,
-            request=unit_request(item, source, self.settings, infer=self.request.infer, pages=self.pages),
+        # The largest objects first, so that nobody waits for one at the end.
+        by_size = sorted(self._validations(), key=lambda task: task.item.mesh_bytes, reverse=True)
+        tasks = {self._key(task): task for task in by_size}
+        share = _VALIDATION - _ACCURACY
+        pool = Pool(
+            folder=self.folder,
+            workers=self.request.workers,
+            progress=lambda what, done: progress(what, _ACCURACY + share * done),
         )
+        answers = pool.run(
+            {key: partial(run_validation, task) for key, task in tasks.items()},
+            RUN,
+            ledger="validations",
+            timeout=self.settings.validation_timeout,
+            said=lambda key, run: (
+                f"{tasks[key].item.name}, {tasks[key].source} model: {run.status}, {run.seconds:.1f} s"
+            ),
+            preload=("kinematify.evaluation.nightly.validity", "kinematify.pipeline"),
+        )
+        return [
+            tasks[key].run(answer.status, answer.seconds, answer.message) if isinstance(answer, Failure) else answer
+            for key, answer in answers.items()
+        ]
+
+    def _validations(self) -> Iterator[Validation]:
+        for item in self.objects:
+            for source in self.settings.sources:
+                yield Validation(
+                    item=item,
+                    scenario=validation_scenario(item, source, self.settings, self.thresholds),
+                    source=source,
+                    infer=self.request.infer,
+                    infer_config=self.settings.infer_config,
+                    validation_config=self.settings.validation_config,
+                    engines=tuple(self.settings.engines),
+                    checks=tuple(self.settings.checks),
+                    budget=self.settings.budget,
+                    pages=self.pages,
+                )
+
+    def _key(self, task: Validation) -> str:
+        return digest([task.item.name, task.source, task.scenario, self.code, task.infer, task.budget])
 
 
 def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Night | None, progress: Progress) -> Night:
@@ -218,7 +226,7 @@ def _new_night(work: _Work, state: State, nights: Sequence[Night], baseline: Nig
     report, accuracy = work.accuracy(progress)
     runs = sorted([*accuracy, *work.validations(progress)], key=lambda run: run.place)
     last = nights[-1] if nights else None
-    processor = str(report.header["processor"])
+    processor = str(report.header.machine["processor"])
     changes = _changes(work, runs, nights, processor)
     drift = _changes(work, runs, [baseline], processor) if baseline is not None and baseline is not last else ()
     header = {
@@ -249,7 +257,7 @@ def _changes(work: _Work, runs: Sequence[Run], nights: Sequence[Night], processo
     )
 
 
-def _facts(work: _Work, state: State, report: BenchmarkReport) -> dict[str, Any]:
+def _facts(work: _Work, state: State, report: Report[JobResult]) -> dict[str, Any]:
     header = report.header
     return {
         "schema": SCHEMA,
@@ -260,11 +268,11 @@ def _facts(work: _Work, state: State, report: BenchmarkReport) -> dict[str, Any]
         "sessions": state.sessions,
         "code": work.code[:12],
         "method": work.method,
-        "command": header["command"],
-        "processor": header["processor"],
-        "workers": header["workers"],
-        "python": header["python"],
-        "packages": {**header["packages"], **package_versions(_ENGINES)},
+        "command": header.command,
+        "processor": header.machine["processor"],
+        "workers": header.machine["workers"],
+        "python": header.versions["python"],
+        "packages": {name: version for name, version in header.versions.items() if name != "python"},
         "objects": len(work.objects),
         "settings": work.settings.model_dump(mode="json"),
     }

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from kinematify.evaluation.datasets import BenchObject, Condition
     from kinematify.evaluation.nightly.settings import NightlySettings
 
-_PACKAGE = Path(__file__).resolve().parents[1]
-_NO_INFLUENCE = ("cli", "nightly")
 _JUDGES = ("problem_angle", "problem_line", "problem_limits")
 """Settings that say from when on a joint is wrong."""
 
@@ -58,19 +56,3 @@ def validation_scenario(
 def digest(facts: Any) -> str:
     """Twelve characters that stand for plain values."""
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:12]
-
-
-def whole_code_version() -> str:
-    """Hash of every source and configuration on which a run depends, the validation's included."""
-    found = hashlib.sha256()
-    for path in _sources():
-        found.update(path.relative_to(_PACKAGE).as_posix().encode())
-        found.update(path.read_bytes())
-    return found.hexdigest()
-
-
-def _sources() -> list[Path]:
-    # `validation` and `configs` stand behind links, which `rglob` does not follow on its own.
-    folders = (_PACKAGE, _PACKAGE / "validation", _PACKAGE / "configs")
-    paths = {path for folder in folders for kind in ("*.py", "*.yaml") for path in folder.rglob(kind)}
-    return sorted(path for path in paths if path.relative_to(_PACKAGE).parts[0] not in _NO_INFLUENCE)

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import datetime
 import json
-import subprocess
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify import __version__
 from kinematify.errors import OutputError
-from kinematify.evaluation.nightly.store import UNFINISHED, replace_text, unwritable
+from kinematify.evaluation.nightly.store import UNFINISHED, unwritable
+from kinematify.evaluation.record import replace_text
+from kinematify.evaluation.sources import git_commit
 
 if TYPE_CHECKING:
     from collections.abc import Collection
+    from pathlib import Path
 
 _FILE = "state.json"
-_CHECKOUT = Path(__file__).resolve().parents[3]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,21 +78,3 @@ def _begun(plan: str, taken: Collection[str]) -> State:
     return State(
         name=name, started=now.isoformat(timespec="seconds"), commit=commit, dirty=dirty, plan=plan, sessions=1
     )
-
-
-def git_commit() -> tuple[str, bool]:
-    """Return the commit of the sources and whether they differ from it; the version where there is no checkout."""
-    commit = _git("rev-parse", "--short=7", "HEAD")
-    if not (_CHECKOUT / ".git").exists() or not commit:
-        return f"v{__version__}", False
-    return commit, bool(_git("status", "--porcelain", "--untracked-files=no"))
-
-
-def _git(*words: str) -> str:
-    try:
-        done = subprocess.run(
-            ["git", "-C", str(_CHECKOUT), *words], capture_output=True, text=True, timeout=30, check=True
-        )
-    except (OSError, subprocess.SubprocessError):
-        return ""
-    return done.stdout.strip()

@@ -24,6 +24,7 @@ from pydantic import ValidationError
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.nightly.compare import CHANGES
 from kinematify.evaluation.nightly.record import RUN, SCHEMA
+from kinematify.evaluation.record import replace_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -231,7 +232,7 @@ def write_night(folder: Path, night: Night, texts: Mapping[str, str], *, models:
         "changes": CHANGES.dump_python(night.changes, mode="json"),
         "baseline_changes": CHANGES.dump_python(night.baseline_changes, mode="json"),
     }
-    runs = "".join(RUN.dump_json(run, exclude={"key"}).decode() + "\n" for run in night.runs)
+    runs = "".join(RUN.dump_json(run).decode() + "\n" for run in night.runs)
     files = {**texts, RUNS_FILE: runs, HEADER_FILE: json.dumps(facts, indent=1, allow_nan=False) + "\n"}
     try:
         shutil.rmtree(aside, ignore_errors=True)
@@ -244,10 +245,3 @@ def write_night(folder: Path, night: Night, texts: Mapping[str, str], *, models:
     except OSError as error:
         raise OutputError(unwritable(folder, error)) from error
     return place
-
-
-def replace_text(path: Path, text: str) -> None:
-    """Write aside, then rename: a reader never sees half a file."""
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    aside.write_text(text, encoding="utf-8")
-    aside.replace(path)

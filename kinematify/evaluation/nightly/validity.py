@@ -1,81 +1,104 @@
-"""Validations of a night: which there are, and running them side by side, each in a process of its own."""
+"""One validation of a night: the published model of an object, or what is inferred from its parts at rest."""
 
 from __future__ import annotations
 
-import os
-import signal
-import subprocess
-import sys
 import tempfile
 import time
-from collections import deque
-from contextlib import suppress
-from dataclasses import dataclass
+from collections import defaultdict
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from pydantic import ValidationError
-
-from kinematify.evaluation.nightly.record import Run
-from kinematify.evaluation.nightly.unit import ANSWER, REQUEST, UnitAnswer, UnitRequest
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject
+from kinematify.evaluation.job import erased_item, imported, shown_parts
+from kinematify.evaluation.nightly.record import Problem, Run
+from kinematify.model.urdf import write_urdf
+from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.html import as_html
+from kinematify.validation.formats.picture import scene_of
+from kinematify.validation.formats.text import where
+from kinematify.validation.outcome import severity_counts, status_counts
+from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Sequence
 
-    from kinematify.evaluation.datasets import BenchObject
-    from kinematify.evaluation.nightly.settings import NightlySettings
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.report import ValidationReport
 
-_LOOK = 0.05
-"""Seconds between two looks at what has ended."""
-_LAST_WORDS = 300
-"""Characters of what a process said when it failed."""
+_STATES = ("fail", "warn", "blocked", "pass", "skipped")
+"""Of a family, the worst first; skipped only where nothing else is left, for much does not apply to every model."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unit:
-    """One validation to run."""
+class Validation:
+    """What to validate."""
 
-    key: str
-    scenario: str
     item: BenchObject
+    scenario: str
     source: str
-    request: UnitRequest
+    """``truth``: the file as it is; ``inferred``: what the inference makes of its parts at rest."""
+    infer: str
+    """Function under test, as ``module:name``."""
+    infer_config: str
+    validation_config: str
+    engines: tuple[str, ...]
+    checks: tuple[str, ...]
+    """Ids or patterns."""
+    budget: float
+    """[s]."""
+    pages: Path | None
+    """Folder for the page of the model; None for none."""
+
+    def run(self, status: str, seconds: float, message: str = "") -> Run:
+        """Return a run of this validation that has nothing to tell yet."""
+        return Run(
+            scenario=self.scenario,
+            object=self.item.name,
+            kind=self.item.kind,
+            category=self.item.category,
+            what="validation",
+            case=self.source,
+            status=status,
+            message=message,
+            seconds=round(seconds, 3),
+        )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Running:
-    unit: Unit
-    process: subprocess.Popen[bytes]
-    answer: Path
-    log: Path
-    started: float
+def run_validation(validation: Validation) -> Run:
+    """Validate the model."""
+    with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
+        urdf, package_dirs = validation.item.urdf, validation.item.package_dirs
+        if validation.source == "inferred":
+            urdf, package_dirs = _inferred(validation, Path(folder)), ()
+        selected = [check for check in CATALOGUE if any(fnmatchcase(check, word) for word in validation.checks)]
+        start = time.perf_counter()
+        report = validate(
+            urdf,
+            package_dirs=tuple(map(str, package_dirs)),
+            settings=_patient(load_settings(validation.validation_config), validation.budget),
+            selected=selected,
+            engines=validation.engines,
+            workers=1,
+        )
+        if validation.pages is not None:
+            _write_page(validation, urdf, report, validation.pages)
+        return kept(validation, report, time.perf_counter() - start, selected)
 
 
-def unit_request(
-    item: BenchObject, source: str, settings: NightlySettings, *, infer: str, pages: Path | None
-) -> UnitRequest:
-    """What the process of a validation is told.
-
-    Args:
-        item: The object.
-        source: Which of its models.
-        settings: Of the night.
-        infer: Function under test.
-        pages: Folder for the page of each model; None for no pages.
-    """
-    return UnitRequest(
-        urdf=str(item.urdf.absolute()),
-        package_dirs=tuple(str(folder) for folder in item.package_dirs),
-        source=source,
-        infer=infer,
-        infer_config=settings.infer_config,
-        validation_config=settings.validation_config,
-        engines=tuple(settings.engines),
-        checks=tuple(settings.checks),
-        budget=settings.budget,
-        title=f"{item.name}, {source} model",
-        page="" if pages is None else str((pages / page_name(item.name, source)).absolute()),
-    )
+def _write_page(validation: Validation, urdf: Path, report: ValidationReport, folder: Path) -> None:
+    """Write the page that `kinematify validate --html` would, but for the picture, which takes seconds."""
+    package_dirs = validation.item.package_dirs if validation.source == "truth" else ()
+    named = replace(report, model=f"{validation.item.name}, {validation.source} model")
+    scene = scene_of(urdf, package_dirs)
+    folder.mkdir(parents=True, exist_ok=True)
+    page = folder / page_name(validation.item.name, validation.source)
+    page.write_text(as_html([named], {}, {named.model: scene}), encoding="utf-8")
 
 
 def page_name(item: str, source: str) -> str:
@@ -84,85 +107,79 @@ def page_name(item: str, source: str) -> str:
     return f"{plain}-{source}.html"
 
 
-def run_units(units: Sequence[Unit], *, workers: int, timeout: float) -> Iterator[Run]:
-    """Yield the run of every unit as it ends; closing the iterator stops all processes.
+def _inferred(validation: Validation, folder: Path) -> Path:
+    """Write the model that the inference makes of the anonymous parts of an object at rest."""
+    parts = shown_parts(erased_item(validation.item, CONDITIONS[0]))
+    inference = imported(validation.infer)(parts, config=load_config(validation.infer_config))
+    write_urdf(inference.model, folder)
+    return folder / "model.urdf"
+
+
+def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings:
+    budget = settings.budget.model_copy(update={"seconds": seconds, "stage_seconds": seconds})
+    return settings.model_copy(update={"budget": budget})
+
+
+def kept(validation: Validation, report: ValidationReport, seconds: float, selected: Collection[str]) -> Run:
+    """Return what a night keeps of a report: what is wrong, what did not run, and counts.
 
     Args:
-        units: Started in this order.
-        workers: Processes at a time.
-        timeout: Wall time after which one is stopped [s].
+        validation: That was asked for; checks of other engines are left out.
+        report: Of the model.
+        seconds: That it took.
+        selected: Checks that were asked for; others are left out.
     """
-    waiting = deque(units)
-    active: list[_Running] = []
-    with tempfile.TemporaryDirectory(prefix="kinematify-night-", ignore_cleanup_errors=True) as folder:
-        try:
-            while waiting or active:
-                while waiting and len(active) < workers:
-                    active.append(_start(waiting.popleft(), Path(folder)))
-                for running in [item for item in active if _over(item, timeout)]:
-                    active.remove(running)
-                    yield _run(running.unit, _collect(running, timeout))
-                time.sleep(_LOOK)
-        finally:
-            for running in active:
-                _stop(running)
-
-
-def _start(unit: Unit, folder: Path) -> _Running:
-    request, answer, log = (folder / f"{unit.key}.{end}" for end in ("request", "answer", "log"))
-    request.write_bytes(REQUEST.dump_json(unit.request))
-    with log.open("wb") as out:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "kinematify.evaluation.nightly.unit", str(request), str(answer)],
-            stdin=subprocess.DEVNULL,
-            stdout=out,
-            stderr=subprocess.STDOUT,
-            env={**os.environ, **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")},
-            start_new_session=True,  # Ctrl-C is answered here alone, and a hang is stopped with all it has started
-        )
-    return _Running(unit=unit, process=process, answer=answer, log=log, started=time.monotonic())
-
-
-def _over(running: _Running, timeout: float) -> bool:
-    return running.process.poll() is not None or time.monotonic() - running.started > timeout
-
-
-def _collect(running: _Running, timeout: float) -> UnitAnswer:
-    """What the process answered, or how it ended without an answer."""
-    seconds = round(time.monotonic() - running.started, 3)
-    code = running.process.poll()
-    _stop(running)
-    try:
-        return ANSWER.validate_json(running.answer.read_bytes())
-    except (OSError, ValidationError):
-        if code is None:
-            return UnitAnswer(status="timeout", seconds=seconds, message=f"stopped after {timeout:.0f} s")
-        said = running.log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
-        return UnitAnswer(
-            status="crash", seconds=seconds, message=f"ended with status {code} {said[:_LAST_WORDS]}".strip()
-        )
-
-
-def _stop(running: _Running) -> None:
-    with suppress(ProcessLookupError):  # it has ended, and so has all that it started
-        os.killpg(running.process.pid, signal.SIGKILL)
-    running.process.wait()
-
-
-def _run(unit: Unit, answer: UnitAnswer) -> Run:
-    return Run(
-        key=unit.key,
-        scenario=unit.scenario,
-        object=unit.item.name,
-        kind=unit.item.kind,
-        category=unit.item.category,
-        what="validation",
-        case=unit.source,
-        status=answer.status,
-        message=answer.message,
-        seconds=answer.seconds,
-        values=answer.values,
-        problems=answer.problems,
-        not_run=answer.not_run,
-        families=answer.families,
+    asked = [check for check in report.checks if check.check in selected]
+    checks = [check for check in asked if check.engine is None or check.engine in validation.engines]
+    severities, statuses = severity_counts(report), status_counts(report)
+    counts = {f"{severity.value}s": severities.get(severity, 0) for severity in Severity}
+    counts |= {status.value: statuses.get(status, 0) for status in Status}
+    left = {
+        check_key(check): f"{check.status.value}: {check.reason or 'no reason given'}"
+        for check in checks
+        if check.status in (Status.SKIPPED, Status.BLOCKED)
+    }
+    return replace(
+        validation.run(report.verdict, seconds),
+        values={name: float(count) for name, count in counts.items()},
+        problems=_problems(checks),
+        not_run=left,
+        families=_families(checks),
     )
+
+
+def check_key(item: CheckResult | Finding) -> str:
+    """Id of a check with its engine, as problems and skipped checks name it."""
+    return f"{item.check} [{item.engine}]" if item.engine else item.check
+
+
+def _problems(checks: Sequence[CheckResult]) -> tuple[Problem, ...]:
+    """Errors and warnings; where a check says the same of one place twice, a number tells the two apart."""
+    seen: dict[str, int] = defaultdict(int)
+    problems = []
+    for check in checks:
+        for finding in check.findings:
+            if finding.severity is Severity.NOTE or finding.suppressed is not None:
+                continue
+            # The finding may name another engine than the check, but the check decides what is skipped.
+            name = f"{check_key(check)} {where(finding)}".strip()
+            seen[name] += 1
+            number = f" ({seen[name]})" if seen[name] > 1 else ""
+            severity: Literal["error", "warning"] = "error" if finding.severity is Severity.ERROR else "warning"
+            problems.append(Problem(id=name + number, check=check_key(check), severity=severity, text=finding.message))
+    return tuple(problems)
+
+
+def _families(checks: Sequence[CheckResult]) -> dict[str, str]:
+    """State of each family of checks, the worst of its checks."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for check in checks:
+        found[check.check[:3]].add(_state(check))
+    return {family: next(state for state in _STATES if state in states) for family, states in found.items()}
+
+
+def _state(check: CheckResult) -> str:
+    if check.status is not Status.FAIL:
+        return check.status.value
+    errors = any(finding.severity is Severity.ERROR and finding.suppressed is None for finding in check.findings)
+    return "fail" if errors else "warn"

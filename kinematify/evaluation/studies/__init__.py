@@ -1,1 +1,1 @@
-"""Studies of accuracy, validation and speed."""
+"""One question each; `kinematify bench --list` names them."""

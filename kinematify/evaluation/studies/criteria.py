@@ -1,26 +1,29 @@
-"""Could simulation tell right joints from wrong ones better than it does: results/refine_criteria.{json,md}.
+"""Could simulation tell right joints from wrong ones better than it does?
 
-Every near-best candidate of every joint is given its range and simulated. Each thing that the simulation measures is
-put beside the score of the inference in a conditional logit over the candidates of a joint; its weights come from
-generated objects, and it is judged on everyday objects. A stopped run goes on where it was stopped.
+Every near-best candidate (3 log odds, 8 at most) of every joint between the right parts, simulated by exact geometry.
+Right: the type, and an axis within 10 deg. Each criterion stands beside the score of the inference in a conditional
+logit over the candidates of a joint, with weights from generated objects. Loss: negative log likelihood on everyday
+objects, with those weights, and with the best that everyday objects themselves would give, which is a bound and no
+method. Offered: wrong joints with a right candidate among the near-best. Faults: wrong and right joints whose motion
+the simulation finds fault with.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import tempfile
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+from pydantic import Field
 from scipy.optimize import minimize
 
-from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.axis_metrics import axis_angle
-from kinematify.evaluation.datasets import find_objects
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
+from kinematify.evaluation.job import erased_item
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, explained
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.truth import ground_truth
@@ -31,21 +34,17 @@ from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
-from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
-    from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
     from kinematify.contact.graph import ContactGraph
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
-
-    Candidate = Mapping[str, Any]
-    """score, kind, right, chosen; free: shares of the part's length or of half a turn to both sides; kept: share of
-    the contact that stays one after 10, 50 and 100 % of the way; normal: share of its speed into the surface."""
 
 MARGIN, MOST = 3.0, 8
 RIGHT_DEG = 10.0
@@ -54,7 +53,7 @@ _SAMPLES = 200
 _TOUCH = 0.01  # fraction of the part's diagonal
 _RIDGE = 0.05  # keeps weights finite where generated objects hold no error
 _LINKAGES = ("hand", "humanoid", "hexapod", "quadruped", "snake", "serial_arm", "scara", "gantry")
-CRITERIA = {
+CRITERIA: dict[str, Callable[[Record], float]] = {
     "way that is free to the freer side": lambda c: min(max(-c["free"][0], c["free"][1]), 1.0),
     "a stop at once to one side, as what is closed has": lambda c: float(min(-c["free"][0], c["free"][1]) < 0.03),
     "contact kept after a tenth of the way": lambda c: c["kept"][0],
@@ -65,65 +64,68 @@ CRITERIA = {
     "contact with the parent lost (KV320)": lambda c: float("KV320" in c["checks"]),
     "other parts hit (KV311)": lambda c: float("KV311" in c["checks"]),
 }  # fmt: skip
+"""Of a candidate: score, kind, right, chosen; free: shares of the part's length or of half a turn to both sides; kept:
+share of the contact that stays one after 10, 50 and 100 % of the way; normal: share of its speed into the surface."""
 
 
-def main() -> None:
-    """Simulate what is missing, then fit and judge."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("data", type=Path, help="folder of everyday objects, to judge on")
-    parser.add_argument("--seeds", type=int, default=2, help="generated objects per family, to fit on")
-    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "kinematify-criteria")
-    parser.add_argument("-o", "--output", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    arguments.work.mkdir(parents=True, exist_ok=True)
-    fitted = _simulated(_generated(arguments.seeds), arguments.work / "generated.jsonl")
-    judged = _simulated(_everyday(arguments.data), arguments.work / "everyday.jsonl")
-    _write(fitted, judged, arguments)
+class CriteriaOptions(Options):
+    """What is fitted and judged on."""
+
+    data: str = Field("everyday", description="Folder or set of objects to judge on.")
+    seeds: int = Field(2, ge=1, description="Generated objects per family, to fit on.")
 
 
-# ---- candidates ----------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """Where an object comes from: a family with a seed, or a file."""
+
+    family: str = ""
+    seed: int = 0
+    item: BenchObject | None = None
 
 
-def _generated(seeds: int) -> Iterator[tuple[str, Any]]:
-    """Names with what makes parts and truth; robots and hands are left out, for nothing near-best competes there."""
-    for seed in range(seeds):
-        for family in FAMILIES:
-            if family not in _LINKAGES:
-                yield f"{family}_{seed}", (family, seed)
+def measure(options: CriteriaOptions, work: Work) -> Measured:
+    """Simulate the candidates of generated and of everyday objects, then fit on the former and judge on the latter."""
+    # Robots and hands are left out, for nothing near-best competes there.
+    generated = {
+        f"{family}_{seed}": Source(family=family, seed=seed)
+        for seed in range(options.seeds)
+        for family in FAMILIES
+        if family not in _LINKAGES
+    }
+    everyday = {item.name: Source(item=item) for item in find_objects(options.data)}
+    sets = {"generated": generated, "everyday": everyday}
+    joints = {
+        name: [
+            {"object": item, **joint}
+            for item, record in work.each(simulated, given).items()
+            for joint in record["joints"]
+        ]
+        for name, given in sets.items()
+    }
+    rows = []
+    for name, criterion in {"score alone": lambda candidate: 0.0, **CRITERIA}.items():
+        ours, theirs = (_choices(joints[of], criterion) for of in ("generated", "everyday"))
+        weights, own = _fit(ours), _fit(theirs)
+        rows.append({
+            "criterion": name, "weight": float(weights[1]), "fitted": _share_right(weights, ours),
+            "judged": _share_right(weights, theirs), "loss": _loss(weights, theirs), "loss_own": _loss(own, theirs),
+        })  # fmt: skip
+    return rows, {"joints": {name: _counts(found) for name, found in joints.items()}}
 
 
-def _everyday(data: Path) -> Iterator[tuple[str, Any]]:
-    yield from ((item.name, item.urdf) for item in find_objects(data))
+def simulated(source: Source) -> Record:
+    """Every joint of an object between the right parts, with its near-best candidates."""
+    if source.item is None:
+        blueprint = build(FAMILIES[source.family], {}, seed=source.seed)
+        parts, truth = blueprint.parts, ground_truth(blueprint)
+    else:
+        erased = erased_item(source.item, CONDITIONS[0])
+        parts, truth = erased.parts, erased.truth
+    return {"joints": list(_joints(infer(Assembly(parts=parts, source="benchmark")), truth))}
 
 
-def _made(source: Any) -> tuple[tuple[Part, ...], GroundTruth]:
-    if isinstance(source, tuple):
-        blueprint = build(FAMILIES[source[0]], {}, seed=source[1])
-        return blueprint.parts, ground_truth(blueprint)
-    erased = erase(read_robot(source, geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
-    return erased.parts, erased.truth
-
-
-def _simulated(objects: Iterator[tuple[str, Any]], ledger: Path) -> list[dict[str, Any]]:
-    """The joints of all objects with their simulated candidates, from the file as far as it goes."""
-    wanted = dict(objects)
-    found = [json.loads(line) for line in ledger.read_text().splitlines()] if ledger.is_file() else []
-    done = {item["object"] for item in found}
-    with ledger.open("a", encoding="utf-8") as file:
-        for name, source in wanted.items():
-            if name in done:
-                continue
-            parts, truth = _made(source)
-            inference = infer(Assembly(parts=parts, source="benchmark"))
-            joints = [{"object": name, **joint} for joint in _joints(inference, truth)]
-            found += joints
-            file.writelines(json.dumps(joint) + "\n" for joint in joints)
-            file.flush()
-            print(name, len(joints), flush=True)
-    return [item for item in found if item["object"] in wanted]
-
-
-def _joints(inference: Inference, truth: GroundTruth) -> Iterator[dict[str, Any]]:
+def _joints(inference: Inference, truth: GroundTruth) -> Iterator[Record]:
     """Every joint between the right parts, with its near-best candidates."""
     names, index = inference.assembly.names, {name: k for k, name in enumerate(truth.part_names)}
     true = {(joint.parent, joint.child): joint for joint in truth.joints}
@@ -147,7 +149,7 @@ def _joints(inference: Inference, truth: GroundTruth) -> Iterator[dict[str, Any]
         ]}  # fmt: skip
 
 
-def _measured(plan: Plan, simulator: Simulator, graph: ContactGraph, joint: JointEstimate) -> dict[str, Any]:
+def _measured(plan: Plan, simulator: Simulator, graph: ContactGraph, joint: JointEstimate) -> Record:
     """What moving one joint shows."""
     tried = plan.with_joint(joint)
     part, parent = plan.assembly.parts[joint.child], plan.assembly.parts[joint.parent]
@@ -183,10 +185,7 @@ def _moved(joint: JointEstimate, value: float, points: FloatArray) -> FloatArray
     return points @ T[:3, :3].T + T[:3, 3]
 
 
-# ---- the fit -------------------------------------------------------------------------------------------------------
-
-
-def _choices(joints: Sequence[Mapping[str, Any]], criterion: Any) -> list[tuple[FloatArray, FloatArray]]:
+def _choices(joints: Sequence[Record], criterion: Callable[[Record], float]) -> list[tuple[FloatArray, FloatArray]]:
     """Per joint with something to choose, rows of (score, criterion) and which candidates are right."""
     found = []
     for joint in joints:
@@ -215,41 +214,35 @@ def _share_right(weights: FloatArray, choices: Sequence[tuple[FloatArray, FloatA
     return float(np.mean([right[np.argmax(rows @ weights)] for rows, right in choices]))
 
 
-def _write(fitted: list[dict[str, Any]], judged: list[dict[str, Any]], arguments: argparse.Namespace) -> None:
-    rows = []
-    for name, criterion in {"score alone": lambda c: 0.0, **CRITERIA}.items():
-        ours, theirs = _choices(fitted, criterion), _choices(judged, criterion)
-        weights, own = _fit(ours), _fit(theirs)
-        rows.append({
-            "criterion": name, "weight": float(weights[1]), "fitted": _share_right(weights, ours),
-            "judged": _share_right(weights, theirs), "loss": _loss(weights, theirs), "loss_own": _loss(own, theirs),
-        })  # fmt: skip
-    command = f"python benchmarks/criteria.py {arguments.data.as_posix()} --seeds {arguments.seeds}"
-    counts = {name: _counts(joints) for name, joints in (("generated", fitted), ("everyday", judged))}
-    record = {"schema": 1, "command": command, "joints": counts, "rows": rows}
-    (arguments.output / "refine_criteria.json").write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    text = [
-        "# What simulation could tell of joints", "", f"`{command}`", "",
-        "Every near-best candidate (3 log odds, 8 at most) of every joint between the right parts, simulated by exact",
-        "geometry. Right: the type, and an axis within 10 deg. Each criterion stands beside the score of the inference",
-        "in a conditional logit over the candidates of a joint, with weights from generated objects. Loss: negative",
-        "log likelihood on everyday objects, with those weights, and with the best that everyday objects themselves",
-        "would give, which is a bound and no method. Offered: wrong joints with a right candidate among the near-best.",
-        "Faults: wrong and right joints whose motion the simulation finds fault with.", "",
-        "| | objects | joints | chosen right | offered | faults: wrong / right |",
-        "| --- | --- | --- | --- | --- | --- |",
-        *(f"| {name} | {c['objects']} | {c['joints']} | {c['right']} | {c['offered']} | {c['doubted']} |"
-          for name, c in counts.items()), "",
-        "| criterion | weight | generated right [%] | everyday right [%] | loss | loss with weights of its own |",
-        "| --- | --- | --- | --- | --- | --- |",
-        *(f"| {r['criterion']} | {r['weight']:+.2f} | {100 * r['fitted']:.1f} | {100 * r['judged']:.1f} | "
-          f"{r['loss']:.1f} | {r['loss_own']:.1f} |" for r in rows),
+def report(found: Report[Record]) -> list[str]:
+    """What there was to choose, and what each criterion adds."""
+    counts = [
+        (name, *(str(c[key]) for key in ("objects", "joints", "right", "offered", "doubted")))
+        for name, c in found.summary["joints"].items()
+    ]
+    rows = [
+        (
+            r["criterion"], f"{r['weight']:+.2f}", f"{100 * r['fitted']:.1f}", f"{100 * r['judged']:.1f}",
+            f"{r['loss']:.1f}", f"{r['loss_own']:.1f}",
+        )
+        for r in found.records
     ]  # fmt: skip
-    (arguments.output / "refine_criteria.md").write_text("\n".join(text) + "\n", encoding="utf-8")
-    print("\n".join(text))
+    titles = (
+        "criterion",
+        "weight",
+        "generated right [%]",
+        "everyday right [%]",
+        "loss",
+        "loss with weights of its own",
+    )
+    return [
+        explained(__doc__),
+        table(("", "objects", "joints", "chosen right", "offered", "faults: wrong / right"), counts),
+        table(titles, rows),
+    ]
 
 
-def _counts(joints: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def _counts(joints: Sequence[Record]) -> Record:
     chosen = [next((c for c in joint["candidates"] if c["chosen"]), None) for joint in joints]
     wrong = [k for k, c in enumerate(chosen) if c is None or not c["right"]]
     faulty = [c for c in chosen if c is not None and c["checks"]]
@@ -261,5 +254,4 @@ def _counts(joints: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }  # fmt: skip
 
 
-if __name__ == "__main__":
-    main()
+STUDY = Study(title="What simulation could tell of joints", options=CriteriaOptions, measure=measure, report=report)

@@ -1,91 +1,194 @@
-"""Validate every family of the generator: the models with their true joints, and those inferred from the parts alone.
+"""What does `kinematify validate` say of generated objects, family by family?
 
-Writes results/families.{json,md}. A stopped run goes on where it was stopped, and a later one runs again what a change
-of the code or of a family can have changed.
+The model with the known joints and the model that was inferred from the parts alone are validated; shares count models
+without any error. In brackets: in how many objects a check says so. Angle, types and TED compare the inferred joints
+with the known ones, as `kinematify bench` does: mean over the joints of an object, then over objects; types over all
+joints.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import multiprocessing
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections import Counter
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from statistics import fmean
+from typing import TYPE_CHECKING, Annotated
 
+from pydantic import Field
+
+from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.studies.generated.job import run_job
-from kinematify.evaluation.studies.generated.tables import write_tables
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, among, by, explained
+from kinematify.evaluation.truth import score_blueprint
 from kinematify.generate.procedural.families import FAMILIES
-from kinematify.validation.environment import environment
+from kinematify.generate.procedural.family import build
+from kinematify.model.urdf import write_urdf
+from kinematify.pipeline import infer
+from kinematify.pipeline.generate import true_model
+from kinematify.validation.finding import Severity
+from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
-    from kinematify.evaluation.studies.generated.job import Result
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.config.validation import ValidationSettings
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
+    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.pipeline import Inference
+
+_BUDGET = 1800.0
+"""Seconds for one model; on a free machine it takes ten."""
+_WHOSE = ("truth", "inferred")
+_TITLES = (
+    "family", "objects", "joints", "truth without error", "inferred without error", "errors of the truth",
+    "errors of the inferred", "angle [deg]", "types", "TED", "seconds",
+)  # fmt: skip
 
 
-def main() -> None:
-    """Run the whole benchmark, or go on where it was stopped."""
-    arguments = _arguments()
-    families = arguments.families or list(FAMILIES)
-    ledger = arguments.work / "ledger.jsonl"
-    arguments.work.mkdir(parents=True, exist_ok=True)
-    done = _read(ledger)
+class FamiliesOptions(Options):
+    """Which objects."""
+
+    seeds: int = Field(20, ge=1, description="Objects per family.")
+    families: Annotated[tuple[str, ...], among(FAMILIES)] = Field(
+        (), description="Only these families, separated by commas."
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """One object of a family."""
+
+    family: str
+    seed: int
+
+
+def measure(options: FamiliesOptions, work: Work) -> Measured:
+    """Validate and infer every object."""
     # Seeds outside: what an early stop leaves says something of every family.
-    wanted = [(family, seed) for seed in range(arguments.seeds) for family in families]
+    asked = [
+        Drawn(family=family, seed=seed) for seed in range(options.seeds) for family in options.families or FAMILIES
+    ]
+    named = {f"{drawn.family} {drawn.seed}": drawn for drawn in asked}
+    return list(work.each(validated_twice, named, timeout=3.0 * _BUDGET).values()), {}
+
+
+def validated_twice(drawn: Drawn) -> Record:
+    """Build an object, validate its true and its inferred model, and compare the joints."""
     start = time.perf_counter()
-    if not arguments.tables_only:
-        _run(wanted, done, ledger, arguments.workers)
-    chosen = f" --families {' '.join(arguments.families)}" if arguments.families else ""
-    results = [done[job] for job in wanted if job in done]
-    facts = environment(load_settings(), seconds=time.perf_counter() - start, interrupted=len(results) < len(wanted))
-    command = f"python benchmarks/families.py --seeds {arguments.seeds}{chosen}"
-    print(write_tables(results, facts, arguments.output, command=command, wanted=len(wanted)))
+    blueprint = build(FAMILIES[drawn.family], {}, seed=drawn.seed, name=f"{drawn.family}_{drawn.seed}")
+    config = load_config()
+    record: Record = {"family": drawn.family, "seed": drawn.seed, "joints": len(blueprint.joints)}
+    record["truth"] = _validated(true_model(blueprint, config))
+    try:
+        inference = infer(blueprint.assembly, config=config)
+    except Exception as error:  # an object without an answer counts against its family
+        fault = {"check": "no answer", "where": "", "message": f"{type(error).__name__}: {error}"}
+        record |= {"inferred": {"errors": [fault], "seconds": 0.0}, "accuracy": _accuracy(blueprint, None)}
+    else:
+        record |= {"inferred": _validated(inference.model), "accuracy": _accuracy(blueprint, inference)}
+    return {**record, "seconds": time.perf_counter() - start}
 
 
-def _run(wanted: list[tuple[str, int]], done: dict[tuple[str, int], Result], ledger: Path, workers: int) -> None:
-    """Run the objects that have no result yet, or an old one; every result is kept at once."""
-    start = time.perf_counter()
-    # Not a pool of `multiprocessing`, whose processes must not start others, as validation does.
-    context = multiprocessing.get_context("spawn")
-    with ledger.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers, mp_context=context) as pool:
-        futures = {pool.submit(run_job, *job, done[job]["key"] if job in done else None): job for job in wanted}
-        for number, future in enumerate(as_completed(futures), start=1):
-            result = future.result()
-            if result is not None:
-                done[futures[future]] = result
-                file.write(json.dumps(result) + "\n")
-                file.flush()
-                _tell(result)
-            if number % 20 == 0 or number == len(wanted):
-                print(f"{number} of {len(wanted)}, {time.perf_counter() - start:.0f} s", flush=True)
+def _validated(model: KinematicModel) -> Record:
+    with tempfile.TemporaryDirectory() as folder:
+        write_urdf(model, Path(folder))
+        report = validate(Path(folder, "model.urdf"), settings=_patient(), workers=1)
+    errors = [
+        {
+            "check": item.check,
+            "where": item.joint or item.link or " - ".join(item.pair or ()),
+            "message": item.message,
+        }
+        for item in report.counted
+        if item.severity is Severity.ERROR
+    ]
+    return {"errors": errors, "seconds": float(report.environment["seconds"])}
 
 
-def _tell(result: Result) -> None:
-    for whose in ("truth", "inferred"):
-        for error in result[whose]["errors"]:
-            print(f"{result['family']} {result['seed']} {whose}: {error['check']} {error['where']}", flush=True)
+@cache
+def _patient() -> ValidationSettings:
+    """The shipped thresholds; what a check says of a model must not hang on how busy the machine is."""
+    settings = load_settings()
+    budget = settings.budget.model_copy(update={"seconds": _BUDGET, "stage_seconds": _BUDGET})
+    return settings.model_copy(update={"budget": budget})
 
 
-def _read(ledger: Path) -> dict[tuple[str, int], Result]:
-    if not ledger.is_file():
-        return {}
-    lines = [line for line in ledger.read_text(encoding="utf-8").splitlines() if line.endswith("}")]
-    return {(result["family"], result["seed"]): result for result in map(json.loads, lines)}
+def _accuracy(blueprint: Blueprint, inference: Inference | None) -> dict[str, float]:
+    if inference is None:
+        return {"angle_deg": 90.0, "types_right": 0, "ted": len(blueprint.parts)}
+    score = score_blueprint(blueprint, inference)
+    return {
+        "angle_deg": sum(joint.angle_deg for joint in score.joints) / max(len(score.joints), 1),
+        "types_right": sum(joint.type_right for joint in score.joints),
+        "ted": float(score.ted.value),
+    }
 
 
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=20, help="objects per family")
-    parser.add_argument("--families", nargs="+", choices=list(FAMILIES), metavar="NAME", help="only these")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "kinematify-families",
-                        help="folder for the results so far")  # fmt: skip
-    parser.add_argument("--tables-only", action="store_true", help="write the tables of the results so far")
-    parser.add_argument("-o", "--output", type=Path, default=Path("results"))
-    return parser.parse_args()
+def report(found: Report[Record]) -> list[str]:
+    """The families, the worst first, and every kind of error with an example."""
+    groups = by(found.records, "family")
+    numbers = {name: _numbers(group) for name, group in groups.items()}
+    worst = sorted(groups, key=lambda name: (sum(numbers[name][w] for w in _WHOSE), -numbers[name]["angle_deg"], name))
+    rows = [_row(name, numbers[name]) for name in worst]
+    return [
+        explained(__doc__),
+        table(_TITLES, [*rows, _row("**all**", _numbers(found.records))]),
+        "## One example of each error",
+        "\n".join(_examples([record for name in worst for record in groups[name]])) or "None.",
+    ]
 
 
-if __name__ == "__main__":
-    main()
+def _numbers(records: Sequence[Record]) -> Record:
+    joints = sum(record["joints"] for record in records)
+    return {
+        "objects": len(records),
+        "joints": joints,
+        **{whose: fmean(not record[whose]["errors"] for record in records) for whose in _WHOSE},
+        **{f"{whose}_errors": _checks(records, whose) for whose in _WHOSE},
+        "angle_deg": fmean(record["accuracy"]["angle_deg"] for record in records),
+        "types": sum(record["accuracy"]["types_right"] for record in records) / max(joints, 1),
+        "ted": fmean(record["accuracy"]["ted"] for record in records),
+        "seconds": fmean(record["seconds"] for record in records),
+    }
+
+
+def _checks(records: Sequence[Record], whose: str) -> Counter[str]:
+    """In how many objects each check has an error."""
+    return Counter(check for record in records for check in sorted({e["check"] for e in record[whose]["errors"]}))
+
+
+def _row(name: str, numbers: Record) -> tuple[str, ...]:
+    return (
+        name,
+        str(numbers["objects"]),
+        str(numbers["joints"]),
+        *(f"{numbers[whose]:.0%}" for whose in _WHOSE),
+        *(_counted(numbers[f"{whose}_errors"]) for whose in _WHOSE),
+        f"{numbers['angle_deg']:.2f}",
+        f"{numbers['types']:.1%}",
+        f"{numbers['ted']:.2f}",
+        f"{numbers['seconds']:.1f}",
+    )
+
+
+def _counted(checks: Mapping[str, int]) -> str:
+    return ", ".join(f"{check} ({count})" for check, count in sorted(checks.items(), key=lambda item: -item[1])) or "-"
+
+
+def _examples(records: Sequence[Record]) -> list[str]:
+    first: dict[tuple[str, str, str], str] = {}
+    for record in records:
+        for whose in _WHOSE:
+            for error in record[whose]["errors"]:
+                place = f"{record['family']}, seed {record['seed']}, {whose}, {error['check']}, {error['where']}"
+                first.setdefault((record["family"], whose, error["check"]), f"- {place}: {error['message']}")
+    return list(first.values())
+
+
+STUDY = Study(title="Generated objects, validated", options=FamiliesOptions, measure=measure, report=report)

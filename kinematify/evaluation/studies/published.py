@@ -1,23 +1,30 @@
-"""Validate models that nobody planted a fault in: the benchmark's, and URDFs that PyBullet's data package ships.
+"""What does `kinematify validate` say of models that nobody planted a fault in?
 
-Writes results/validate_published.{json,md}: every error by check and place, and how many warnings there are. What the
-errors mean, one by one, stands in docs/validate.md.
+All checks, models as they are: those of the benchmark, and URDFs that PyBullet's data package ships. Most of the
+benchmark's have neither mass nor collision geometry, which KV201 and KV240 warn of. What the errors mean, one by one,
+stands in docs/validate.md.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import time
 from collections import Counter
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pybullet_data
+from pydantic import Field
 
 from kinematify.evaluation.datasets import find_objects
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, by, explained
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import validate
+
+if TYPE_CHECKING:
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
 
 SHIPPED = (
     "a1/a1", "aliengo/aliengo", "bicycle/bike", "biped/biped2d_pybullet", "cartpole", "differential/diff_ring",
@@ -29,88 +36,70 @@ SHIPPED = (
 """Articulated models of the package pybullet_data, without ``.urdf``."""
 
 
+class PublishedOptions(Options):
+    """Which models."""
+
+    data: str | None = Field(None, description="Folder or set of models; the benchmark's if not given.")
+
+
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
-    """What was said of one model."""
+class Published:
+    """One model."""
 
     model: str
     source: str
-    seconds: float
-    errors: tuple[tuple[str, str], ...]
-    """Check, and the joint, link or pair that it names."""
-    warnings: dict[str, int]
-    """Number by check."""
-    blocked: int
+    urdf: Path
 
 
-def main() -> None:
-    """Validate one model after the other, each with all checks."""
-    arguments = _arguments()
-    models = [("benchmark", item.name, item.urdf) for item in find_objects(arguments.data)]
+def measure(options: PublishedOptions, work: Work) -> Measured:
+    """Validate one model after the other, for the times."""
+    models = [Published(model=item.name, source="benchmark", urdf=item.urdf) for item in find_objects(options.data)]
     folder = Path(pybullet_data.getDataPath())
-    models += [("pybullet_data", name, folder / f"{name}.urdf") for name in SHIPPED]
-    found = []
-    for source, name, urdf in models:
-        found.append(_verdict(source, name, urdf))
-        print(f"{name}: {found[-1].seconds:.1f} s, {len(found[-1].errors)} errors", flush=True)
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    values = {"schema": 1, "models": [asdict(item) for item in found]}
-    (arguments.output / "validate_published.json").write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-    (arguments.output / "validate_published.md").write_text(_markdown(found), encoding="utf-8")
+    models += [Published(model=name, source="pybullet_data", urdf=folder / f"{name}.urdf") for name in SHIPPED]
+    return list(work.each(verdict_on, {model.model: model for model in models}, workers=1).values()), {}
 
 
-def _verdict(source: str, name: str, urdf: Path) -> Verdict:
+def verdict_on(model: Published) -> Record:
+    """Validate one model: errors with the joint, link or pair that they name, and the number of warnings by check."""
     start = time.perf_counter()
-    report = validate(urdf)
+    report = validate(model.urdf)
     errors = [finding for finding in report.findings if finding.severity is Severity.ERROR]
     warnings = Counter(finding.check for finding in report.findings if finding.severity is Severity.WARNING)
-    places = [(item.check, item.joint or item.link or " and ".join(item.pair or ())) for item in errors]
-    return Verdict(
-        model=name,
-        source=source,
-        seconds=round(time.perf_counter() - start, 1),
-        errors=tuple(places),
-        warnings=dict(sorted(warnings.items())),
-        blocked=sum(check.status is Status.BLOCKED for check in report.checks),
-    )
+    return {
+        "model": model.model,
+        "source": model.source,
+        "seconds": round(time.perf_counter() - start, 1),
+        "errors": [[item.check, item.joint or item.link or " and ".join(item.pair or ())] for item in errors],
+        "warnings": dict(sorted(warnings.items())),
+        "blocked": sum(check.status is Status.BLOCKED for check in report.checks),
+    }
 
 
-def _markdown(found: list[Verdict]) -> str:
-    about = (
-        "Written by `python benchmarks/published.py`: all checks, models as they are. Most of the benchmark's have "
-        "neither mass nor collision geometry, which KV201 and KV240 warn of."
-    )
-    parts = ["# What `kinematify validate` says of published models", "", about]
-    for source in dict.fromkeys(item.source for item in found):
-        mine = [item for item in found if item.source == source]
-        wrong = sum(bool(item.errors) for item in mine)
-        parts += [
-            "",
-            f"## {source}: {wrong} of {len(mine)} models with errors",
-            "",
-            "| model | time [s] | errors | warnings | checks that a fault blocks |",
-            "|---|---|---|---|---|",
-            *(_line(item) for item in mine),
+def report(found: Report[Record]) -> list[str]:
+    """One line per model."""
+    blocks = [explained(__doc__)]
+    for source, records in by(found.records, "source").items():
+        wrong = sum(bool(record["errors"]) for record in records)
+        blocks += [
+            f"## {source}: {wrong} of {len(records)} models with errors",
+            table(("model", "time [s]", "errors", "warnings", "checks that a fault blocks"), map(_row, records)),
         ]
-    return "\n".join(parts) + "\n"
+    return blocks
 
 
-def _line(item: Verdict) -> str:
-    counts = Counter(check for check, _ in item.errors)
+def _row(record: Record) -> tuple[str, ...]:
+    counts = Counter(check for check, _ in record["errors"])
     errors = ", ".join(
-        f"{check} ({'; '.join(place for name, place in item.errors if name == check) if count < 4 else count})"
+        f"{check} ({'; '.join(place for name, place in record['errors'] if name == check) if count < 4 else count})"
         for check, count in counts.items()
     )
-    warnings = ", ".join(f"{check} x {count}" if count > 1 else check for check, count in item.warnings.items())
-    return f"| {item.model} | {item.seconds} | {errors} | {warnings} | {item.blocked or ''} |"
+    warnings = ", ".join(f"{check} x {count}" if count > 1 else check for check, count in record["warnings"].items())
+    return record["model"], str(record["seconds"]), errors, warnings, str(record["blocked"] or "")
 
 
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path, help="folder of models, the benchmark's if absent")
-    parser.add_argument("-o", "--output", type=Path, default=Path("results"))
-    return parser.parse_args()
-
-
-if __name__ == "__main__":
-    main()
+STUDY = Study(
+    title="What `kinematify validate` says of published models",
+    options=PublishedOptions,
+    measure=measure,
+    report=report,
+)

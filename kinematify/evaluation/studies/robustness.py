@@ -1,85 +1,118 @@
-"""Validate corrupted models and count how the runs end: each must end in time with a report or a refusal.
+"""Does a broken file break `kinematify validate`?
 
-Writes results/validate_robustness.{json,md}. A stopped run goes on where it was stopped.
+Valid models are corrupted, one way at a time. *Passes* and *fails* are reports (exit status 0 and 1, written in every
+format), *no URDF* is a refusal with a remedy (exit status 2); all else is a defect.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import tempfile
-import time
-from pathlib import Path
+from collections import Counter
+from typing import TYPE_CHECKING
 
-from kinematify.evaluation.studies.corruption.bases import all_bases
-from kinematify.evaluation.studies.corruption.cases import kinds_of
-from kinematify.evaluation.studies.corruption.runner import Plan, hurried, run_cases
-from kinematify.evaluation.studies.corruption.tables import BAD, write_tables
+import numpy as np
+from pydantic import Field
+
+from kinematify.evaluation.corruption.bases import all_bases
+from kinematify.evaluation.corruption.cases import KINDS
+from kinematify.evaluation.corruption.validation import READY, CorruptionTask, run_case
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, explained
 from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.environment import environment
+
+if TYPE_CHECKING:
+    from kinematify.evaluation.pool import Failure
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
+
+BAD = ("crash", "timeout", "error")
+_GRACE = 15.0
+"""Seconds beyond the budget of a run, for starting and writing, after which it hangs."""
 
 
-def main() -> None:
-    """Run the whole benchmark, or go on where it was stopped."""
-    arguments = _arguments()
-    work = arguments.work.resolve()
-    work.mkdir(parents=True, exist_ok=True)
-    bases = all_bases(work / "bases", arguments.data)
-    print(f"{len(bases)} valid models in {work}")
-    selected = frozenset(check for check in CATALOGUE if check.startswith(tuple(arguments.checks)))
-    plan = Plan(seed=arguments.seed, bases=tuple(bases), settings=hurried(arguments.seconds), selected=selected)
-    ledger = work / f"ledger-{arguments.seed}.jsonl"
-    if arguments.fresh:
-        ledger.unlink(missing_ok=True)
-    wanted = arguments.cases or range(arguments.count)
-    done = {number: result for number, result in _read(ledger).items() if number in set(wanted)}
-    left = [number for number in wanted if number not in done]
-    kinds = kinds_of(max(wanted) + 1)
-    start = time.perf_counter()
-    with ledger.open("a", encoding="utf-8") as file:
-        for result in run_cases(left, plan, arguments.workers):
-            result.setdefault("kind", kinds[result["number"]])
-            result.setdefault("base", "?")
-            done[result["number"]] = result
-            file.write(json.dumps(result) + "\n")
-            file.flush()
-            _tell(result, len(done), len(wanted), time.perf_counter() - start)
-    command = f"python benchmarks/robustness.py --count {len(done)} --seed {arguments.seed}"
-    seconds = sum(result["seconds"] for result in done.values())
-    facts = environment(plan.settings, seconds=seconds, interrupted=False)
-    print(write_tables([done[number] for number in sorted(done)], facts, arguments.output, command=command))
+class RobustnessOptions(Options):
+    """Which corruptions."""
+
+    data: str | None = Field(None, description="Folder or set of models; the benchmark's if not given.")
+    count: int = Field(2000, ge=1, description="Corrupted models.")
+    cases: tuple[int, ...] = Field((), description="Numbers of single cases to run instead, separated by commas.")
+    seed: int = Field(0, description="Draws the corruptions.")
+    seconds: float = Field(60.0, gt=0.0, description="Time budget of one validation.")
+    checks: tuple[str, ...] = Field(("KV",), description="Beginnings of the ids of checks, separated by commas.")
 
 
-def _tell(result: dict, count: int, total: int, seconds: float) -> None:
-    if result["outcome"] in BAD or result.get("unexplained"):
-        print(f"case {result['number']} ({result['kind']}, {result['base']}): {result['outcome']} {result['message']} "
-              f"{result.get('unexplained', '')}", flush=True)  # fmt: skip
-    if count % 25 == 0 or count == total:
-        print(f"{count} of {total}, {seconds:.0f} s", flush=True)
+def measure(options: RobustnessOptions, work: Work) -> Measured:
+    """Validate every corrupted model."""
+    bases = tuple(all_bases(work.folder / "bases", options.data))
+    selected = tuple(check for check in CATALOGUE if check.startswith(options.checks))
+    wanted = options.cases or tuple(range(options.count))
+    asked = {
+        str(number): CorruptionTask(
+            number=number, seed=options.seed, bases=bases, seconds=options.seconds, selected=selected
+        )
+        for number in wanted
+    }
+
+    def failed(name: str, failure: Failure) -> Record:
+        facts = {"number": int(name), "kind": KINDS[int(name) % len(KINDS)], "base": "?", "outcome": failure.status}
+        return {**facts, "message": failure.message, "seconds": failure.seconds}
+
+    records = work.each(run_case, asked, timeout=options.seconds + _GRACE, reuse=100, failed=failed)
+    return counted(list(records.values()))
 
 
-def _read(ledger: Path) -> dict[int, dict]:
-    if not ledger.is_file():
-        return {}
-    lines = ledger.read_text(encoding="utf-8").splitlines()
-    return {result["number"]: result for result in map(json.loads, (line for line in lines if line.endswith("}")))}
+def counted(records: list[Record]) -> Measured:
+    """Keep of a record what tells; thousands end as they should."""
+    seconds = [record["seconds"] for record in records]
+    told = [record for record in records if record["outcome"] in BAD or record.get("unexplained")]
+    by_kind = {kind: [record for record in records if record["kind"] == kind] for kind in KINDS}
+    return told or records[:1], {
+        "cases": len(records),
+        "outcomes": dict(Counter(record["outcome"] for record in records)),
+        "by_kind": {kind: dict(Counter(record["outcome"] for record in group)) for kind, group in by_kind.items()},
+        "seconds": {
+            "median": float(np.median(seconds)), "95 %": float(np.percentile(seconds, 95)), "longest": max(seconds),
+        },
+    }  # fmt: skip
 
 
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path, help="folder of models, the benchmark's if absent")
-    parser.add_argument("--count", type=int, default=2000)
-    parser.add_argument("--cases", type=int, nargs="+", help="numbers of single cases to run instead")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--seconds", type=float, default=60.0, help="time budget of one run")
-    parser.add_argument("--checks", nargs="+", default=["KV"], help="beginnings of the ids of checks, all if absent")
-    parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--fresh", action="store_true", help="forget the results of earlier runs")
-    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "kinematify-robustness",
-                        help="folder for the models and results so far")  # fmt: skip
-    parser.add_argument("-o", "--output", type=Path, default=Path("results"))
-    return parser.parse_args()
+def report(found: Report[Record]) -> list[str]:
+    """Outcomes by kind of corruption, and every failure."""
+    columns = (*READY, *BAD)
+    summary = found.summary
+    rows = [
+        (kind, str(sum(counts.values())), *(str(counts.get(name, 0)) for name in columns))
+        for kind, counts in [*summary["by_kind"].items(), ("**all**", summary["outcomes"])]
+    ]
+    inside = [record for record in found.records if record.get("unexplained")]
+    reasons = Counter(reason for record in inside for reason in record["unexplained"])
+    seconds = summary["seconds"]
+    return [
+        f"{summary['cases']} corruptions of valid models. " + explained(__doc__),
+        (
+            f"Time of a run: median {seconds['median']:.2f} s, 95 % below {seconds['95 %']:.1f} s, longest "
+            f"{seconds['longest']:.1f} s. In {len(inside)} runs an isolated stage or check gave way, which the report "
+            "says."
+        ),
+        table(("corruption", "cases", *columns), rows),
+        *(["## Failures", "\n".join(f"- {line}" for line in faults(found))] if faults(found) else []),
+        *(["## Stages and checks that gave way, isolated"] if reasons else []),
+        "\n".join(f"- {count} times {reason}" for reason, count in reasons.most_common(30)),
+    ]
 
 
-if __name__ == "__main__":
-    main()
+def faults(found: Report[Record]) -> list[str]:
+    """Every run that ended otherwise than with a report or a refusal."""
+    return [
+        f"{r['number']} ({r['kind']}, {r['base']}): {r['outcome']}, {r['message'][-300:]}"
+        for r in found.records
+        if r["outcome"] in BAD
+    ]
+
+
+STUDY = Study(
+    title="Robustness of `kinematify validate`",
+    options=RobustnessOptions,
+    measure=measure,
+    report=report,
+    faults=faults,
+)

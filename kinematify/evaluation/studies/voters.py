@@ -1,28 +1,27 @@
-"""What a vision model that is right in so many of a hundred answers would be worth: results/voters.{json,md}.
+"""What would votes of a vision model be worth that is right in so many of a hundred answers?
 
-The voters are simulated: they know the truth, and answer wrongly at random as often as they are told to. It is a bound
-on what a real model could add, not a measurement of one, and no inference ever sees these answers elsewhere.
+**The voters are simulated**: they know the truth and are wrong at random as often as stated (5 draws each), on every
+joint for itself; they say how sure they are, honestly but for those of whom the table says otherwise. Votes are added
+as log odds by `configs/default.yaml`, section `vision`. Objects at rest, end to end; axis angles are means over an
+object's joints, then over objects. It is a bound on what a real model could add: none was asked, and no inference ever
+sees these answers elsewhere.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from pydantic import Field
 
-from kinematify.assembly.erase import erase
-from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
-from kinematify.evaluation.datasets import CONDITIONS, find_objects
-from kinematify.evaluation.metrics import score_object
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
+from kinematify.evaluation.job import erased_item, score_erased, shown_parts
 from kinematify.evaluation.prediction import prediction_of
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, explained
 from kinematify.joints.candidate import JointCandidate
 from kinematify.pipeline import infer
-from kinematify.robot.read import read_robot
 from kinematify.vision.answer import TYPES, Direction, JointVotes, Side, Vote
 from kinematify.vision.votes import chosen_anew, direction_of, side_of
 
@@ -31,64 +30,59 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import VisionConfig
-    from kinematify.evaluation.metrics import ObjectScore
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.pipeline import Inference
 
+_NOBODY = "nobody"
 _VOTERS = ((1.0, 1.0), (0.9, 0.9), (0.8, 0.8), (0.8, 0.95))
 """How often a voter is right, and how often it says it is."""
 _DRAWS = 5
-_INTRODUCTION = (
-    "`python benchmarks/voters.py ../shared/bench/everyday`: {objects} objects at rest, end to end. **The voters are "
-    "simulated**: they know the truth and are wrong at random as often as stated ({draws} draws each), on every joint "
-    "for itself; they say how sure they are, honestly but for those of whom the table says otherwise. Votes are added "
-    "as log odds by `configs/default.yaml`, section `vision`. No real model was asked."
-)
 _QUESTIONS = ("type", "direction", "side")
-
 _CHOICES = {"type": TYPES, "direction": tuple(Direction), "side": tuple(Side)}
 
 
-@dataclass(frozen=True)
-class Row:
-    """One voter over all objects."""
+class VotersOptions(Options):
+    """Which objects."""
 
-    voter: str
-    angle_deg: float
-    """Mean over an object's joints, then over objects."""
-    types: float
+    data: str = Field("everyday", description="Folder or set of objects.")
+    most: int | None = Field(None, ge=1, description="So many objects.")
 
 
-def main() -> None:
-    """Infer every object once, then let voters of all kinds vote on it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("data", type=Path, help="folder of the benchmark")
-    parser.add_argument("--output", type=Path, default=Path("results"))
-    parser.add_argument("--most", type=int, help="so many objects")
-    arguments = parser.parse_args()
-    config = load_config()
-    scores: dict[str, list[list[ObjectScore]]] = {}
-    for item in find_objects(arguments.data)[: arguments.most]:
-        erased = erase(read_robot(item.urdf, geometry="shown"), pose="rest", seed=CONDITIONS[0].seed, yaw_deg=0.0)
-        inference = infer(Assembly(parts=erased.parts, source="benchmark"), config=config)
-        _add(scores, "nobody", [_score(erased, inference)])
-        for questions in (("type",), ("direction",), _QUESTIONS):
-            for voter in _VOTERS:
-                rng = np.random.default_rng([11, round(100 * voter[0]), len(questions)])
-                draws = 1 if voter[0] == 1.0 else _DRAWS
-                found = [_voted(erased, inference, questions, voter, rng) for _ in range(draws)]
-                _add(scores, _name(questions, voter), found)
-        print(item.name, flush=True)
-    rows = [_row(voter, objects) for voter, objects in scores.items()]
-    _write(rows, len(scores["nobody"]), arguments.output)
+def measure(options: VotersOptions, work: Work) -> Measured:
+    """Let voters of all kinds vote on every object."""
+    objects = {item.name: item for item in find_objects(options.data)[: options.most]}
+    records = list(work.each(voted_on, objects).values())
+    rows = [
+        {
+            "voter": voter,
+            **{name: float(np.mean([r["voters"][voter][name] for r in records])) for name in ("angle_deg", "types")},
+        }
+        for voter in (records[0]["voters"] if records else ())
+    ]
+    return records, {"objects": len(records), "rows": rows}
+
+
+def voted_on(item: BenchObject) -> Record:
+    """Infer one object once, then let voters of all kinds vote on it."""
+    erased = erased_item(item, CONDITIONS[0])
+    inference = infer(shown_parts(erased), config=load_config())
+    found = {_NOBODY: [_errors(erased, inference)]}
+    for questions in (("type",), ("direction",), _QUESTIONS):
+        for voter in _VOTERS:
+            rng = np.random.default_rng([11, round(100 * voter[0]), len(questions)])
+            draws = 1 if voter[0] == 1.0 else _DRAWS
+            found[_name(questions, voter)] = [_voted(erased, inference, questions, voter, rng) for _ in range(draws)]
+    means = {voter: np.mean(draws, axis=0).tolist() for voter, draws in found.items()}
+    return {
+        "object": item.name,
+        "voters": {voter: {"angle_deg": angle, "types": types} for voter, (angle, types) in means.items()},
+    }
 
 
 def _name(questions: tuple[str, ...], voter: tuple[float, float]) -> str:
     right, says = voter
     return f"{' and '.join(questions)}, {right:.0%} right{'' if says == right else f', says {says:.0%}'}"
-
-
-def _add(scores: dict[str, list[list[ObjectScore]]], voter: str, found: list[ObjectScore]) -> None:
-    scores.setdefault(voter, []).append(found)
 
 
 def _voted(
@@ -97,7 +91,7 @@ def _voted(
     questions: tuple[str, ...],
     voter: tuple[float, float],
     rng: np.random.Generator,
-) -> ObjectScore:
+) -> tuple[float, float]:
     """Score an inference after one voter has voted on all joints whose parts stand in the truth."""
     index = {name: k for k, name in enumerate(erased.truth.part_names)}
     truth = {(joint.parent, joint.child): joint for joint in erased.truth.joints}
@@ -109,7 +103,7 @@ def _voted(
             right = _right(true, inference.assembly.parts[joint.child], inference.config.vision)
             cast = {name: _cast(right[name], _CHOICES[name], voter, rng) for name in questions}
             votes[k] = JointVotes(kind=cast.get("type"), direction=cast.get("direction"), side=cast.get("side"))
-    return _score(erased, chosen_anew(inference, votes)[0])
+    return _errors(erased, chosen_anew(inference, votes)[0])
 
 
 def _right(true: TrueJoint, part: Part, config: VisionConfig) -> dict[str, str | None]:
@@ -134,37 +128,23 @@ def _cast(
     return Vote(choice=str(right if draw < rate else wrong[other]), confidence=min(says, 0.99))
 
 
-def _score(erased: ErasedModel, inference: Inference) -> ObjectScore:
+def _errors(erased: ErasedModel, inference: Inference) -> tuple[float, float]:
+    """Mean axis angle [deg] and share of types that are right."""
     index = {name: k for k, name in enumerate(erased.truth.part_names)}
-    return score_object(
-        erased.truth,
-        prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index),
-        centroids=[part.centroid for part in erased.parts],
-        diagonal=erased.assembly.diagonal,
-    )
+    prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index)
+    joints = score_erased(erased, prediction).joints
+    return float(np.mean([j.angle_deg for j in joints])), float(np.mean([j.type_right for j in joints]))
 
 
-def _row(voter: str, objects: list[list[ObjectScore]]) -> Row:
-    angles = [np.mean([np.mean([j.angle_deg for j in score.joints]) for score in draws]) for draws in objects]
-    types = [np.mean([np.mean([j.type_right for j in score.joints]) for score in draws]) for draws in objects]
-    return Row(voter, float(np.mean(angles)), float(np.mean(types)))
-
-
-def _write(rows: list[Row], objects: int, folder: Path) -> None:
-    lines = [
-        "# What votes of a vision model would be worth",
-        "",
-        _INTRODUCTION.format(objects=objects, draws=_DRAWS),
-        "",
-        "| voter | axis angle [deg] | types [%] |",
-        "| --- | --- | --- |",
-        *(f"| {row.voter} | {row.angle_deg:.2f} | {100.0 * row.types:.1f} |" for row in rows),
+def report(found: Report[Record]) -> list[str]:
+    """One line per voter."""
+    rows = [(row["voter"], f"{row['angle_deg']:.2f}", f"{100.0 * row['types']:.1f}") for row in found.summary["rows"]]
+    return [
+        f"{found.summary['objects']} objects. " + explained(__doc__),
+        table(("voter", "axis angle [deg]", "types [%]"), rows),
     ]
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "voters.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    values = {"schema": 1, "objects": objects, "rows": [row.__dict__ for row in rows]}
-    (folder / "voters.json").write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
 
 
-if __name__ == "__main__":
-    main()
+STUDY = Study(
+    title="What votes of a vision model would be worth", options=VotersOptions, measure=measure, report=report
+)

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.evaluation.studies.corruption import meshes, text
+from kinematify.evaluation.corruption import meshes, text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.evaluation.studies.corruption.bases import Base
+    from kinematify.evaluation.corruption.bases import Base
 
 KINDS = (*text.CORRUPTIONS, *meshes.CORRUPTIONS)
 _BUILT_SHARE = 0.5
@@ -50,8 +49,3 @@ def write_case(number: int, seed: int, bases: Sequence[Base], folder: Path) -> C
         # A model without mesh files loses bytes of its text instead.
         urdf.write_bytes(text.CORRUPTIONS.get(kind, text.flip_bits)(base.text, random))
     return Case(number=number, kind=kind, base=base.name, urdf=urdf)
-
-
-def kinds_of(count: int) -> list[str]:
-    """Kind of each of the first `count` cases."""
-    return list(itertools.islice(itertools.cycle(KINDS), count))

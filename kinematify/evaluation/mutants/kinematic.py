@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.evaluation.studies.mutants.base import link_part, words
-from kinematify.evaluation.studies.mutants.fault import Fault, Planted
+from kinematify.evaluation.mutants.base import link_part, words
+from kinematify.evaluation.mutants.fault import Fault, Planted
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 from kinematify.robot.transforms import rotation_about

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import trimesh
@@ -11,7 +11,7 @@ from lxml import etree
 
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
-from kinematify.evaluation.studies.mutants.base import write_base
+from kinematify.evaluation.mutants.base import write_base
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,7 +64,7 @@ class Base:
     """A valid model."""
 
     name: str
-    text: bytes
+    text: bytes = field(repr=False)
     """The URDF."""
     meshes: dict[str, Path]
     """File of every mesh by the path that the URDF writes."""
@@ -79,7 +79,7 @@ def built_base(folder: Path) -> Base:
         name = f"meshes/drawer.{suffix}"
         mesh = trimesh.creation.box(extents=(0.4, 0.36, 0.1))
         if suffix == "gltf":
-            for file, content in trimesh.Scene(mesh).export(file_type="gltf").items():
+            for file, content in trimesh.Scene(mesh).export(file_type="gltf").items():  # type: ignore[no-untyped-call]
                 (folder / "meshes" / file.replace("model.gltf", "drawer.gltf")).write_bytes(content)
                 meshes[f"meshes/{file.replace('model.gltf', 'drawer.gltf')}"] = folder / "meshes" / file
         else:
@@ -91,12 +91,12 @@ def built_base(folder: Path) -> Base:
     return Base(name="drawers", text="".join([*parts, "</robot>\n"]).encode(), meshes=meshes)
 
 
-def all_bases(folder: Path, data: Path | None) -> list[Base]:
+def all_bases(folder: Path, data: str | Path | None) -> list[Base]:
     """The built model and the small ones of the benchmark, with mass and collision geometry.
 
     Args:
         folder: Where to write them.
-        data: Folder of models; the benchmark's if absent. Without any, the built model stays alone.
+        data: As `find_objects` takes it. Without any, the built model stays alone.
     """
     bases = [built_base(folder / "drawers")]
     try:

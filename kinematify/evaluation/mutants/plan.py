@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.evaluation.studies.mutants.base import write_model
-from kinematify.evaluation.studies.mutants.file_defects import FILE_DEFECTS, moving_links
-from kinematify.evaluation.studies.mutants.kinematic import KINEMATIC_FAULTS, movable_joints
+from kinematify.evaluation.mutants.base import write_model
+from kinematify.evaluation.mutants.file_defects import FILE_DEFECTS, moving_links
+from kinematify.evaluation.mutants.kinematic import KINEMATIC_FAULTS, movable_joints
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from lxml.etree import _Element
 
-    from kinematify.evaluation.studies.mutants.base import BaseModel
-    from kinematify.evaluation.studies.mutants.fault import Fault, Planted
+    from kinematify.evaluation.mutants.base import BaseModel
+    from kinematify.evaluation.mutants.fault import Fault, Planted
     from kinematify.robot.robot import Joint, Link, Robot
 
 FAULTS: tuple[Fault, ...] = KINEMATIC_FAULTS + FILE_DEFECTS

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.evaluation.studies.mutants.base import link_part, words
-from kinematify.evaluation.studies.mutants.fault import Fault, Planted
+from kinematify.evaluation.mutants.base import link_part, words
+from kinematify.evaluation.mutants.fault import Fault, Planted
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import rigid_groups
 from kinematify.validation.finding import Blame

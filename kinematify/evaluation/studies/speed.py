@@ -1,29 +1,30 @@
-"""Measure how long `kinematify validate` takes, and what its pose sweeps cost beside the engines' bare loops.
+"""How long does `kinematify validate` take, and what do its pose sweeps cost beside the engines' bare loops?
 
-Writes results/validate_speed.{json,md}. Runs are repeated and the median is kept; every run starts from an empty cache
-of convex pieces, as a user's first run does.
+All checks, the whole command from its start on, median of the repeats; with an empty cache of convex pieces, as a
+user's first run has, and once more with that of the run before. The last columns are the cost of our sweep of every
+joint over that of a bare loop of the engine over the same configurations (goal: at most 1.5).
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import os
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mujoco
-import numpy as np
 import pybullet as bullet
+from pydantic import Field
 
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.datasets import find_objects
+from kinematify.evaluation.datasets import BenchObject, find_objects
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, explained
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.mujoco_engine import MujocoEngine
@@ -34,63 +35,59 @@ from kinematify.simulation.pybullet_engine import PybulletEngine
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.mujoco_model import CompiledModel
     from kinematify.simulation.pybullet_world import PybulletWorld
 
 GOALS = {"panda": 6.0, "cabinet_41083": 3.0, "h1": 20.0}
 """Seconds on two cores for all checks."""
-RATIO = 1.5
-"""Largest cost of a sweep beside the bare loop."""
+
+
+class SpeedOptions(Options):
+    """What is timed."""
+
+    data: str | None = Field(None, description="Folder or set that holds the models; the benchmark's if not given.")
+    repeats: int = Field(3, ge=1, description="Runs of which the median is taken.")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Speed:
-    """One model."""
+class Timing:
+    """One model to be timed."""
 
-    model: str
-    seconds: float
-    """Of the whole command, median."""
-    cached: float
-    """The same with the convex pieces of an earlier run."""
-    goal: float
-    rows: int
-    """Configurations of the sweep of every joint."""
-    mujoco: float
-    """Cost of our sweep over that of the bare loop."""
-    pybullet: float
+    item: BenchObject
+    repeats: int
 
 
-def main() -> None:
-    """Measure the three models of the goals."""
-    arguments = _arguments()
-    objects = {item.name: item.urdf for item in find_objects(arguments.data)}
-    found = [_speed(name, objects[name], arguments.repeats) for name in GOALS if name in objects]
-    text = _markdown(found, arguments.repeats)
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    (arguments.output / "validate_speed.md").write_text(text, encoding="utf-8")
-    values = {"schema": 1, "cores": len(os.sched_getaffinity(0)), "models": [asdict(item) for item in found]}
-    (arguments.output / "validate_speed.json").write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-    print(text)
+def measure(options: SpeedOptions, work: Work) -> Measured:
+    """Time the models of the goals, one after the other."""
+    asked = {
+        item.name: Timing(item=item, repeats=options.repeats)
+        for item in find_objects(options.data)
+        if item.name in GOALS
+    }
+    return list(work.each(timed, asked, workers=1).values()), {"cores": len(os.sched_getaffinity(0))}
 
 
-def _speed(name: str, urdf: Path, repeats: int) -> Speed:
+def timed(asked: Timing) -> Record:
+    """Time the command and the sweeps of one model."""
     fresh, cached = [], []
-    for _ in range(repeats):
+    for _ in range(asked.repeats):
         with tempfile.TemporaryDirectory() as cache:
-            fresh.append(_run(urdf, cache))
-            cached.append(_run(urdf, cache))
+            fresh.append(_run(asked.item.urdf, cache))
+            cached.append(_run(asked.item.urdf, cache))
     with tempfile.TemporaryDirectory() as folder:
-        rows, by_mujoco, by_pybullet = _ratios(urdf, Path(folder))
-    return Speed(
-        model=name,
-        seconds=statistics.median(fresh),
-        cached=statistics.median(cached),
-        goal=GOALS[name],
-        rows=rows,
-        mujoco=by_mujoco,
-        pybullet=by_pybullet,
-    )
+        rows, by_mujoco, by_pybullet = _ratios(asked.item.urdf, Path(folder))
+    return {
+        "model": asked.item.name,
+        "seconds": statistics.median(fresh),
+        "cached": statistics.median(cached),
+        "goal": GOALS[asked.item.name],
+        "rows": rows,
+        "mujoco": by_mujoco,
+        "pybullet": by_pybullet,
+    }
 
 
 def _run(urdf: Path, cache: str) -> float:
@@ -145,37 +142,20 @@ def _bare_pybullet(loaded: PybulletWorld, values: FloatArray) -> None:
         bullet.getLinkStates(loaded.body, links, computeForwardKinematics=1, physicsClientId=loaded.client)
 
 
-def _markdown(found: list[Speed], repeats: int) -> str:
+def report(found: Report[Record]) -> list[str]:
+    """One line per model."""
     rows = [
-        f"| {item.model} | {item.seconds:.1f} s | {item.cached:.1f} s | {item.goal:.0f} s | {item.rows} | "
-        f"{item.mujoco:.2f} | {item.pybullet:.2f} |"
-        for item in found
+        (
+            item["model"],
+            *(f"{item[name]:.1f} s" for name in ("seconds", "cached")),
+            f"{item['goal']:.0f} s",
+            str(item["rows"]),
+            *(f"{item[engine]:.2f}" for engine in ("mujoco", "pybullet")),
+        )
+        for item in found.records
     ]
-    about = (
-        f"Written by `python benchmarks/validate_speed.py --repeats {repeats}`, {len(os.sched_getaffinity(0))} cores, "
-        f"numpy {np.__version__}, MuJoCo {mujoco.__version__}. All checks, the whole command from its start on, median "
-        f"of {repeats} runs; with an empty cache of convex pieces, and once more with that of the run before. The last "
-        f"columns are the cost of our sweep of every joint over that of a bare loop of the engine over the same "
-        f"configurations (goal: at most {RATIO})."
-    )
-    head = [
-        "# How long `kinematify validate` takes",
-        "",
-        about,
-        "",
-        "| model | first run | again | goal | configurations | MuJoCo, times bare | PyBullet, times bare |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    return "\n".join([*head, *rows]) + "\n"
+    titles = ("model", "first run", "again", "goal", "configurations", "MuJoCo, times bare", "PyBullet, times bare")
+    return [explained(__doc__), f"{found.summary['cores']} cores.", table(titles, rows)]
 
 
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path, help="folder of models, the benchmark's if absent")
-    parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("-o", "--output", type=Path, default=Path("results"))
-    return parser.parse_args()
-
-
-if __name__ == "__main__":
-    main()
+STUDY = Study(title="How long `kinematify validate` takes", options=SpeedOptions, measure=measure, report=report)

@@ -104,12 +104,20 @@ def _pick(root: etree._Element, random: Random) -> etree._Element:
     return elements[int(random.integers(len(elements)))]
 
 
+def _parent(element: etree._Element) -> etree._Element:
+    """Of an element below the root."""
+    parent = element.getparent()
+    if parent is None:
+        raise ValueError(f"The element {element.tag} is the root, which is left alone.")
+    return parent
+
+
 def drop_element(text: bytes, random: Random) -> bytes:
     """Leave out one to three elements."""
     root = _tree(text)
     for _ in range(int(random.integers(1, 4))):
         element = _pick(root, random)
-        element.getparent().remove(element)
+        _parent(element).remove(element)
     return _written(root)
 
 
@@ -150,7 +158,7 @@ def swap_elements(text: bytes, random: Random) -> bytes:
     mark = etree.Element("mark")
     first.addprevious(mark)
     second.addprevious(first)
-    mark.getparent().replace(mark, second)
+    _parent(mark).replace(mark, second)
     return _written(root)
 
 
@@ -165,7 +173,7 @@ def rename_element(text: bytes, random: Random) -> bytes:
 def chain_of_links(text: bytes, random: Random) -> bytes:
     """Hang a chain of up to 20,000 links on the model, or close it to a circle."""
     root = _tree(text)
-    first = root.find("link").get("name")
+    first = next(root.iter("link")).get("name") or ""
     count = int(random.choice([50, 250, 1500, 20_000]))
     above = first
     for k in range(count):
@@ -184,11 +192,15 @@ def chain_of_links(text: bytes, random: Random) -> bytes:
 # ---- changes of attributes -------------------------------------------------------------------------------------------
 
 
+def _attributes(element: etree._Element) -> dict[str, str]:
+    return {str(name): str(value) for name, value in element.attrib.items()}
+
+
 def _pick_attribute(root: etree._Element, random: Random, *, numeric: bool) -> tuple[etree._Element, str]:
     found = [
         (element, name)
         for element in root.iter(etree.Element)
-        for name, value in element.attrib.items()
+        for name, value in _attributes(element).items()
         if not numeric or value.replace("-", "").replace(".", "")[:1].isdigit()
     ]
     return found[int(random.integers(len(found)))]
@@ -198,7 +210,7 @@ def change_number(text: bytes, random: Random) -> bytes:
     """Put something else in the place of one number."""
     root = _tree(text)
     element, name = _pick_attribute(root, random, numeric=True)
-    words = element.get(name).split()
+    words = _attributes(element)[name].split()
     words[int(random.integers(len(words)))] = str(random.choice(NUMBERS))
     element.set(name, " ".join(words))
     return _written(root)
@@ -209,7 +221,7 @@ def scale_numbers(text: bytes, random: Random) -> bytes:
     root = _tree(text)
     factor = float(random.choice([-1.0, 0.0, 1e-3, 1e3, 57.3, 1e12, 1e-12, 1e300]))
     for element in root.iter(etree.Element):
-        for name, value in element.attrib.items():
+        for name, value in _attributes(element).items():
             try:
                 words = [float(word) for word in value.split()]
             except ValueError:
@@ -239,8 +251,10 @@ def drop_attribute(text: bytes, random: Random) -> bytes:
 def exchange_names(text: bytes, random: Random) -> bytes:
     """Let names and references of links and joints point elsewhere."""
     root = _tree(text)
-    places = [(e, n) for e in root.iter("link", "joint", "parent", "child", "mimic") for n in e.attrib if n != "type"]
-    names = [element.get(name) for element, name in places]
+    places = [
+        (e, n) for e in root.iter("link", "joint", "parent", "child", "mimic") for n in _attributes(e) if n != "type"
+    ]
+    names = [_attributes(element)[name] for element, name in places]
     for _ in range(int(random.integers(1, 4))):
         element, name = places[int(random.integers(len(places)))]
         element.set(name, names[int(random.integers(len(names)))])

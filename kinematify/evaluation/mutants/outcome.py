@@ -11,7 +11,7 @@ from kinematify.validation.finding import Severity
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from kinematify.evaluation.studies.mutants.fault import Fault, Planted
+    from kinematify.evaluation.mutants.fault import Fault, Planted
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport
 
