@@ -11,8 +11,9 @@ import pybullet as bullet
 
 from kinematify.envs.articulated_object import held_links
 from kinematify.envs.mujoco_arm import ROBOT, arm_facts
-from kinematify.envs.pybullet_object import PybulletObject, disconnected, pose_of, quaternion
+from kinematify.envs.pybullet_object import PybulletObject, disconnected, pose_of
 from kinematify.robot.robot import rest_configuration
+from kinematify.robot.transforms import quaternion_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -56,7 +57,8 @@ class PybulletArm:
     def _load(self, plan: RobotPlan, settings: EnvSettings) -> None:
         T, client, names = plan.T_world_base, self.client, self._robot.robot
         self.body = bullet.loadURDF(
-            str(self._robot.prepared.urdf), basePosition=T[:3, 3].tolist(), baseOrientation=quaternion(T[:3, :3]),
+            str(self._robot.prepared.urdf), basePosition=T[:3, 3].tolist(),
+            baseOrientation=quaternion_of(T[:3, :3], real_last=True),
             useFixedBase=True, flags=bullet.URDF_USE_INERTIA_FROM_FILE | bullet.URDF_USE_SELF_COLLISION,
             physicsClientId=client,
         )  # fmt: skip

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
-from scipy.spatial.transform import Rotation
 
 from kinematify.config.validation import load_settings
 from kinematify.envs.reading import Reading
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.contacts import deepest, touching
 from kinematify.simulation.pybullet_world import load
 
@@ -121,7 +121,9 @@ class PybulletObject:
                 )  # fmt: skip
         self._T_root = drawn.T_root @ self._T_usual
         T = self._T_root @ self._T_base
-        bullet.resetBasePositionAndOrientation(body, T[:3, 3].tolist(), quaternion(T[:3, :3]), physicsClientId=client)
+        bullet.resetBasePositionAndOrientation(
+            body, T[:3, 3].tolist(), quaternion_of(T[:3, :3], real_last=True), physicsClientId=client
+        )
         if self._saved is not None:
             bullet.removeState(self._saved, physicsClientId=client)
         self._saved = None
@@ -221,8 +223,3 @@ def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
     T[:3, :3] = np.array(bullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
     T[:3, 3] = place
     return T
-
-
-def quaternion(rotation: FloatArray) -> list[float]:
-    """Quaternion x, y, z, w of a rotation matrix (3, 3)."""
-    return [float(value) for value in Rotation.from_matrix(rotation).as_quat()]

@@ -15,6 +15,7 @@ from kinematify.manipulation.motion import timed
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import joint_values, rest_configuration
+from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.mujoco_model import parse
 
@@ -121,7 +122,7 @@ class _World:
         for body in robot.bodies:
             body.gravcomp = 1.0
         for part, prefix, T in ((robot, _ROBOT, motion.T_world_base), (object_spec, _OBJECT, motion.T_world_object)):
-            frame = spec.worldbody.add_frame(pos=T[:3, 3], quat=_quaternion(T[:3, :3]))
+            frame = spec.worldbody.add_frame(pos=T[:3, 3], quat=quaternion_of(T[:3, :3]))
             spec.attach(part, prefix=prefix, frame=frame)
         floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
         floor.size, floor.contype, floor.conaffinity = [0.0, 0.0, 1.0], _OTHERS, 0
@@ -284,7 +285,7 @@ class _World:
         # The anchor, which is the tool's origin, in the frame of the part and in that of the tool.
         model.eq_data[weld, :3] = second.T @ (tool.xpos - held.xpos)
         model.eq_data[weld, 3:6] = 0.0
-        model.eq_data[weld, 6:10] = _quaternion(first.T @ second)
+        model.eq_data[weld, 6:10] = quaternion_of(first.T @ second)
         model.eq_data[weld, 10] = 1.0
         data.eq_active[weld] = 1
 
@@ -313,9 +314,3 @@ class _World:
             names = [joint.name for joint in model.joints if joint.joint.kind is not JointType.FIXED]
             states.append({name: float(self.data.joint(prefix + name).qpos[0]) for name in names})
         return Frame(time=time, robot=states[0], object=states[1])
-
-
-def _quaternion(rotation: FloatArray) -> FloatArray:
-    found = np.zeros(4)
-    mujoco.mju_mat2Quat(found, np.ascontiguousarray(rotation).reshape(9))
-    return found

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
-from scipy.spatial.transform import Rotation
 
 from kinematify.manipulation.execute import Execution, Hold, Log, judged
 from kinematify.manipulation.motion import timed
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import joint_values, rest_configuration
+from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class _Side:
         body = bullet.loadURDF(
             str(prepared.urdf),
             basePosition=T[:3, 3].tolist(),
-            baseOrientation=_quaternion(T[:3, :3]),
+            baseOrientation=quaternion_of(T[:3, :3], real_last=True),
             useFixedBase=True,
             flags=bullet.URDF_USE_INERTIA_FROM_FILE,
             physicsClientId=client,
@@ -187,7 +187,7 @@ class _World:
         weld = bullet.createConstraint(
             self.robot.body, self.robot.links[motion.robot.tool], self.object.body, self.object.links[self.loaded.held],
             bullet.JOINT_FIXED, [0.0, 0.0, 0.0], local[0][:3, 3].tolist(), local[1][:3, 3].tolist(),
-            _quaternion(local[0][:3, :3]), _quaternion(local[1][:3, :3]), physicsClientId=client,
+            *(quaternion_of(T[:3, :3], real_last=True) for T in local), physicsClientId=client,
         )  # fmt: skip
         bullet.changeConstraint(weld, maxForce=self.settings.weld_force, physicsClientId=client)
 
@@ -203,8 +203,3 @@ def _transform(position: tuple[float, ...], orientation: tuple[float, ...]) -> F
     T[:3, :3] = np.array(bullet.getMatrixFromQuaternion(orientation)).reshape(3, 3)
     T[:3, 3] = position
     return T
-
-
-def _quaternion(rotation: FloatArray) -> list[float]:
-    """Quaternion x, y, z, w of a rotation matrix (3, 3)."""
-    return [float(value) for value in Rotation.from_matrix(rotation).as_quat()]

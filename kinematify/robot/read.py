@@ -248,12 +248,15 @@ def _check_no_cycle(path: Path, joints: Sequence[Joint]) -> None:
     above = {joint.child: joint.parent for joint in joints}
     settled: set[str] = set()
     for start in above:
-        walked = [start]
-        while walked[-1] in above and walked[-1] not in settled:
-            walked.append(above[walked[-1]])
-            if walked[-1] in walked[:-1]:
-                cycle = " -> ".join(reversed(walked[walked.index(walked[-1]) :]))
+        walked = {start: None}  # in order, and quick to look up: chains of thousands of links are no mistake here
+        link = start
+        while link in above and link not in settled:
+            link = above[link]
+            if link in walked:
+                names = list(walked)
+                cycle = " -> ".join([link, *reversed(names[names.index(link) :])])
                 raise DescriptionError(f"The links of {path} form a cycle: {cycle}. A URDF is a tree: cut one joint.")
+            walked[link] = None
         settled.update(walked)
 
 

@@ -57,8 +57,8 @@ def rpy_of(rotation: FloatArray) -> FloatArray:
     return np.array([roll, pitch, np.arctan2(rotation[1, 0], rotation[0, 0])])
 
 
-def quaternion_of(rotation: FloatArray) -> FloatArray:
-    """Return the unit quaternion w, x, y, z of a rotation matrix (3, 3), shape (4,); w is not negative.
+def quaternion_of(rotation: FloatArray, *, real_last: bool = False) -> FloatArray:
+    """Return the unit quaternion of a rotation matrix (3, 3): w, x, y, z, or x, y, z, w; shape (4,), w not negative.
 
     The largest of the four is found first, from the diagonal, and divides the others (Shepperd 1978).
     """
@@ -76,7 +76,8 @@ def quaternion_of(rotation: FloatArray) -> FloatArray:
     largest = int(np.argmax(squares))
     found = (products + np.diag(squares))[largest]
     found = found / np.linalg.norm(found)
-    return np.asarray(-found if found[0] < 0.0 else found)
+    found = -found if found[0] < 0.0 else found
+    return np.roll(found, -1) if real_last else np.asarray(found)
 
 
 def rotation_from_quaternion(quaternion: FloatArray) -> FloatArray:

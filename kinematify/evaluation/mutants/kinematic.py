@@ -16,7 +16,7 @@ from kinematify.evaluation.mutants.base import link_part, words
 from kinematify.evaluation.mutants.fault import Fault, Planted
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
-from kinematify.robot.transforms import rotation_about
+from kinematify.robot.transforms import rotation_about, rpy_of
 from kinematify.validation.finding import Blame
 
 if TYPE_CHECKING:
@@ -198,16 +198,8 @@ def _change_parent(robot: _Element, joint: Joint, model: Robot, random: np.rando
     _child(element, "parent").set("link", parent)
     origin = _child(element, "origin")
     origin.set("xyz", words(T_parent_child[:3, 3]))
-    origin.set("rpy", words(_rpy(T_parent_child[:3, :3])))
+    origin.set("rpy", words(rpy_of(T_parent_child[:3, :3])))
     return _planted(joint, f"parent {joint.parent} replaced by {parent}")
-
-
-def _rpy(rotation: FloatArray) -> FloatArray:
-    """Roll, pitch and yaw [rad] of a rotation matrix, as URDF means them."""
-    pitch = np.arctan2(-rotation[2, 0], np.hypot(rotation[0, 0], rotation[1, 0]))
-    if np.hypot(rotation[0, 0], rotation[1, 0]) < 1e-9:  # looking straight up or down: yaw is free
-        return np.array([np.arctan2(-rotation[1, 2], rotation[1, 1]), pitch, 0.0])
-    return np.array([np.arctan2(rotation[2, 1], rotation[2, 2]), pitch, np.arctan2(rotation[1, 0], rotation[0, 0])])
 
 
 _ONLY = frozenset({Blame.KINEMATICS})
