@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.truth import GroundTruth, TrueJoint
-    from kinematify.evaluation.prediction import PredictedJoint, Prediction
+    from kinematify.evaluation.prediction import Prediction
+    from kinematify.joints.candidate import JointEstimate
     from kinematify.robot.arrays import FloatArray
 
 MISSING_ANGLE = 90.0
@@ -144,8 +145,8 @@ def _joint_scores(
 
 
 def _matches(
-    joints: Sequence[TrueJoint], predicted: Mapping[tuple[int, int], PredictedJoint]
-) -> dict[str, PredictedJoint]:
+    joints: Sequence[TrueJoint], predicted: Mapping[tuple[int, int], JointEstimate]
+) -> dict[str, JointEstimate]:
     """True joint name -> the predicted joint that stands for it."""
     by_pair: dict[tuple[int, int], list[TrueJoint]] = defaultdict(list)
     for joint in joints:
@@ -157,7 +158,7 @@ def _matches(
     }
 
 
-def _misfit(joint: TrueJoint, guess: PredictedJoint) -> tuple[bool, float]:
+def _misfit(joint: TrueJoint, guess: JointEstimate) -> tuple[bool, float]:
     return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
 
 
@@ -171,7 +172,7 @@ def _confidence(joint: TrueJoint, prediction: Prediction) -> float | None:
 
 def _joint_score(
     joint: TrueJoint,
-    guess: PredictedJoint | None,
+    guess: JointEstimate | None,
     *,
     near: FloatArray,
     names: Sequence[str],
@@ -196,27 +197,27 @@ def _joint_score(
     )
 
 
-def _angle(joint: TrueJoint, guess: PredictedJoint | None) -> float:
+def _angle(joint: TrueJoint, guess: JointEstimate | None) -> float:
     if guess is None or guess.kind == JointType.FIXED:
         return MISSING_ANGLE
     return axis_angle(joint.axis, guess.axis)
 
 
-def _angle_given_type(joint: TrueJoint, guess: PredictedJoint | None) -> float:
+def _angle_given_type(joint: TrueJoint, guess: JointEstimate | None) -> float:
     if guess is None or _loose(guess.kind) == _loose(joint.kind):
         return _angle(joint, guess)
-    axes = (axis for kind, axis in guess.alternatives if _loose(kind) == _loose(joint.kind))
+    axes = (item.axis for item in guess.alternatives if _loose(item.kind) == _loose(joint.kind))
     best = next(axes, None)
     return _angle(joint, guess) if best is None else axis_angle(joint.axis, best)
 
 
-def _line(joint: TrueJoint, guess: PredictedJoint, near: FloatArray) -> float:
+def _line(joint: TrueJoint, guess: JointEstimate, near: FloatArray) -> float:
     return axis_line_distance(
         true_axis=joint.axis, true_pivot=joint.pivot, axis=guess.axis, pivot=guess.pivot, near=near
     )
 
 
-def _limit_iou(joint: TrueJoint, guess: PredictedJoint | None) -> float:
+def _limit_iou(joint: TrueJoint, guess: JointEstimate | None) -> float:
     """Overlap in the true joint's sign; 0 for another type, or where perpendicular axes leave the sign open."""
     if guess is None or _loose(guess.kind) != _loose(joint.kind):
         return 0.0
@@ -231,7 +232,7 @@ def _limit_iou(joint: TrueJoint, guess: PredictedJoint | None) -> float:
     )
 
 
-def _opens(joint: TrueJoint, guess: PredictedJoint | None) -> bool | None:
+def _opens(joint: TrueJoint, guess: JointEstimate | None) -> bool | None:
     """The output promises that the positive direction opens, so the sign of its axis alone is judged."""
     sign = opening_sign(joint.lower + joint.value, joint.upper + joint.value)
     if sign == 0:

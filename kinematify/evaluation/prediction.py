@@ -2,37 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.joint_type import JointType
     from kinematify.topology.tree import KinematicTree
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PredictedJoint:
-    """A joint between two parts; world frame, zero is the configuration of the input."""
-
-    parent: int
-    child: int
-    kind: JointType
-    axis: FloatArray
-    """Unit direction, shape (3,), signed so that the positive direction opens."""
-    pivot: FloatArray
-    """A point on the axis [m], shape (3,)."""
-    lower: float
-    """[rad or m]; -inf for continuous."""
-    upper: float
-    """[rad or m]; +inf for continuous."""
-    confidence: float | None = None
-    """Between 0 and 1; None where the method gives none."""
-    alternatives: tuple[tuple[JointType, FloatArray], ...] = ()
-    """Type and axis of every candidate that was kept, best first: what it would answer if told the type."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,7 +18,7 @@ class Prediction:
 
     parents: Mapping[int, int]
     """Part -> parent part, -1 for the root. Parts that the method set aside are missing; empty if it failed."""
-    joints: tuple[PredictedJoint, ...]
+    joints: tuple[JointEstimate, ...]
 
 
 NOTHING_PREDICTED = Prediction(parents={}, joints=())
@@ -61,18 +38,9 @@ def prediction_of(
     """
     index = [part_index[name] for name in names]
     parents = {index[node]: -1 if parent < 0 else index[parent] for node, parent in enumerate(tree.parents)}
-    return Prediction(parents=parents, joints=tuple(_joint(estimate, index) for estimate in estimates))
-
-
-def _joint(estimate: JointEstimate, index: Sequence[int]) -> PredictedJoint:
-    return PredictedJoint(
-        parent=index[estimate.parent],
-        child=index[estimate.child],
-        kind=estimate.kind,
-        axis=estimate.axis,
-        pivot=estimate.pivot,
-        lower=estimate.lower,
-        upper=estimate.upper,
-        confidence=estimate.confidence,
-        alternatives=tuple((candidate.kind, candidate.axis) for candidate in estimate.alternatives),
+    return Prediction(
+        parents=parents,
+        joints=tuple(
+            replace(estimate, parent=index[estimate.parent], child=index[estimate.child]) for estimate in estimates
+        ),
     )

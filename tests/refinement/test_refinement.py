@@ -20,7 +20,7 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
-from kinematify.evaluation.prediction import PredictedJoint, Prediction
+from kinematify.evaluation.prediction import Prediction
 from kinematify.evaluation.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
 from kinematify.evaluation.study import load_study_report
 from kinematify.evaluation.tree_metrics import TreeDistance
@@ -380,9 +380,16 @@ def test_perturbations_are_seeded_and_leave_the_truth_alone(name: str) -> None:
 
 
 def test_a_fixed_piece_is_one_part_again_when_scored() -> None:
-    def joint(parent: int, child: int, kind: JointType) -> PredictedJoint:
-        return PredictedJoint(
-            parent=parent, child=child, kind=kind, axis=np.eye(3)[2], pivot=np.zeros(3), lower=0.0, upper=1.0
+    def joint(parent: int, child: int, kind: JointType) -> JointEstimate:
+        return JointEstimate(
+            parent=parent,
+            child=child,
+            kind=kind,
+            axis=np.eye(3)[2],
+            pivot=np.zeros(3),
+            lower=0.0,
+            upper=1.0,
+            confidence=0.5,
         )
 
     above = Prediction(
