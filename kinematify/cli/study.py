@@ -11,13 +11,12 @@ import click
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
     from kinematify.evaluation.study import Options, Study
-
-_FOUND_FAILURES = 1
 
 
 def study_command(name: str) -> click.Command | None:
@@ -97,7 +96,7 @@ def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
         click.echo(f"{len(report.records)} records. Report: {', '.join(map(str, written))}")
     for fault in faults:
         click.echo(fault, err=True)
-    return _FOUND_FAILURES if faults else 0
+    return ExitStatus.FAILURES if faults else ExitStatus.FINE
 
 
 def _options(study: Study[Any], values: dict[str, Any]) -> Options:

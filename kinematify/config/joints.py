@@ -344,7 +344,7 @@ class RailsConfig(StageConfig):
 
 
 class ConfidenceConfig(StageConfig):
-    """How likely a joint is right, from the margins of what was decided (benchmarks/calibration.py)."""
+    """How likely a joint is right, from the margins of what was decided (`kinematify bench calibration`)."""
 
     kind_slope: float
     """Log odds that the type is right, per log odds of sliding against turning."""

@@ -189,9 +189,9 @@ def document(header: Header, title: str, blocks: Iterable[str]) -> str:
     )
     facts = [
         f"- command: `{header.command}`",
-        f"- date: {header.date}, commit {header.commit}, code {header.code}",
+        f"- date: {header.date}, commit {header.commit}" + (f", code {header.code}" if header.code else ""),
         *([f"- {asked}; seeds {_words(header.seeds)}"] if asked else []),
-        f"- machine: {header.machine['processor']}, {header.machine['workers']} workers",
+        *([f"- machine: {header.machine['processor']}, {header.machine['workers']} workers"] if header.machine else []),
         *([f"- {versions}"] if versions else []),
         *([f"- {header.note}"] if header.note else []),
     ]

@@ -165,7 +165,7 @@ def _checks(records: Sequence[Record]) -> list[str]:
     lines = []
     for name in dict.fromkeys(record["fault"] for record in records):
         group = [record for record in records if record["fault"] == name]
-        counts = Counter(check for record in group for check in {fact["check"] for fact in record["right"]})
+        counts = Counter(check for record in group for check in sorted({fact["check"] for fact in record["right"]}))
         lines.append(f"- {name}: {', '.join(f'{check} {n}' for check, n in counts.most_common(8)) or 'none'}")
     return lines
 
