@@ -53,6 +53,7 @@ _ENTRIES = (
         keeps_energy=False,
         stops_late=True,
     ),
+    EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV8"),
     EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}

@@ -1,0 +1,505 @@
+"""Drake as an engine (extra ``drake``): discrete time steps with its implicit contact solver and implicit servos."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from lxml import etree
+from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, HalfSpace
+from pydrake.math import RigidTransform
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
+from pydrake.multibody.tree import PdControllerGains, PrismaticJoint, RevoluteJoint
+from pydrake.systems.analysis import Simulator
+from pydrake.systems.framework import DiagramBuilder
+
+from kinematify.simulation.configurations import GRAVITY
+from kinematify.simulation.contacts import deepest
+from kinematify.simulation.drive import acting_pairs, commands
+from kinematify.simulation.engine import (
+    FINER,
+    SLOW_SECONDS,
+    DriveRun,
+    Dropped,
+    FreeRun,
+    LoadedJoint,
+    LoadedModel,
+    Measured,
+    Refused,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from kinematify.config.validation import EngineSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.mechanism import Mechanism
+    from kinematify.simulation.contacts import Contacts, Touching
+    from kinematify.simulation.drive import Drive, Servos
+    from kinematify.simulation.prepared import Prepared
+
+_RESERVED = ("world", "WorldBody")
+"""Drake's names of the outside; links of these names are loaded under other ones."""
+_FREE_LOOKS = 24
+"""Times at which speeds and energies of a free run are measured."""
+_FRICTION = 0.5
+
+
+def open_engine(settings: EngineSettings, log: Path) -> DrakeEngine:
+    """Return Drake, whose warnings are kept."""
+    del log
+    logger, said = logging.getLogger("drake"), _Said()
+    logger.addHandler(said)
+    logger.propagate = False
+    return DrakeEngine(settings=settings, said=said)
+
+
+class _Said(logging.Handler):
+    """Keeps what is logged."""
+
+    def __init__(self) -> None:
+        super().__init__(level=logging.WARNING)
+        self.texts: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.texts.append(record.getMessage())
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DrakeEngine:
+    """See `kinematify.simulation.engine.Engine`."""
+
+    settings: EngineSettings
+    said: _Said
+
+    def load(self, prepared: Prepared, mechanism: Mechanism) -> DrakeModel:
+        """Load a prepared file."""
+        model = DrakeModel(engine=self, prepared=prepared, mechanism=mechanism)
+        assert model.looking  # what it refuses, it refuses here
+        return model
+
+    def messages(self) -> list[str]:
+        """Drake's warnings."""
+        return list(dict.fromkeys(" ".join(text.split()) for text in self.said.texts))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _World:
+    """A diagram with one model in it, and a context."""
+
+    mechanism: Mechanism
+    diagram: Any
+    plant: Any
+    scene: Any
+    names: tuple[str, ...]
+    """Of the links in the document's order, as Drake knows them."""
+
+    @cached_property
+    def context(self) -> Any:
+        return self.diagram.CreateDefaultContext()
+
+    @property
+    def plant_context(self) -> Any:
+        return self.plant.GetMyContextFromRoot(self.context)
+
+    @cached_property
+    def bodies(self) -> list[Any]:
+        """Of each link, None for lost ones."""
+        plant = self.plant
+        return [plant.GetBodyByName(name) if plant.HasBodyNamed(name) else None for name in self.names]
+
+    @cached_property
+    def joints(self) -> list[Any]:
+        """Of each of `Mechanism.joints`, None for lost ones."""
+        plant = self.plant
+        found = [plant.GetJointByName(n) if plant.HasJointNamed(n) else None for n in self.mechanism.joints]
+        return [joint if isinstance(joint, RevoluteJoint | PrismaticJoint) else None for joint in found]
+
+    @cached_property
+    def positions(self) -> list[int]:
+        """Address of each joint among positions."""
+        return [joint.position_start() for joint in self.joints]
+
+    @cached_property
+    def velocities(self) -> list[int]:
+        """Address of each joint among velocities."""
+        return [joint.velocity_start() for joint in self.joints]
+
+    @cached_property
+    def link_of_geometry(self) -> dict[Any, int]:
+        """Link of each collision shape."""
+        return {
+            shape: link
+            for link, body in enumerate(self.bodies)
+            for shape in self.plant.GetCollisionGeometriesForBody(body)
+        }
+
+    def place(self, values: FloatArray) -> None:
+        """Set all joints, shape (J,) [rad or m], and stop them."""
+        for joint, value in zip(self.joints, values.tolist(), strict=True):
+            if isinstance(joint, RevoluteJoint):
+                joint.set_angle(self.plant_context, value)
+                joint.set_angular_rate(self.plant_context, 0.0)
+            else:
+                joint.set_translation(self.plant_context, value)
+                joint.set_translation_rate(self.plant_context, 0.0)
+
+    def values(self) -> FloatArray:
+        """Of all joints [rad or m], shape (J,)."""
+        return np.asarray(self.plant.GetPositions(self.plant_context)[self.positions])
+
+    def poses(self) -> FloatArray:
+        """Of all links, shape (L, 4, 4)."""
+        context = self.plant_context
+        return np.array([self.plant.EvalBodyPoseInWorld(context, body).GetAsMatrix4() for body in self.bodies])
+
+    def query(self) -> Any:
+        """What sees the shapes."""
+        return self.scene.get_query_output_port().Eval(self.scene.GetMyContextFromRoot(self.context))
+
+    def touching(self) -> Iterator[tuple[int, int, float]]:
+        """(link, link, depth [m]) of all contacts between links."""
+        link_of = self.link_of_geometry
+        for pair in self.query().ComputePointPairPenetration():
+            if pair.id_A in link_of and pair.id_B in link_of:
+                yield link_of[pair.id_A], link_of[pair.id_B], float(pair.depth)
+
+    def fastest(self) -> float:
+        """Largest speed of a link's frame [m/s]."""
+        speeds = [
+            np.linalg.norm(self.plant.EvalBodySpatialVelocityInWorld(self.plant_context, body).translational())
+            for body in self.bodies
+        ]
+        return float(max(speeds, default=0.0))
+
+    def energy(self) -> tuple[float, float]:
+        """Potential and kinetic [J]."""
+        context = self.plant_context
+        return float(self.plant.CalcPotentialEnergy(context)), float(self.plant.CalcKineticEnergy(context))
+
+    def act(self, pairs: Iterable[tuple[int, int]], *, on: bool) -> None:
+        """Let these pairs of links act on each other, or not."""
+        manager = self.scene.collision_filter_manager(self.scene.GetMyContextFromRoot(self.context))
+        for first, second in pairs:
+            sets = (GeometrySet(self.plant.GetCollisionGeometriesForBody(self.bodies[k])) for k in (first, second))
+            rule = CollisionFilterDeclaration()
+            manager.Apply(rule.AllowBetween(*sets) if on else rule.ExcludeBetween(*sets))
+
+    def steps(self, count: int, step: float, told: FloatArray | None = None) -> Iterator[int]:
+        """Simulate, yielding after every step; ends early where Drake gives up, with its reason in `failure`.
+
+        Args:
+            count: Steps.
+            step: Time step [s].
+            told: What each servo is told, shape (count, leaders); None without servos.
+        """
+        simulator = Simulator(self.diagram, self.context)
+        plant, context = self.plant, self.plant_context
+        desired = plant.get_desired_state_input_port(plant.GetModelInstanceByName(_MODEL))
+        self.context.SetTime(0.0)
+        try:
+            simulator.Initialize()
+            for number in range(count):
+                if told is not None:
+                    desired.FixValue(context, np.concatenate([told[number], np.zeros(told.shape[1])]))
+                simulator.AdvanceTo((number + 1) * step)
+                if not np.isfinite(plant.GetPositionsAndVelocities(context)).all():
+                    self.failure.append("a value is not finite")
+                    return
+                yield number
+        except RuntimeError as error:
+            self.failure.append(" ".join(str(error).split())[:200])
+
+    failure: list[str] = field(default_factory=list)
+    """Why the last run ended early."""
+
+
+_MODEL = "kinematify"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DrakeModel:
+    """See `kinematify.simulation.engine.PhysicsModel`."""
+
+    engine: DrakeEngine
+    prepared: Prepared
+    mechanism: Mechanism
+
+    @cached_property
+    def looking(self) -> _World:
+        """Everything collides in it."""
+        return self.world()
+
+    def world(
+        self,
+        *,
+        servos: Servos | None = None,
+        force: FloatArray | None = None,
+        ideal: bool = False,
+        finer: int = 1,
+        floor: float | None = None,
+    ) -> _World:
+        """Load into a world of its own.
+
+        Args:
+            servos: One for each leader; None: none.
+            force: That each may exert [N m or N], infinite: no limit, shape (leaders,); None: no limits.
+            ideal: Without damping in the joints.
+            finer: Small steps per step.
+            floor: Height of a floor [m], above which the root is free; None: the root is fixed.
+
+        Raises:
+            Refused: Drake cannot.
+        """
+        robot = etree.parse(str(self.prepared.urdf)).getroot()
+        names = tuple(f"{name} link" if name in _RESERVED else name for name in self.mechanism.links)
+        renamed = dict(zip(self.mechanism.links, names, strict=True))
+        for element in robot.iter("link", "parent", "child"):
+            key = "name" if element.tag == "link" else "link"
+            element.set(key, renamed.get(element.get(key), element.get(key)))
+        robot.set("name", _MODEL)
+        if ideal:
+            for dynamics in list(robot.iter("dynamics")):
+                dynamics.getparent().remove(dynamics)
+        builder = DiagramBuilder()
+        plant, scene = AddMultibodyPlantSceneGraph(builder, self.engine.settings.time_step / finer)
+        plant.set_adjacent_bodies_collision_filters(False)
+        plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -GRAVITY])
+        try:
+            Parser(plant).AddModelsFromString(etree.tostring(robot, encoding="unicode"), "urdf")
+            root = plant.GetBodyByName(renamed[self.mechanism.description.root])
+            if floor is None:
+                plant.WeldFrames(plant.world_frame(), root.body_frame())
+            else:
+                ground = RigidTransform([0.0, 0.0, floor])
+                friction = CoulombFriction(_FRICTION, _FRICTION)
+                plant.RegisterCollisionGeometry(plant.world_body(), ground, HalfSpace(), "floor", friction)
+            if servos is not None:
+                for leader, travel in enumerate(self.mechanism.travels):
+                    limit = np.inf if force is None else float(force[leader])
+                    joint = plant.GetJointByName(travel.joint)
+                    servo = plant.AddJointActuator(f"kinematify servo {leader}", joint, limit)
+                    gains = PdControllerGains(p=servos.stiffness[leader], d=servos.damping[leader])
+                    servo.set_controller_gains(gains)
+            plant.Finalize()
+            diagram = builder.Build()
+        except RuntimeError as error:
+            raise Refused(" ".join(str(error).split())[:400].rstrip(".")) from error
+        return _World(mechanism=self.mechanism, diagram=diagram, plant=plant, scene=scene, names=names)
+
+    @cached_property
+    def loaded(self) -> LoadedModel:
+        """What became of joints and masses."""
+        world = self.looking
+        joints = {
+            name: LoadedJoint(
+                turns=isinstance(joint, RevoluteJoint),
+                lower=float(joint.position_lower_limits()[0]),
+                upper=float(joint.position_upper_limits()[0]),
+            )
+            for name, joint in zip(self.mechanism.joints, world.joints, strict=True)
+            if joint is not None
+        }
+        bodies = zip(self.mechanism.links, world.bodies, strict=True)
+        masses = {name: float(body.default_mass()) for name, body in bodies if body is not None}
+        return LoadedModel(joints=joints, masses=masses, total_mass=float(sum(masses.values())))
+
+    @property
+    def complete(self) -> bool:
+        """True if no link and no joint was lost."""
+        return None not in self.looking.bodies and None not in self.looking.joints
+
+    @cached_property
+    def size(self) -> float:
+        """Largest side of the box around all collision shapes at zero [m], at least 1 mm."""
+        self.looking.place(np.zeros(len(self.mechanism.joints)))
+        corners = _corners(self.looking)
+        return float(max(np.ptp(corners, axis=0).max(), 1e-3)) if len(corners) else 1.0
+
+    @property
+    def resistance(self) -> FloatArray:
+        """Damping of all joints, and no friction, which Drake does not read, shape (2, J)."""
+        damping = [float(joint.default_damping_vector()[0]) for joint in self.looking.joints]
+        return np.array([damping, np.zeros(len(damping))])
+
+    @cached_property
+    def silent(self) -> frozenset[tuple[int, int]]:
+        """Pairs of links that touch at rest."""
+        self.looking.place(self.values_at_rest)
+        return frozenset((min(a, b), max(a, b)) for a, b, _ in self.looking.touching())
+
+    @property
+    def values_at_rest(self) -> FloatArray:
+        """Of all joints [rad or m], shape (J,)."""
+        values: FloatArray = self.mechanism.all_values(self.mechanism.rest[None])[0]
+        return values
+
+    def measure(self, values: FloatArray, *, dynamic: int) -> Measured:
+        """Set the model to every row and look."""
+        world, plant = self.looking, self.looking.plant
+        poses, gravity, matrices = [], np.zeros_like(values), []
+        for row, q in enumerate(values):
+            world.place(q)
+            context = world.plant_context
+            poses.append(world.poses())
+            gravity[row] = -plant.CalcGravityGeneralizedForces(context)[world.velocities]
+            if row < dynamic:
+                matrices.append(plant.CalcMassMatrix(context)[np.ix_(world.velocities, world.velocities)])
+        return Measured(
+            T_world_link=np.array(poses),
+            contacts=self.contacts(values),
+            gravity=gravity,
+            inertia=np.array(matrices).reshape(len(matrices), values.shape[1], values.shape[1]),
+        )
+
+    def contacts(self, values: FloatArray) -> Contacts:
+        """Contacts in every row."""
+        found: list[tuple[int, int, int, float]] = []
+        for row, q in enumerate(values):
+            self.looking.place(q)
+            found += [(row, *contact) for contact in self.looking.touching()]
+        table = np.array(found, dtype=np.float64).reshape(-1, 4)
+        return deepest(table[:, 0].astype(np.int64), table[:, 1:3].astype(np.int64), table[:, 3])
+
+    def simulation(self, sweep: Touching, seen: Measured, servos: Servos) -> DrakeSimulation:
+        """Return what runs with servos."""
+        del seen
+        return DrakeSimulation(model=self, sweep=sweep, servos=servos)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DrakeSimulation:
+    """See `kinematify.simulation.engine.Simulation`."""
+
+    model: DrakeModel
+    sweep: Touching
+    servos: Servos
+    batch: int = 1
+    """Drives take place one after the other."""
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.model.engine.settings.time_step
+
+    @property
+    def _held(self) -> FloatArray:
+        """Commands that hold the joints at rest, their weight made up for, shape (leaders,)."""
+        told: FloatArray = self.model.mechanism.rest + self.servos.holding[0] / self.servos.stiffness
+        return told
+
+    def hold(self, efforts: FloatArray, seconds: float) -> FreeRun:
+        """Hold the model by servos."""
+        steps = _steps(seconds, self.step)
+        world = self.model.world(servos=self.servos, force=efforts)
+        return self._free(world, steps, told=np.repeat(self._held[None], steps, axis=0))
+
+    def release(self, seconds: float, *, fine: bool = False) -> FreeRun:
+        """Let the model go."""
+        finer = FINER if fine else 1
+        return self._free(self.model.world(ideal=True, finer=finer), finer * _steps(seconds, self.step), finer=finer)
+
+    def _free(self, world: _World, steps: int, *, told: FloatArray | None = None, finer: int = 1) -> FreeRun:
+        leaders = [world.mechanism.joints.index(travel.joint) for travel in world.mechanism.travels]
+        world.act(self.model.silent, on=False)
+        world.place(self.model.values_at_rest)
+        looks = set(np.linspace(0, steps - 1, _FREE_LOOKS).astype(int).tolist())
+        values, energies, fastest = [], [world.energy()], 0.0
+        for number in world.steps(steps, self.step / finer, told):
+            values.append(world.values()[leaders])
+            if number in looks:
+                energies.append(world.energy())
+                fastest = max(fastest, world.fastest())
+        return FreeRun(
+            q=np.array(values).reshape(-1, len(leaders))[finer - 1 :: finer],
+            energy=np.array(energies),
+            fastest=fastest,
+            warnings=tuple(world.failure),
+        )
+
+    @cached_property
+    def _drive_world(self) -> _World:
+        """Pairs act on each other in it only in drives in which they get too deep."""
+        world = self.model.world(servos=self.servos, force=self.servos.force)
+        links = [link for link, body in enumerate(world.bodies) if world.plant.GetCollisionGeometriesForBody(body)]
+        world.act([(a, b) for a, b in product(links, links) if a < b], on=False)
+        return world
+
+    def drive(self, drives: Sequence[Drive]) -> list[DriveRun]:
+        """Drive a joint to an end, the others held."""
+        return [self._drive(drive) for drive in drives]
+
+    def _drive(self, drive: Drive) -> DriveRun:
+        world, mechanism = self._drive_world, self.model.mechanism
+        samples = self.model.engine.settings.sweep_samples
+        pairs = acting_pairs(mechanism, self.sweep, drive, self.model.silent, samples)
+        world.act(pairs, on=True)
+        world.place(self.model.values_at_rest)
+        world.failure.clear()
+        told = commands(drive, mechanism, self.servos, samples)
+        exerted = world.plant.get_net_actuation_output_port(world.plant.GetModelInstanceByName(_MODEL))
+        looks = set(drive.looks.tolist())
+        values, forces, fastest = [], [], 0.0
+        pressed: frozenset[tuple[int, int]] = frozenset()
+        for number in world.steps(len(told), self.step, told):
+            values.append(world.values())
+            forces.append(float(exerted.Eval(world.plant_context)[drive.leader]))
+            if number in looks:
+                fastest = max(fastest, world.fastest())
+            if number == drive.arrived - 1:
+                body = mechanism.body_of_link
+                touching = [(int(body[a]), int(body[b])) for a, b, _ in world.touching()]
+                pressed = frozenset((min(pair), max(pair)) for pair in touching)
+        world.act(pairs, on=False)
+        return DriveRun(
+            q=np.array(values).reshape(-1, len(mechanism.joints)),
+            force=np.array(forces),
+            pressed=pressed,
+            fastest=fastest,
+            warnings=tuple(world.failure),
+        )
+
+    def drop(self) -> Dropped:
+        """Let the model fall on a floor."""
+        settings, looking = self.model.engine.settings, self.model.looking
+        looking.place(self.model.values_at_rest)
+        height = float(_corners(looking)[:, 2].min()) - settings.drop
+        world = self.model.world(servos=self.servos, floor=height)
+        world.act(self.model.silent, on=False)
+        world.place(self.model.values_at_rest)
+        steps, window = _steps(settings.drop_seconds, self.step), _steps(SLOW_SECONDS, self.step)
+        early = late = world.poses()
+        for number in world.steps(steps, self.step, np.repeat(self._held[None], steps, axis=0)):
+            if number == steps - 1 - window:
+                early = world.poses()
+        late = world.poses()
+        if world.failure:
+            return Dropped(depth=np.inf, speed=np.inf, warnings=tuple(world.failure))
+        return Dropped(
+            depth=height - float(_corners(world)[:, 2].min()),
+            speed=float(np.linalg.norm((late - early)[:, :3, 3], axis=1).max()) / (window * self.step),
+            warnings=(),
+        )
+
+
+def _corners(world: _World) -> FloatArray:
+    """Corners of the boxes around all collision shapes of links, world frame [m], shape (n, 3)."""
+    query = world.query()
+    inspector = query.inspector()
+    signs = np.array(list(product((-1.0, 1.0), repeat=3)))
+    corners = []
+    for shape in world.link_of_geometry:
+        box = inspector.GetObbInGeometryFrame(shape)
+        places = (query.GetPoseInWorld(shape) @ box.pose()) @ (signs * box.half_width()).T
+        corners.append(places.T)
+    return np.concatenate(corners) if corners else np.zeros((0, 3))
+
+
+def _steps(seconds: float, step: float) -> int:
+    return max(2, round(seconds / step))
