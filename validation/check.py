@@ -20,6 +20,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypedDict
 
+from kinematify.simulation.engines import ENGINES
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -29,18 +31,21 @@ if TYPE_CHECKING:
     CheckFunction = Callable[[OpenCheck, Any], None]
     Need = Callable[[Any], str | None]
 
-FAMILIES = {
-    "KV1": "file and tree",
-    "KV2": "declared physics",
-    "KV3": "kinematics by geometry",
-    "KV4": "MuJoCo",
-    "KV5": "PyBullet",
-    "KV6": "agreement",
-    "KV7": "task of a robot",
-}
-"""Title of each family, keyed by the beginning of its ids."""
-ENGINE_FAMILIES = {"mujoco": "KV4", "pybullet": "KV5"}
+ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs}
 """Family of each engine that the same checks run in."""
+FAMILIES = dict(
+    sorted(
+        {
+            "KV1": "file and tree",
+            "KV2": "declared physics",
+            "KV3": "kinematics by geometry",
+            "KV6": "agreement",
+            "KV7": "task of a robot",
+            **{family: ENGINES[name].title for name, family in ENGINE_FAMILIES.items()},
+        }.items()
+    )
+)
+"""Title of each family, keyed by the beginning of its ids."""
 _NOT_OURS = ("KV1", "KV2", "KV6")
 """Families whose findings no choice of a joint can mend."""
 

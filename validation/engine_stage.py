@@ -64,7 +64,7 @@ def _run(context: EngineContext, recorder: Recorder) -> None:
                 check.run(result, context)
         if number == _LOAD and not ("model" in vars(context) and context.model.complete):
             obstacle = f"{entry.title} does not load the model as it is in the file ({check.id})"
-        if number == _REST and "sweep" not in vars(context):
+        elif number == _REST and not obstacle and "sweep" not in vars(context):
             obstacle = f"the contacts at rest could not be measured ({check.id})"
         if number == "05" and "drives" in vars(context):
             for curve in _curves(context):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from kinematify.simulation import engines
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation import engine_stage
 from kinematify.validation.catalogue import agreement, evidence, meshes, task
 from kinematify.validation.checks import CHECKS, checks_of
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from kinematify.validation.catalogue import Check
 
-ENGINES = tuple(name for name, entry in engines.ENGINES.items() if entry.extra is None)
+DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
 """Engines that every installation has; FCL and the exact geometry are always there."""
 
 CheckKey = tuple[str, str | None]

@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
 from kinematify.manipulation.request import Suspicion
+from kinematify.simulation.engines import ENGINES, require_engine
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import run_stages, start_server
 from kinematify.validation.plan import (
-    ENGINES,
+    DEFAULT_ENGINES,
     agreement_stage,
     asset_stage,
     keys,
@@ -34,7 +35,7 @@ from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.suppression import suppress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.request import TaskRequest
@@ -53,7 +54,7 @@ def validate(
     package_dirs: Sequence[str | Path] = (),
     settings: ValidationSettings | None = None,
     selected: Collection[str] | None = None,
-    engines: Sequence[str] = ENGINES,
+    engines: Sequence[str] = DEFAULT_ENGINES,
     suppressions: Sequence[Suppression] = (),
     task: TaskRequest | None = None,
     workers: int | None = None,
@@ -66,7 +67,8 @@ def validate(
         package_dirs: Where packages lie (``package://``).
         settings: Thresholds and budgets; the shipped ones if absent.
         selected: Ids of the checks to run; all if absent. Those of file and meshes always run, and their errors count.
-        engines: Of `ENGINES`; checks of the others are reported as skipped.
+        engines: Of `kinematify.simulation.engines.ENGINES`; checks of others that every installation has are reported
+            as skipped.
         suppressions: Findings that do not count.
         task: What a robot is to do with the object (KV7xx); without one these checks are not in the report.
         workers: Processes at a time; as many as there are cores if absent.
@@ -77,9 +79,14 @@ def validate(
 
     Raises:
         InputError: `path` is not a URDF at all (missing, unreadable, binary, xacro, MJCF).
+        EnvironmentFault: An engine was asked for that is not installed.
     """
-    known = frozenset(_checks(task))
-    run = _Run(Path(path), known if selected is None else known & frozenset(selected), progress, task)
+    for engine in engines:
+        require_engine(engine)
+    chosen = tuple(engine for engine in ENGINES if engine in engines)
+    checks = _checks(task, chosen)
+    wanted = frozenset(checks) if selected is None else frozenset(checks) & frozenset(selected)
+    run = _Run(path=Path(path), selected=wanted, progress=progress, task=task, engines=chosen, checks=checks)
     settings = settings or load_settings()
     try:
         with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
@@ -92,7 +99,7 @@ def validate(
                 deadline=time.time() + settings.budget.seconds,
                 task=task,
             )
-            run.all(request, engines, workers or os.cpu_count() or 1)
+            run.all(request, workers or os.cpu_count() or 1)
     except KeyboardInterrupt:
         run.interrupted = True
     return run.report(settings, suppressions)
@@ -111,19 +118,33 @@ _LEEWAY = 20.0
 """Seconds in which the comparison of engines, and what the stage of a task is at, may end after the budget."""
 
 
-def _checks(task: TaskRequest | None) -> dict[str, Check]:
-    """Checks of the report."""
-    return {name: check for name, check in CATALOGUE.items() if task is not None or not name.startswith("KV7")}
+def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
+    """Checks of the report; those of a task and of engines that not every installation has only when asked for."""
+    known = {None, *DEFAULT_ENGINES, *engines}
+    return {
+        name: check
+        for name, check in CATALOGUE.items()
+        if (task is not None or not name.startswith("KV7")) and known & {*(check.engines or (None,))}
+    }
 
 
 class _Run:
     """Results as they come in; what has not come in is named with its reason at the end."""
 
     def __init__(
-        self, path: Path, selected: frozenset[str], progress: Progress | None, task: TaskRequest | None
+        self,
+        *,
+        path: Path,
+        selected: frozenset[str],
+        progress: Progress | None,
+        task: TaskRequest | None,
+        engines: Sequence[str],
+        checks: Mapping[str, Check],
     ) -> None:
         self.path = path
         self.task = task
+        self.engines = engines
+        self.checks = checks
         self.selected = selected
         self.interrupted = False
         self._progress = progress or (lambda stage, fraction: None)
@@ -135,7 +156,7 @@ class _Run:
         self._failures: dict[str, str] = {}
         self._started = time.perf_counter()
 
-    def all(self, request: StageRequest, engines: Sequence[str], workers: int) -> None:
+    def all(self, request: StageRequest, workers: int) -> None:
         """Run everything that can run."""
         start_server()
         asset_request = replace(request, selected=request.selected | _GUARDS)
@@ -153,19 +174,18 @@ class _Run:
             return
         if self.task is not None:
             request = replace(request, selected=request.selected | _DOUBTS)
-        stages = needed(later_stages([engine for engine in ENGINES if engine in engines]), request.selected)
+        stages = needed(later_stages(self.engines), request.selected)
         for number, end in enumerate(run_stages(stages, request, workers=workers)):
             self._take_end(end)
             self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
         self._explain(
-            [key for key in self._missing() if key[1] in set(ENGINES) - set(engines)],
+            [key for key in self._missing() if key[1] in set(ENGINES) - set(self.engines)],
             Status.SKIPPED,
             "the engine was not asked for",
         )
-        chosen = [engine for engine in ENGINES if engine in engines]
-        self._compare(request, chosen)
+        self._compare(request, self.engines)
         if self.task is not None:
-            self._use(request, chosen)
+            self._use(request, self.engines)
 
     def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Hold the engines against each other; it is quick, and runs even where no time is left."""
@@ -206,8 +226,10 @@ class _Run:
         if self.interrupted:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
-        checks = suppress([self._result(key) for key in keys(list(_checks(self.task).values()))], suppressions)
-        facts = environment(settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted)
+        checks = suppress([self._result(key) for key in keys(list(self.checks.values()))], suppressions)
+        facts = environment(
+            settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
+        )
         inferred = inferred_beside(self.path)
         return ValidationReport(
             model=str(self.path),
@@ -249,9 +271,7 @@ class _Run:
         return f"the meshes cannot be used, see {', '.join(faults)}" if faults else None
 
     def _missing(self) -> Iterable[CheckKey]:
-        return [
-            key for key in keys(list(_checks(self.task).values())) if key not in self._results and key not in self._why
-        ]
+        return [key for key in keys(list(self.checks.values())) if key not in self._results and key not in self._why]
 
     def _explain_rest(self, status: Status, reason: str) -> None:
         self._explain(self._missing(), status, reason)

@@ -43,6 +43,7 @@ MODULES = {
     "pybullet": ("pybullet", "engine"),
     "pin": ("pinocchio", "engine"),
     "coal": ("coal", "engine"),
+    "drake": ("pydrake.multibody.plant", "engine"),
     "ompl": ("ompl.base", "motion planning"),
     "gymnasium": ("gymnasium", "environments"),
     "click": ("click", "command line"),

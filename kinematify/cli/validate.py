@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     metavar="LIST",
     default="mujoco,pybullet,pinocchio",
     show_default=True,
-    help="Engines to run, separated by commas; none: only file and geometry.",
+    help="Engines to run, separated by commas; drake can be added; none: only file and geometry.",
 )
 @click.option(
     "--suppress", type=click.Path(path_type=Path), metavar="FILE", help="YAML list of accepted findings with reasons."
@@ -190,7 +190,7 @@ def _matching(patterns: str) -> frozenset[str]:
 
 
 def _engines(words: str) -> tuple[str, ...]:
-    from kinematify.validation.plan import ENGINES
+    from kinematify.simulation.engines import ENGINES
 
     chosen = [word.strip().lower() for word in words.split(",")] if words.strip().lower() not in ("", "none") else []
     unknown = [word for word in chosen if word not in ENGINES]

@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from lxml import etree
-from pydrake.geometry import CollisionFilterDeclaration, GeometrySet, HalfSpace
+from pydrake.geometry import (
+    AddCompliantHydroelasticPropertiesForHalfSpace,
+    AddContactMaterial,
+    CollisionFilterDeclaration,
+    DefaultProximityProperties,
+    GeometrySet,
+    HalfSpace,
+    ProximityProperties,
+    SceneGraphConfig,
+)
 from pydrake.math import RigidTransform
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
@@ -49,6 +58,13 @@ _RESERVED = ("world", "WorldBody")
 _FREE_LOOKS = 24
 """Times at which speeds and energies of a free run are measured."""
 _FRICTION = 0.5
+"""Of the floor."""
+_SLAB, _MODULUS = 0.1, 1e7
+"""Thickness [m] and stiffness [Pa] of the floor."""
+_ABOVE = 1e-3
+"""Height above the floor of what does not touch it [m], as far as one cares."""
+_CHATTER = ("half spaces",)
+"""In warnings about our own floor."""
 
 
 def open_engine(settings: EngineSettings, log: Path) -> DrakeEngine:
@@ -68,7 +84,9 @@ class _Said(logging.Handler):
         self.texts: list[str] = []
 
     def emit(self, record: logging.LogRecord) -> None:
-        self.texts.append(record.getMessage())
+        text = record.getMessage()
+        if not any(words in text for words in _CHATTER):
+            self.texts.append(text)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -97,8 +115,11 @@ class _World:
     diagram: Any
     plant: Any
     scene: Any
+    instance: Any
     names: tuple[str, ...]
     """Of the links in the document's order, as Drake knows them."""
+    failure: list[str] = field(default_factory=list)
+    """Why the last run ended early."""
 
     @cached_property
     def context(self) -> Any:
@@ -164,11 +185,22 @@ class _World:
         return self.scene.get_query_output_port().Eval(self.scene.GetMyContextFromRoot(self.context))
 
     def touching(self) -> Iterator[tuple[int, int, float]]:
-        """(link, link, depth [m]) of all contacts between links."""
-        link_of = self.link_of_geometry
-        for pair in self.query().ComputePointPairPenetration():
+        """(link, link, depth [m]) of all contacts between links.
+
+        The depth of a contact between meshes is an upper bound; the signed distance of the same pair is the depth.
+        """
+        link_of, query = self.link_of_geometry, self.query()
+        for pair in query.ComputePointPairPenetration():
             if pair.id_A in link_of and pair.id_B in link_of:
-                yield link_of[pair.id_A], link_of[pair.id_B], float(pair.depth)
+                depth = -query.ComputeSignedDistancePairClosestPoints(pair.id_A, pair.id_B).distance
+                yield link_of[pair.id_A], link_of[pair.id_B], float(depth)
+
+    def sunk(self) -> float:
+        """How deep a link is in the floor [m]; where none touches it, a little above."""
+        link_of = self.link_of_geometry
+        pairs = self.query().ComputePointPairPenetration()
+        depths = [pair.depth for pair in pairs if (pair.id_A in link_of) != (pair.id_B in link_of)]
+        return float(max(depths, default=-_ABOVE))
 
     def fastest(self) -> float:
         """Largest speed of a link's frame [m/s]."""
@@ -201,7 +233,7 @@ class _World:
         """
         simulator = Simulator(self.diagram, self.context)
         plant, context = self.plant, self.plant_context
-        desired = plant.get_desired_state_input_port(plant.GetModelInstanceByName(_MODEL))
+        desired = plant.get_desired_state_input_port(self.instance)
         self.context.SetTime(0.0)
         try:
             simulator.Initialize()
@@ -215,12 +247,6 @@ class _World:
                 yield number
         except RuntimeError as error:
             self.failure.append(" ".join(str(error).split())[:200])
-
-    failure: list[str] = field(default_factory=list)
-    """Why the last run ended early."""
-
-
-_MODEL = "kinematify"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -257,29 +283,20 @@ class DrakeModel:
         Raises:
             Refused: Drake cannot.
         """
-        robot = etree.parse(str(self.prepared.urdf)).getroot()
-        names = tuple(f"{name} link" if name in _RESERVED else name for name in self.mechanism.links)
-        renamed = dict(zip(self.mechanism.links, names, strict=True))
-        for element in robot.iter("link", "parent", "child"):
-            key = "name" if element.tag == "link" else "link"
-            element.set(key, renamed.get(element.get(key), element.get(key)))
-        robot.set("name", _MODEL)
-        if ideal:
-            for dynamics in list(robot.iter("dynamics")):
-                dynamics.getparent().remove(dynamics)
         builder = DiagramBuilder()
         plant, scene = AddMultibodyPlantSceneGraph(builder, self.engine.settings.time_step / finer)
         plant.set_adjacent_bodies_collision_filters(False)
         plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -GRAVITY])
         try:
-            Parser(plant).AddModelsFromString(etree.tostring(robot, encoding="unicode"), "urdf")
-            root = plant.GetBodyByName(renamed[self.mechanism.description.root])
+            (instance,) = Parser(plant).AddModels(str(self._urdf))
+            root = plant.GetBodyByName(self._names[self.mechanism.links.index(self.mechanism.description.root)])
+            for joint in map(plant.get_joint, plant.GetJointIndices(instance) if ideal else ()):
+                if joint.num_velocities() == 1:
+                    joint.set_default_damping(0.0)
             if floor is None:
                 plant.WeldFrames(plant.world_frame(), root.body_frame())
             else:
-                ground = RigidTransform([0.0, 0.0, floor])
-                friction = CoulombFriction(_FRICTION, _FRICTION)
-                plant.RegisterCollisionGeometry(plant.world_body(), ground, HalfSpace(), "floor", friction)
+                _lay_floor(plant, scene, floor)
             if servos is not None:
                 for leader, travel in enumerate(self.mechanism.travels):
                     limit = np.inf if force is None else float(force[leader])
@@ -291,7 +308,28 @@ class DrakeModel:
             diagram = builder.Build()
         except RuntimeError as error:
             raise Refused(" ".join(str(error).split())[:400].rstrip(".")) from error
-        return _World(mechanism=self.mechanism, diagram=diagram, plant=plant, scene=scene, names=names)
+        return _World(
+            mechanism=self.mechanism, diagram=diagram, plant=plant, scene=scene, instance=instance, names=self._names
+        )
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        """Of the links in the document's order, as Drake knows them."""
+        return tuple(f"{name} link" if name in _RESERVED else name for name in self.mechanism.links)
+
+    @cached_property
+    def _urdf(self) -> Path:
+        """The prepared file, or a copy beside it where a link has a reserved name."""
+        if self._names == self.mechanism.links:
+            return self.prepared.urdf
+        renamed = dict(zip(self.mechanism.links, self._names, strict=True))
+        tree = etree.parse(str(self.prepared.urdf))
+        for element in tree.getroot().iter("link", "parent", "child"):
+            key = "name" if element.tag == "link" else "link"
+            element.set(key, renamed[str(element.get(key))])
+        copy = self.prepared.urdf.with_name("drake.urdf")
+        tree.write(str(copy))
+        return copy
 
     @cached_property
     def loaded(self) -> LoadedModel:
@@ -443,7 +481,7 @@ class DrakeSimulation:
         world.place(self.model.values_at_rest)
         world.failure.clear()
         told = commands(drive, mechanism, self.servos, samples)
-        exerted = world.plant.get_net_actuation_output_port(world.plant.GetModelInstanceByName(_MODEL))
+        exerted = world.plant.get_net_actuation_output_port(world.instance)
         looks = set(drive.looks.tolist())
         values, forces, fastest = [], [], 0.0
         pressed: frozenset[tuple[int, int]] = frozenset()
@@ -482,22 +520,37 @@ class DrakeSimulation:
         if world.failure:
             return Dropped(depth=np.inf, speed=np.inf, warnings=tuple(world.failure))
         return Dropped(
-            depth=height - float(_corners(world)[:, 2].min()),
+            depth=world.sunk(),
             speed=float(np.linalg.norm((late - early)[:, :3, 3], axis=1).max()) / (window * self.step),
             warnings=(),
         )
 
 
+def _lay_floor(plant: Any, scene: Any, height: float) -> None:
+    """Add a floor that gives way over surfaces: at a single point per pair of shapes, models would rock and sink in."""
+    rigid = DefaultProximityProperties(compliance_type="rigid")
+    scene.set_config(SceneGraphConfig(default_proximity_properties=rigid))
+    properties = ProximityProperties()
+    AddCompliantHydroelasticPropertiesForHalfSpace(_SLAB, _MODULUS, properties)
+    AddContactMaterial(friction=CoulombFriction(_FRICTION, _FRICTION), properties=properties)
+    place = RigidTransform([0.0, 0.0, height])
+    plant.RegisterCollisionGeometry(plant.world_body(), place, HalfSpace(), "floor", properties)
+
+
 def _corners(world: _World) -> FloatArray:
-    """Corners of the boxes around all collision shapes of links, world frame [m], shape (n, 3)."""
+    """Vertices of the convex pieces of links, and corners of the boxes around primitives, world frame, shape (n, 3)."""
     query = world.query()
     inspector = query.inspector()
     signs = np.array(list(product((-1.0, 1.0), repeat=3)))
     corners = []
     for shape in world.link_of_geometry:
-        box = inspector.GetObbInGeometryFrame(shape)
-        places = (query.GetPoseInWorld(shape) @ box.pose()) @ (signs * box.half_width()).T
-        corners.append(places.T)
+        hull = inspector.GetConvexHull(shape)
+        if hull is None:
+            box = inspector.GetObbInGeometryFrame(shape)
+            places = box.pose() @ (signs * box.half_width()).T
+        else:
+            places = np.array([hull.vertex(k) for k in range(hull.num_vertices())]).T
+        corners.append((query.GetPoseInWorld(shape) @ places).T)
     return np.concatenate(corners) if corners else np.zeros((0, 3))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from kinematify.errors import EnvironmentFault
+from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -60,6 +61,22 @@ ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
 
 
+def require_engine(name: str) -> None:
+    """Ask for an engine before any work is done.
+
+    Raises:
+        EnvironmentFault: It is not installed.
+    """
+    engine = ENGINES[name]
+    if package_versions((engine.package,))[engine.package] == "missing":
+        raise EnvironmentFault(_missing(engine, f"the package {engine.package} is not installed"))
+
+
+def _missing(engine: EngineEntry, why: str) -> str:
+    install = f'pip install "kinematify[{engine.extra}]"' if engine.extra else "pip install kinematify"
+    return f"{engine.title} was asked for and cannot be loaded: {why}. Install it: {install}"
+
+
 def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
     """Load an engine's library.
 
@@ -71,12 +88,8 @@ def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
     Raises:
         EnvironmentFault: It is not installed.
     """
-    entry = ENGINES[name]
     try:
         module = importlib.import_module(f"kinematify.simulation.{name}_engine")
     except ImportError as error:
-        install = f'pip install "kinematify[{entry.extra}]"' if entry.extra else "pip install kinematify"
-        raise EnvironmentFault(
-            f"{entry.title} was asked for and cannot be loaded ({error}). Install it: {install}"
-        ) from error
+        raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
     return cast("Engine", module.open_engine(settings, log))

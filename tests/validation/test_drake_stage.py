@@ -1,0 +1,111 @@
+"""The Drake stage: the same checks as in the other engines, from one more file behind the protocol."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kinematify.robot.read import read_model
+from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
+from kinematify.simulation.prepared import URDF_FILE
+from kinematify.validation import engine_stage
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Blame, Severity, Status
+from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
+
+pytest.importorskip("pydrake.multibody.plant", reason="Drake is not installed: pip install 'kinematify[drake]'")
+
+IDS = {check.id for check in CHECKS.values() if "drake" in check.engines}
+run = partial(engine_stage.run, engine="drake")
+
+
+def told(model: Model, folder: Path) -> Told:
+    return tell(run, prepared_request(model, folder))
+
+
+def pendulum(**changes: object) -> Model:
+    base = Part(name="base", boxes=(Box(size=(0.1, 0.1, 0.1)),))
+    rod = Part(
+        name="rod",
+        parent="base",
+        kind="revolute",
+        boxes=(Box(size=(0.4, 0.02, 0.02), at=(0.2, 0.0, 0.0)),),
+        at=(0.06, 0.0, 0.1),
+        axis=(0.0, 1.0, 0.0),
+        limits=(-1.0, 1.0),
+        center=(0.2, 0.0, 0.0),
+    )
+    return Model(parts=(base, rod)).with_part("rod", **changes)
+
+
+def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
+    result = told(cabinet(), tmp_path)
+    assert set(result.results) == IDS
+    assert {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS} == {}
+    assert result.results["KV805"].measured["arrived"] == 4
+
+
+def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_path: Path) -> None:
+    request = prepared_request(pendulum(), tmp_path)
+    tell(run, request)
+    poses = read_poses(tmp_path, "drake")
+    robot = read_model(request.urdf)
+    rows = agreement_configurations(robot, request.settings.agreement, request.settings.seed)
+    assert poses is not None
+    np.testing.assert_allclose(poses.T_world_link, link_poses(robot, rows), atol=1e-12)
+    assert poses.mass_matrix is not None
+    np.testing.assert_allclose(poses.mass_matrix.ravel(), 0.05 + 2.0 * 0.2**2)
+    assert poses.gravity is not None
+    weight = 2.0 * 9.81 * 0.2 * np.cos(rows.q[: rows.dynamic, 0])
+    np.testing.assert_allclose(poses.gravity[:, 0], -weight)  # it would turn about +y downwards
+
+
+def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
+    result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
+    (finding,) = result.results["KV805"].findings
+    assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
+    assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
+    assert finding.value == pytest.approx(0.005, abs=0.005)  # the room behind it
+
+
+def test_pair_that_touches_at_rest_stops_a_joint_although_it_does_not_act(tmp_path: Path) -> None:
+    model = cabinet().with_part("drawer", boxes=(Box(size=(0.402, 0.27, 0.38)),), axis=(-1.0, 0.0, 0.0))
+    result = told(model, tmp_path)
+    assert result.results["KV803"].measured["switched_off_pairs"] == 1.0
+    assert {(f.joint, f.pair) for f in result.results["KV805"].findings} == {("drawer_joint", ("body", "drawer"))}
+
+
+def test_weak_joint_does_not_hold_and_falls_to_its_limit(tmp_path: Path) -> None:
+    result = told(pendulum(effort=0.5), tmp_path)
+    (finding,) = result.results["KV804"].findings
+    assert (finding.joint, finding.limit) == ("rod_joint", 0.5)
+    assert finding.value == pytest.approx(2.0 * 9.81 * 0.2, rel=1e-3)
+    assert result.results["KV804"].measured["drift_rad"] == pytest.approx(1.0, abs=0.05)
+    assert result.results["KV808"].status is Status.PASS
+
+
+def test_follower_goes_along(tmp_path: Path) -> None:
+    mimic = '<mimic joint="drawer_joint" multiplier="-1" offset="0"/>'
+    other = replace(cabinet().parts[1], name="other", at=(1.0, 0.155, 0.0), limits=(-0.3, 0.0), extra=mimic)
+    parts = tuple(part for part in cabinet().parts if part.name != "door")
+    result = told(Model(parts=(*parts, other)), tmp_path)
+    assert result.results["KV805"].measured == {"drives": 2.0, "arrived": 2.0}
+
+
+def test_link_called_world_is_a_link(tmp_path: Path) -> None:
+    body, *others = cabinet().parts
+    renamed = Model(parts=(Part(name="world", boxes=()), replace(body, parent="world", at=(0.0, 0.0, 1.0)), *others))
+    assert {r.status for r in told(renamed, tmp_path).results.values()} == {Status.PASS}
+
+
+def test_refused_model_blocks_the_rest(tmp_path: Path) -> None:
+    request = prepared_request(cabinet(), tmp_path)
+    (tmp_path / URDF_FILE).write_text("<robot name='x'><link")
+    result = tell(run, request)
+    assert [f.severity for f in result.results["KV801"].findings] == [Severity.ERROR]
+    assert {r.status for check, r in result.results.items() if check != "KV801"} == {Status.BLOCKED}
+    assert set(result.results) == IDS
