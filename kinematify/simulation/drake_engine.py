@@ -289,7 +289,7 @@ class DrakeModel:
         plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -GRAVITY])
         try:
             (instance,) = Parser(plant).AddModels(str(self._urdf))
-            root = plant.GetBodyByName(self._names[self.mechanism.links.index(self.mechanism.description.root)])
+            root = plant.GetBodyByName(self._names[self.mechanism.links.index(self.mechanism.robot.root)])
             for joint in map(plant.get_joint, plant.GetJointIndices(instance) if ideal else ()):
                 if joint.num_velocities() == 1:
                     joint.set_default_damping(0.0)

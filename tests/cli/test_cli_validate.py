@@ -24,8 +24,8 @@ from kinematify.validation.plan import keys
 from kinematify.validation.report import ValidationReport
 from tests.reports import add_checks, finding, full_report, report, result
 
-WITHOUT_TASK = [check for check in CATALOGUE.values() if not check.id.startswith("KV7")]
-"""KV7 is told only with --task."""
+USUAL = [check for check in CATALOGUE.values() if not check.id.startswith(("KV7", "KV8"))]
+"""KV7 is told only with --task, KV8 only with Drake."""
 INERTIAL = """<inertial><origin xyz="{x} 0 {z}"/><mass value="2"/>
       <inertia ixx="0.05" iyy="0.05" izz="0.08" ixy="0" ixz="0" iyz="0"/></inertial>"""
 SHAPE = '<{tag}><origin xyz="{x} 0 {z}"/><geometry><box size="0.4 0.4 {high}"/></geometry></{tag}>'
@@ -95,7 +95,7 @@ def test_a_sound_chest_has_no_error(real: tuple[Path, subprocess.CompletedProces
 
 def test_every_check_is_in_every_report(real: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     folder, _ = real
-    expected = keys(WITHOUT_TASK)
+    expected = keys(USUAL)
     told = json.loads((folder / "report.json").read_text())["checks"]
     assert tuple((check["check"], check["engine"]) for check in told) == expected
     cases = list(etree.parse(folder / "report.junit").getroot().iter("testcase"))
@@ -107,7 +107,7 @@ def test_html_shows_the_model(real: tuple[Path, subprocess.CompletedProcess[str]
     folder, _ = real
     text = (folder / "report.html").read_text()
     assert "data:image/png;base64," in text
-    assert all(check.id in text for check in WITHOUT_TASK)
+    assert all(check.id in text for check in USUAL)
 
 
 def test_progress_is_on_stderr(real: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
@@ -335,7 +335,7 @@ def test_control_c_leaves_valid_partial_reports(tmp_path: Path) -> None:
     assert "interrupted: partial" in out
     answer = json.loads((tmp_path / "r.json").read_text())
     assert answer["environment"]["interrupted"] is True
-    assert len(answer["checks"]) == len(keys(WITHOUT_TASK))
+    assert len(answer["checks"]) == len(keys(USUAL))
     assert not json.loads((tmp_path / "r.sarif").read_text())["runs"][0]["invocations"][0]["executionSuccessful"]
     assert etree.parse(tmp_path / "r.junit").getroot().tag == "testsuites"
     assert "partial" in (tmp_path / "r.html").read_text()
