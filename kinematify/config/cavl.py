@@ -63,7 +63,3 @@ class CavlConfig(StageConfig):
         if not signs or 0 in signs or signs != [(travel > 0) - (travel < 0) for travel in self.travels]:
             raise ValueError("angles_deg and travels must be pairs of equal sign, without zeros")
         return self
-
-    def without_anchor(self) -> CavlConfig:
-        """Collision avoidance alone: the paper's ablation "w/o DW-CAVL"."""
-        return self.model_copy(update={"consistency_weight": 0.0, "pivot_weight": 0.0})

@@ -12,7 +12,7 @@ from kinematify.model.scene import GLYPH_COLORS, camera_for
 from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import rotation_about
+from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -94,14 +94,9 @@ def _subtree(parents: Mapping[int, int], top: int) -> set[int]:
 
 def _motion(joint: ShownJoint, diagonal: float) -> FloatArray:
     """How the joint moves its part, shape (4, 4): towards the larger limit, by as much as a picture needs."""
-    T_moved = np.eye(4)
     end = joint.upper if joint.upper >= -joint.lower else joint.lower
-    if joint.kind is JointType.PRISMATIC:
-        T_moved[:3, 3] = np.clip(end, -_MOVED_SLIDE * diagonal, _MOVED_SLIDE * diagonal) * joint.axis
-    elif joint.kind is not JointType.FIXED:
-        T_moved[:3, :3] = rotation_about(joint.axis, float(np.clip(end, -_MOVED_TURN, _MOVED_TURN)))
-        T_moved[:3, 3] = joint.pivot - T_moved[:3, :3] @ joint.pivot
-    return T_moved
+    most = _MOVED_TURN if joint.kind.turns else _MOVED_SLIDE * diagonal
+    return joint_motion(joint.kind, joint.axis, joint.pivot, float(np.clip(end, -most, most)))
 
 
 def _arrow(part: Part, joint: ShownJoint, T_moved: FloatArray, diagonal: float) -> PosedMesh:

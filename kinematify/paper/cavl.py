@@ -356,7 +356,8 @@ def _descended(
     """Adam on the unconstrained direction a and the pivot's shift in diagonals, all candidates of one type at once."""
     pivots, axes = _stacked(candidates)
     free, shift = axes.clone().requires_grad_(), torch.zeros_like(pivots).requires_grad_()
-    adam = _Adam([free, shift] if candidates[0].kind.turns else [free], config.learning_rate)
+    variables = [free, shift] if candidates[0].kind.turns else [free]
+    adam = torch.optim.Adam(variables, lr=config.learning_rate, eps=1e-12)
     best, best_axes, best_pivots = torch.full((len(axes),), torch.inf, dtype=torch.float64), axes, pivots
     for step in range(config.refine_steps + 1):
         now_axes, now_pivots = unit_axis(free), pivots + scene.diagonal * shift
@@ -368,7 +369,9 @@ def _descended(
         best_axes = torch.where(better, now_axes.detach(), best_axes)
         best_pivots = torch.where(better, now_pivots.detach(), best_pivots)
         if step < config.refine_steps:
-            adam.step(objective.sum())
+            adam.zero_grad()
+            objective.sum().backward()  # type: ignore[no-untyped-call]
+            adam.step()
     return [
         JointCandidate(
             kind=candidate.kind,
@@ -380,25 +383,3 @@ def _descended(
         )
         for candidate, axis, pivot in zip(candidates, best_axes, best_pivots, strict=True)
     ]
-
-
-class _Adam:
-    """The Adam rule with its usual constants; torch's own takes a second or more to import at its first use."""
-
-    def __init__(self, variables: list[Tensor], rate: float) -> None:
-        self._variables, self._rate, self._steps = variables, rate, 0
-        self._means = [torch.zeros_like(variable) for variable in variables]
-        self._squares = [torch.zeros_like(variable) for variable in variables]
-
-    def step(self, objective: Tensor) -> None:
-        """Change the variables in place, against the gradient of a scalar."""
-        self._steps += 1
-        gradients = torch.autograd.grad(objective, self._variables)
-        for variable, gradient, mean, square in zip(
-            self._variables, gradients, self._means, self._squares, strict=True
-        ):
-            mean.lerp_(gradient, 0.1)
-            square.lerp_(gradient.square(), 0.001)
-            unbiased = square / (1.0 - 0.999**self._steps)
-            with torch.no_grad():
-                variable.sub_(self._rate * mean / (1.0 - 0.9**self._steps) / (unbiased.sqrt() + 1e-12))

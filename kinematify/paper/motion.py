@@ -1,16 +1,13 @@
-"""Rigid motions of joints: differentiable batches in torch and 4 x 4 matrices in numpy (paper III-D)."""
+"""Rigid motions of joints as differentiable batches (paper III-D)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import torch
 
 if TYPE_CHECKING:
     from torch import Tensor
-
-    from kinematify.robot.arrays import FloatArray
 
 
 def unit_axis(free: Tensor) -> Tensor:
@@ -73,36 +70,3 @@ def slide(points: Tensor, axes: Tensor, distances: Tensor) -> Tensor:
     """
     shifts = distances[..., None] * axes[:, None, :]
     return points + shifts[:, :, None, :]
-
-
-def revolute_transform(axis: FloatArray, pivot: FloatArray, angle: float) -> FloatArray:
-    """Rotation by `angle` [rad] about the line through `pivot`, as a matrix on world points, shape (4, 4).
-
-    Raises:
-        ValueError: The axis has no direction.
-    """
-    x, y, z = unit = _unit(axis)
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    transform = np.eye(4)
-    rotation = np.cos(angle) * np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * np.outer(unit, unit)
-    transform[:3, :3] = rotation
-    transform[:3, 3] = pivot - rotation @ pivot
-    return transform
-
-
-def prismatic_transform(axis: FloatArray, distance: float) -> FloatArray:
-    """Shift by `distance` along `axis`, as a matrix on world points, shape (4, 4).
-
-    Raises:
-        ValueError: The axis has no direction.
-    """
-    transform = np.eye(4)
-    transform[:3, 3] = distance * _unit(axis)
-    return transform
-
-
-def _unit(axis: FloatArray) -> FloatArray:
-    length = float(np.linalg.norm(axis))
-    if not (np.isfinite(length) and length > 0.0):
-        raise ValueError(f"A joint axis needs a direction, got {np.asarray(axis).tolist()}.")
-    return np.asarray(axis, dtype=np.float64) / length

@@ -17,7 +17,3 @@ class SignedDistanceField(Protocol):
     def value(self, points: Tensor) -> Tensor:
         """Signed distance [m] at world points, shape (..., 3) -> (...)."""
         ...
-
-    def value_and_gradient(self, points: Tensor) -> tuple[Tensor, Tensor]:
-        """Signed distance [m], shape (...), and its gradient in the world frame, shape (..., 3), both detached."""
-        ...

@@ -148,14 +148,6 @@ class SignedDistanceGrid:
         )
         return sampled.reshape(exact.shape[:-1]) + _length(exact - inside)
 
-    def value_and_gradient(self, points: Tensor) -> tuple[Tensor, Tensor]:
-        """Signed distance [m], shape (...), and its gradient in the world frame, shape (..., 3), both detached."""
-        with torch.enable_grad():
-            leaf = points.detach().to(torch.float64).requires_grad_()
-            values = self.value(leaf)
-            (gradient,) = torch.autograd.grad(values.sum(), leaf)
-        return values.detach(), gradient
-
 
 def _length(vectors: Tensor) -> Tensor:
     """Norm over the last dimension with gradient 0 at 0, (..., 3) -> (...); four times as quick as vector_norm."""

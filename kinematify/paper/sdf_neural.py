@@ -62,14 +62,6 @@ class NeuralSignedDistanceField:
         beyond = torch.linalg.vector_norm(local - inside + 1e-300, dim=-1)
         return torch.add(found.to(points.device, torch.float64).reshape(local.shape[:-1]) * self._box.scale, beyond)
 
-    def value_and_gradient(self, points: Tensor) -> tuple[Tensor, Tensor]:
-        """Signed distance [m], shape (...), and its gradient in the world frame, shape (..., 3), both detached."""
-        with torch.enable_grad():
-            leaf = points.detach().to(torch.float64).requires_grad_()
-            values = self.value(leaf)
-            (gradient,) = torch.autograd.grad(values.sum(), leaf)
-        return values.detach(), gradient
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Box:

@@ -13,7 +13,7 @@ import numpy as np
 from kinematify.errors import DescriptionError
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import rotation_about
+from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -166,12 +166,7 @@ class Joint:
 
     def motion(self, value: float) -> FloatArray:
         """Return the transform of the child in the joint frame, shape (4, 4), at `value` [rad or m]."""
-        transform = np.eye(4)
-        if self.kind.turns:
-            transform[:3, :3] = rotation_about(self.axis, value)
-        elif self.kind is JointType.PRISMATIC:
-            transform[:3, 3] = value * self.axis
-        return transform
+        return joint_motion(self.kind, self.axis, np.zeros(3), value)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.joint_type import JointType
+
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
@@ -24,6 +26,24 @@ def rotation_about(axis: FloatArray, angle: float) -> FloatArray:
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     matrix: FloatArray = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
     return matrix
+
+
+def joint_motion(kind: JointType, axis: FloatArray, pivot: FloatArray, value: float) -> FloatArray:
+    """Return the motion of a joint as a transform of points in the frame of its line, shape (4, 4).
+
+    Args:
+        kind: Type of the joint; a fixed one does not move.
+        axis: Unit direction, shape (3,).
+        pivot: Point on the line [m], shape (3,).
+        value: Of the joint [rad or m].
+    """
+    transform = np.eye(4)
+    if kind is JointType.PRISMATIC:
+        transform[:3, 3] = value * axis
+    elif kind.turns:
+        transform[:3, :3] = rotation_about(axis, value)
+        transform[:3, 3] = pivot - transform[:3, :3] @ pivot
+    return transform
 
 
 def rotation_from_x(axis: FloatArray) -> FloatArray:

@@ -34,8 +34,6 @@ class EdgeEvidence:
     """Unit direction of the best joint in the world frame, shape (3,); None where there is none. Read-only."""
     point: FloatArray | None = None
     """A point on its line in the world frame [m], shape (3,); None where there is none. Read-only."""
-    turns: bool = True
-    """True for a revolute joint, False for a prismatic one."""
     has_journal: bool = False
     """One part holds the other all around a line, beyond doubt; asked only where the tree depends on it."""
     passing: bool = False

@@ -48,11 +48,6 @@ class PartStats:
         object.__setattr__(self, "bounds", read_only(self.bounds, np.float64))
 
     @property
-    def height(self) -> float:
-        """Vertical extent [m]."""
-        return float(self.bounds[1, 2] - self.bounds[0, 2])
-
-    @property
     def diagonal(self) -> float:
         """Length of the bounding box diagonal [m]."""
         return float(np.linalg.norm(self.bounds[1] - self.bounds[0]))

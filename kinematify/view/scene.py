@@ -19,7 +19,7 @@ from kinematify.robot.robot import (
     rest_configuration,
     rigid_groups,
 )
-from kinematify.robot.transforms import rotation_about
+from kinematify.robot.transforms import joint_motion, rotation_about
 from kinematify.validation.formats.view_data import camera_turn
 
 if TYPE_CHECKING:
@@ -171,13 +171,7 @@ class ViewScene:
         if joint.name not in self._tried:
             return joint.motion(value)
         axis, pivot, kind = self._axis(joint)
-        motion = np.eye(4)
-        if kind.turns:
-            motion[:3, :3] = rotation_about(axis, value)
-            motion[:3, 3] = pivot - motion[:3, :3] @ pivot
-        elif kind is JointType.PRISMATIC:
-            motion[:3, 3] = value * axis
-        return motion
+        return joint_motion(kind, axis, pivot, value)
 
     @cached_property
     def _zero(self) -> dict[str, FloatArray]:

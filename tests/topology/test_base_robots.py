@@ -78,5 +78,5 @@ def true_joints(robot: yourdfpy.URDF, names: list[str]) -> dict[tuple[int, int],
         if joint.type != "fixed":
             ends = pair(names.index(rigid_group(robot, joint.parent)), names.index(joint.child))
             axis = robot.get_transform(joint.child)[:3, :3] @ joint.axis
-            joints[ends] = EdgeEvidence(quality=1.0, axis=axis, turns=joint.type != "prismatic")
+            joints[ends] = EdgeEvidence(quality=1.0, axis=axis)
     return joints

@@ -222,7 +222,6 @@ def test_measurements_of_boxes() -> None:
     assert solid.hull_volume == pytest.approx(1.0)
     assert solid.flat_bottom == pytest.approx(1.0)
     assert solid.bottom == pytest.approx(0.75)
-    assert solid.height == pytest.approx(0.5)
     assert solid.diagonal == pytest.approx(np.sqrt(4 + 1 + 0.25))
 
 

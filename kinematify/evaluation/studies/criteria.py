@@ -28,8 +28,8 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointType
-from kinematify.paper.motion import prismatic_transform, revolute_transform
 from kinematify.paper.sdf_grid import exact_distance
+from kinematify.robot.transforms import joint_motion
 from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.plan import Plan
@@ -177,11 +177,7 @@ def _measured(plan: Plan, simulator: Simulator, graph: ContactGraph, joint: Join
 
 
 def _moved(joint: JointEstimate, value: float, points: FloatArray) -> FloatArray:
-    T = (
-        revolute_transform(joint.axis, joint.pivot, value)
-        if joint.kind.turns
-        else prismatic_transform(joint.axis, value)
-    )
+    T = joint_motion(joint.kind, joint.axis, joint.pivot, value)
     return points @ T[:3, :3].T + T[:3, 3]
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.assembly.part import Assembly, Part
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import rotation_about
+from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,13 +45,7 @@ class BlueprintJoint:
 
     def motion(self, value: float) -> FloatArray:
         """Return the world transform, shape (4, 4), of what the child carries when the joint moves by `value`."""
-        transform = np.eye(4)
-        if self.kind is JointType.PRISMATIC:
-            transform[:3, 3] = value * self.axis
-        elif self.kind.turns:
-            transform[:3, :3] = rotation_about(self.axis, value)
-            transform[:3, 3] = self.pivot - transform[:3, :3] @ self.pivot
-        return transform
+        return joint_motion(self.kind, self.axis, self.pivot, value)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
