@@ -29,11 +29,11 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointType
 from kinematify.paper.sdf_grid import exact_distance
-from kinematify.robot.transforms import joint_motion
 from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
+from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
