@@ -160,7 +160,7 @@ class _World:
         """Leading joints of the object at the start [rad or m]."""
         rest = rest_configuration(self.loaded.object)
         start = {**self.loaded.motion.start, self.loaded.motion.joint: float(self.loaded.motion.opened[0])}
-        return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.object.moving}
+        return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.object.leaders}
 
     def _add_drives(self, spec: mujoco.MjSpec) -> None:
         robot = self.loaded.motion.robot
@@ -177,7 +177,7 @@ class _World:
         driven = {*self.loaded.motion.robot.arm_joints, *self.loaded.motion.robot.finger_joints}
         for prefix, model, values in self._sides():
             for joint in model.joints:
-                if joint.joint.kind is JointType.FIXED or joint.joint.mimic is not None:
+                if joint.kind is JointType.FIXED or joint.mimic is not None:
                     continue
                 if prefix == _ROBOT and joint.name in driven:
                     continue
@@ -311,6 +311,6 @@ class _World:
     def _frame(self, time: float) -> Frame:
         states: list[dict[str, float]] = []
         for prefix, model, _ in self._sides():
-            names = [joint.name for joint in model.joints if joint.joint.kind is not JointType.FIXED]
+            names = [joint.name for joint in model.joints if joint.kind is not JointType.FIXED]
             states.append({name: float(self.data.joint(prefix + name).qpos[0]) for name in names})
         return Frame(time=time, robot=states[0], object=states[1])

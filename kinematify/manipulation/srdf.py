@@ -129,7 +129,7 @@ def write_srdf(
 def semantic_groups(model: Robot, urdf: Path, tool: str | None, gripper: Sequence[str]) -> tuple[SemanticGroup, ...]:
     """Find the arm and its hand, or all chains; see `write_srdf` for arguments and errors."""
     robot = model
-    if not model.moving:
+    if not model.leaders:
         raise InputError(
             f"The robot {urdf} has no movable joint, so there is nothing to plan. Give a robot that moves."
         )

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import FileSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredLink, DeclaredModel
+    from kinematify.robot.robot import Link, Robot
     from kinematify.validation.stage import OpenCheck
 
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class _Extent:
     """The room that the geometry of a link takes."""
 
-    link: DeclaredLink
+    link: Link
     diagonal: float
     """[m], independent of the link's pose."""
     low: FloatArray
@@ -41,7 +41,7 @@ class _Extent:
         return min(shape.line for shape in (*self.link.visuals, *self.link.collisions))
 
 
-def check_unit_slips(model: DeclaredModel, settings: FileSettings, check: OpenCheck) -> None:
+def check_unit_slips(model: Robot, settings: FileSettings, check: OpenCheck) -> None:
     """KV157: a link out of all proportion to the others, or far away from its parent."""
     extents = _extents(model)
     for name, extent in extents.items():
@@ -63,7 +63,7 @@ def check_unit_slips(model: DeclaredModel, settings: FileSettings, check: OpenCh
                 "Write the origin of the joint in metres; it looks like millimetres or centimetres.",
                 blame=Blame.KINEMATICS,
                 joint=joint,
-                link=model.joint_by_name[joint].joint.child,
+                link=model.joint_by_name[joint].child,
                 value=gap,
                 limit=settings.apart * size,
                 unit="m",
@@ -92,7 +92,7 @@ def _likely_factor(ratio: float) -> str:
     return "1000" if ratio < 1e-2 else "1"
 
 
-def check_model_size(model: DeclaredModel, settings: FileSettings, check: OpenCheck) -> None:
+def check_model_size(model: Robot, settings: FileSettings, check: OpenCheck) -> None:
     """KV158: the diagonal of the whole model."""
     extents = _extents(model)
     if not extents:
@@ -102,7 +102,7 @@ def check_model_size(model: DeclaredModel, settings: FileSettings, check: OpenCh
     size = float(np.linalg.norm(high - low))
     check.measured["diagonal_m"] = size
     largest = max(extents.values(), key=lambda extent: extent.diagonal)
-    moves = any(joint.joint.kind != "fixed" for joint in model.joints)
+    moves = any(joint.kind != "fixed" for joint in model.joints)
     # Joints in metres hold even the tiniest meshes apart, so that the largest link tells whether all are too small.
     shrunken = largest.diagonal < settings.tiny
     if shrunken or size < settings.small or size > settings.large:
@@ -123,10 +123,10 @@ def check_model_size(model: DeclaredModel, settings: FileSettings, check: OpenCh
         )
 
 
-def _extents(model: DeclaredModel) -> dict[str, _Extent]:
+def _extents(model: Robot) -> dict[str, _Extent]:
     """Keyed by link; links without geometry are left out."""
     found = {}
-    poses = forward_kinematics(model.kinematics, {})
+    poses = forward_kinematics(model, {})
     for link in model.links:
         clouds = [shape.mesh.vertices for shape in (*link.visuals, *link.collisions) if len(shape.mesh.vertices)]
         if clouds:
@@ -141,9 +141,9 @@ def _extents(model: DeclaredModel) -> dict[str, _Extent]:
     return found
 
 
-def _gaps(model: DeclaredModel, extents: dict[str, _Extent]) -> Iterator[tuple[str, float, float]]:
+def _gaps(model: Robot, extents: dict[str, _Extent]) -> Iterator[tuple[str, float, float]]:
     """Joint above a link, distance of its bounding box from that of the next link above with one, sum of sizes [m]."""
-    above = model.kinematics.joint_above
+    above = model.joint_above
     for name, extent in extents.items():
         joints = []
         place = name

@@ -90,7 +90,7 @@ def _load(check: OpenCheck, context: EngineContext, same: float) -> None:
 
 def _compare_axes(check: OpenCheck, context: EngineContext, loaded: LoadedModel, same: float) -> None:
     for name, joint in loaded.joints.items():
-        declared = context.declared.kinematics.joint_by_name[name].axis
+        declared = context.declared.joint_by_name[name].axis
         if joint.axis is not None and np.abs(joint.axis - declared).max() > same:
             check.find(
                 f"The axis of the joint {name} is {_vector(declared)} in the file and {_vector(joint.axis)} in "
@@ -119,7 +119,7 @@ def compare_with_file(
         mass_error: Relative difference that is an error.
     """
     engine = ENGINES[check.engine or ""].title
-    for described in model.kinematics.joints:
+    for described in model.joints:
         if described.kind != "fixed":
             _compare_joint(check, engine, described, loaded.joints.get(described.name))
     for link in prepared.links:
@@ -207,7 +207,7 @@ def poses_agree(check: OpenCheck, context: EngineContext) -> None:
     find_misplaced(
         check,
         context.rows,
-        ours=link_poses(context.declared.kinematics, context.rows),
+        ours=link_poses(context.declared, context.rows),
         theirs=seen.T_world_link,
         size=context.physics.size,
         settings=context.settings,

@@ -205,7 +205,7 @@ def steep_mass_ratios(result: OpenCheck, physics: Physics) -> None:
     for body in physics.bodies:
         if body.joint is None:
             continue
-        parent = physics.body_of[physics.model.joint_by_name[body.joint].joint.parent]
+        parent = physics.body_of[physics.model.joint_by_name[body.joint].parent]
         if parent.moves and body.mass > physics.settings.mass_ratio * parent.mass > 0.0:
             result.find(
                 f"The joint {body.joint} carries {body.mass:.3g} kg ({body.called}) on {parent.mass:.3g} kg "

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
     from kinematify.joints.hypotheses.line import Line
-    from kinematify.robot.robot import RobotDescription
+    from kinematify.robot.robot import Robot
 
 Pair = tuple[int, int]
 """Two bodies, the lower index first."""
@@ -101,22 +101,22 @@ class Bodies:
         return score_line(self.surfaces, edge, line, diagonal=self.diagonal, config=self.config.bearing)
 
 
-def read_bodies(description: RobotDescription, config: Config, *, seed: int) -> Bodies | None:
+def read_bodies(robot: Robot, config: Config, *, seed: int) -> Bodies | None:
     """Pose the bodies at rest and find their contacts; None where fewer than two bodies have geometry.
 
     Args:
-        description: Links, meshes and joints as declared.
+        robot: Links, meshes and joints as declared.
         config: How evidence is gathered.
         seed: Seed of all samples.
     """
-    if not any(link.has_geometry for link in description.links):
+    if not any(link.has_geometry for link in robot.links):
         return None
-    erased = erase(description, shuffle=False)
+    erased = erase(robot, shuffle=False)
     if len(erased.parts) < 2 or -1 in (joint.parent for joint in erased.truth.joints):
         return None
     most = config.assembly.max_part_faces
     parts = [part if len(part.faces) <= most else simplified(part, config.assembly) for part in erased.parts]
-    assembly = Assembly(parts=tuple(parts), source=description.name)
+    assembly = Assembly(parts=tuple(parts), source=robot.name)
     surfaces = part_surfaces(assembly, config=config.surface)
     graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=seed)
     bearings = {
@@ -127,8 +127,7 @@ def read_bodies(description: RobotDescription, config: Config, *, seed: int) -> 
         assembly=assembly,
         truth=erased.truth,
         links=tuple(
-            next(link for link in links if description.link_by_name[link].has_geometry)
-            for links in erased.truth.part_links
+            next(link for link in links if robot.link_by_name[link].has_geometry) for links in erased.truth.part_links
         ),
         tree=DeclaredTree(parents=erased.truth.parents),
         surfaces=surfaces,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import DescribedJoint, RigidGroup, RobotDescription
+    from kinematify.robot.robot import Joint, RigidGroup, Robot
 
     Poses = dict[str, FloatArray]
 
@@ -30,7 +30,7 @@ _ASIDE = 0.6
 _GOLDEN = 0.61803398875  # turns of hue: neighbours in order differ
 
 
-def view_data(robot: RobotDescription, *, faces: int) -> dict[str, Any] | None:
+def view_data(robot: Robot, *, faces: int) -> dict[str, Any] | None:
     """Return the object as JSON values; None if it has no geometry.
 
     Args:
@@ -63,7 +63,7 @@ def view_data(robot: RobotDescription, *, faces: int) -> dict[str, Any] | None:
     }
 
 
-def _mesh(robot: RobotDescription, group: RigidGroup, T_root_link: Poses) -> tuple[FloatArray, IntArray]:
+def _mesh(robot: Robot, group: RigidGroup, T_root_link: Poses) -> tuple[FloatArray, IntArray]:
     """All meshes of a group in the frame of its top link."""
     T_top_root = np.linalg.inv(T_root_link[group.top])
     vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
@@ -77,7 +77,7 @@ def _mesh(robot: RobotDescription, group: RigidGroup, T_root_link: Poses) -> tup
 
 
 def _extent(
-    robot: RobotDescription,
+    robot: Robot,
     groups: Sequence[RigidGroup],
     meshes: Sequence[tuple[FloatArray, IntArray]],
     rest: Mapping[str, float],
@@ -94,7 +94,7 @@ def _extent(
 
 
 def camera_turn(
-    robot: RobotDescription,
+    robot: Robot,
     groups: Sequence[RigidGroup],
     meshes: Sequence[tuple[FloatArray, IntArray]],
     rest: Mapping[str, float],
@@ -118,7 +118,7 @@ def camera_turn(
     return away + _ASIDE - 0.5 * math.pi
 
 
-def _placed(robot: RobotDescription, groups: Sequence[RigidGroup], index: int, T_root_link: Poses) -> dict[str, Any]:
+def _placed(robot: Robot, groups: Sequence[RigidGroup], index: int, T_root_link: Poses) -> dict[str, Any]:
     """On which body a body hangs, by which joint, and where at zero; bodies stand behind those that carry them."""
     joint = robot.joint_above.get(groups[index].top)
     if joint is None:
@@ -129,11 +129,11 @@ def _placed(robot: RobotDescription, groups: Sequence[RigidGroup], index: int, T
     return {"parent": parent, "joint": number, "T": np.round(T, 9).ravel().tolist()}
 
 
-def _moving(robot: RobotDescription) -> list[DescribedJoint]:
+def _moving(robot: Robot) -> list[Joint]:
     return [joint for joint in robot.joints_downward if joint.kind is not JointType.FIXED]
 
 
-def _joint(joint: DescribedJoint, rest: float) -> dict[str, Any]:
+def _joint(joint: Joint, rest: float) -> dict[str, Any]:
     endless = joint.kind is JointType.CONTINUOUS or not math.isfinite(joint.upper - joint.lower)
     lower, upper = (-math.pi, math.pi) if endless else (joint.lower, joint.upper)
     mimic = joint.mimic

@@ -22,7 +22,7 @@ def exact_contacts(scene: Scene, overlap: Overlap, settings: ValidationSettings)
     Returns:
         Contacts and depths as engines leave them, each body named by its first link with geometry; no poses.
     """
-    rows = agreement_configurations(scene.model.kinematics, settings.agreement, settings.seed)
+    rows = agreement_configurations(scene.model, settings.agreement, settings.seed)
     leaders = rows.q[:, [rows.joints.index(travel.joint) for travel in scene.travels]]
     poses = scene.poses(leaders)
     link = np.array([rows.links.index(body.name) for body in scene.bodies])

@@ -63,7 +63,7 @@ def _tell_motion(entry: Check, look: GeometryLook, recorder: Recorder) -> None:
 
 
 def _summary(scene: Scene, sweep: JointSweep) -> JointSummary:
-    joint = scene.model.kinematics.joint_by_name[sweep.travel.joint]
+    joint = scene.model.joint_by_name[sweep.travel.joint]
     limited = joint.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
     return JointSummary(
         joint=joint.name,

@@ -18,11 +18,11 @@ from kinematify.robot.robot import rigid_groups
 if TYPE_CHECKING:
     from kinematify.config.validation import GeometrySettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import Robot
 
 
 def surfaces_meet(
-    model: DeclaredModel, links: tuple[str, str], leaders: FloatArray, *, tolerance: float, settings: GeometrySettings
+    model: Robot, links: tuple[str, str], leaders: FloatArray, *, tolerance: float, settings: GeometrySettings
 ) -> bool:
     """Whether two links get into each other by their declared surfaces as well, beyond what they are at rest.
 
@@ -36,7 +36,7 @@ def surfaces_meet(
     Returns:
         True also where one of them has no surface to ask.
     """
-    kept = {name for group in rigid_groups(model.kinematics) if set(links) & set(group.links) for name in group.links}
+    kept = {name for group in rigid_groups(model) if set(links) & set(group.links) for name in group.links}
     others = {link.name: replace(link, visuals=(), collisions=()) for link in model.links if link.name not in kept}
     scene = read_scene(replace(model, links=tuple(others.get(link.name, link) for link in model.links)), settings)
     if len(scene.bodies) != 2:
