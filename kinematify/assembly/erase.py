@@ -144,8 +144,7 @@ def _configuration(robot: Robot, pose: str, random: Generator) -> dict[str, floa
         raise DescriptionError(f"The pose {pose!r} is unknown. Choose one of {', '.join(POSES)}.")
     values = rest_configuration(robot)
     if pose == "random":
-        leaders = [j for j in robot.joints if j.mimic is None and j.kind is not JointType.FIXED]
-        values = joint_values(robot, {j.name: _moved(j, values[j.name], random) for j in leaders})
+        values = joint_values(robot, {j.name: _moved(j, values[j.name], random) for j in robot.leaders})
     return {j.name: values[j.name] for j in robot.joints if j.kind is not JointType.FIXED}
 
 

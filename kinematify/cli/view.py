@@ -152,7 +152,7 @@ def _serve(
         viewer = ModelViewer(server, scene, alternatives=alternatives, sights=sights)
         viewer.set(start)
         shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
-        click.echo(f"http://{shown}:{server.get_port()} shows {scene.model.path}; Ctrl-C ends it.")
+        click.echo(f"http://{shown}:{server.get_port()} shows {scene.robot.path}; Ctrl-C ends it.")
         viewer.run(threading.Event())
     except KeyboardInterrupt:
         click.echo("Closed.")

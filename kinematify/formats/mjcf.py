@@ -157,9 +157,7 @@ def _add_followers(document: _Element, content: Content) -> None:
 
 
 def _add_motors(document: _Element, content: Content) -> None:
-    driven = [
-        joint for joint in content.robot.joints if _moves(joint) and joint.mimic is None and (joint.effort or 0) > 0
-    ]
+    driven = [joint for joint in content.robot.joints if joint.leads and (joint.effort or 0) > 0]
     if not driven:
         return
     actuators = etree.SubElement(document, "actuator")

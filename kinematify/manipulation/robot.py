@@ -156,7 +156,7 @@ def arm_chain(robot: Robot, tool: str) -> tuple[str, ...]:
     above, link, found = robot.joint_above, tool, []
     while link in above:
         joint = above[link]
-        if joint.kind is not JointType.FIXED and joint.mimic is None:
+        if joint.leads:
             found.append(joint.name)
         link = joint.parent
     return tuple(reversed(found))

@@ -159,11 +159,7 @@ def _likely_tips(robot: Robot) -> tuple[str, ...]:
     hands = [link for link in depth if depth[link] >= _ARM_JOINTS and len(_single_fingers(robot, link)) > 1]
     if hands:
         return (max(hands, key=lambda link: depth[link]),)
-    return tuple(
-        joint.child
-        for joint in robot.joints
-        if joint.kind is not JointType.FIXED and joint.mimic is None and not found_fingers(robot, joint.child)
-    )
+    return tuple(joint.child for joint in robot.joints if joint.leads and not found_fingers(robot, joint.child))
 
 
 def _single_fingers(robot: Robot, link: str) -> list[Joint]:

@@ -59,7 +59,7 @@ class Mechanism:
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
         """Of every joint that is neither fixed nor a follower, in the order of the document."""
-        leaders = [j for j in self.robot.joints if j.kind is not JointType.FIXED and j.mimic is None]
+        leaders = self.robot.leaders
         rest = {**rest_configuration(self.robot), **self.standing}
         lower, upper = joint_ends(leaders)
         return tuple(

@@ -91,7 +91,7 @@ def agreement_configurations(robot: Robot, settings: AgreementSettings, seed: in
         settings: How many rows.
         seed: Of the run (`ValidationSettings.seed`).
     """
-    leaders = [joint for joint in robot.joints if joint.kind != "fixed" and joint.mimic is None]
+    leaders = robot.leaders
     rest = rest_configuration(robot)
     middle = np.array([rest[joint.name] for joint in leaders])
     lower, upper = joint_ends(leaders)

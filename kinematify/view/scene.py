@@ -49,9 +49,9 @@ class Touch:
 class ViewScene:
     """A model with the joints that are tried."""
 
-    def __init__(self, model: Robot, settings: ValidationSettings) -> None:
-        """Keep the model; collisions are prepared when first asked for."""
-        self.model, self.robot = model, model
+    def __init__(self, robot: Robot, settings: ValidationSettings) -> None:
+        """Keep the robot; collisions are prepared when first asked for."""
+        self.robot = robot
         self._settings = settings
         self._tried: dict[str, Alternative] = {}
 
@@ -68,7 +68,7 @@ class ViewScene:
     @cached_property
     def leaders(self) -> tuple[Joint, ...]:
         """Joints that have a slider."""
-        return tuple(j for j in self.robot.joints if j.kind is not JointType.FIXED and j.mimic is None)
+        return self.robot.leaders
 
     @cached_property
     def size(self) -> float:
@@ -179,7 +179,7 @@ class ViewScene:
 
     @cached_property
     def _collisions(self) -> tuple[Scene, Overlap, Allowance]:
-        scene = read_scene(self.model, self._settings.geometry)
+        scene = read_scene(self.robot, self._settings.geometry)
         overlap = Overlap(scene)
         return scene, overlap, Allowance(scene, overlap)
 

@@ -257,7 +257,7 @@ def test_unknown_joint_in_a_configuration(tmp_path: Path) -> None:
 
 def random_configuration(robot, seed: int) -> dict[str, float]:  # type: ignore[no-untyped-def]
     random = np.random.default_rng(seed)
-    leaders = [j for j in robot.joints if j.mimic is None and j.kind is not JointType.FIXED]
+    leaders = robot.leaders
     return {j.name: float(random.uniform(max(j.lower, -3.0), min(j.upper, 3.0))) for j in leaders}
 
 
