@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import weakref
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +9,7 @@ import pybullet as bullet
 
 from kinematify.envs.articulated_object import held_links
 from kinematify.envs.mujoco_arm import ROBOT, arm_facts
-from kinematify.envs.pybullet_object import PybulletObject, disconnected, pose_of
+from kinematify.envs.pybullet_object import PybulletObject, pose_of
 from kinematify.robot.robot import rest_configuration
 from kinematify.robot.transforms import quaternion_of
 
@@ -46,7 +44,6 @@ class PybulletArm:
         facts = arm_facts(articulated_object, target, robot, plan)
         self.object = PybulletObject(articulated_object, target, facts.dynamics, plan.T_world_object, settings)
         self.client = self.object.client
-        self._close = weakref.finalize(self, partial(disconnected, self.client))
         self._articulated_object, self._robot, self._substeps = articulated_object, robot, settings.time.substeps
         self._load(plan, settings)
         self._held = [self.object.link_index(name) for name in held_links(articulated_object, target)]
@@ -171,4 +168,4 @@ class PybulletArm:
 
     def close(self) -> None:
         """Free the world."""
-        self._close()
+        self.object.close()

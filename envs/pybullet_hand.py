@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import weakref
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pybullet as bullet
 
 from kinematify.envs.mujoco_hand import POSITION, hand_facts
-from kinematify.envs.pybullet_object import PybulletObject, disconnected
+from kinematify.envs.pybullet_object import PybulletObject
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +32,6 @@ class PybulletHand:
             articulated_object, target, self.facts.dynamics, articulated_object.T_world_root, settings
         )
         self.client = self.object.client
-        self._close = weakref.finalize(self, partial(disconnected, self.client))
         self._control, self._substeps = control, settings.time.substeps
         self._stride = self.facts.speed * settings.time.control_step
         self._lead = self.facts.force / self.facts.stiffness
@@ -99,4 +96,4 @@ class PybulletHand:
 
     def close(self) -> None:
         """Free the world."""
-        self._close()
+        self.object.close()

@@ -6,7 +6,6 @@ that it does not depend on the episodes before.
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -204,17 +203,15 @@ class PybulletObject:
         depths = [-p[8] - float(margin[link_of[p[3]]] + margin[link_of[p[4]]]) for p in points]
         return max(0.0, *depths) if depths else 0.0
 
+    def close(self) -> None:
+        """Free the world."""
+        self._loaded.disconnect()
+
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the links, shape (4, 4) each."""
         values = dict(zip(self.articulated_object.joints, self._reading.values.tolist(), strict=True))
         poses = forward_kinematics(self.articulated_object.declared, values)
         return {name: self._T_root @ T for name, T in poses.items()}
-
-
-def disconnected(client: int) -> None:
-    """Free a world that may be gone already."""
-    with suppress(bullet.error):
-        bullet.disconnect(physicsClientId=client)
 
 
 def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:

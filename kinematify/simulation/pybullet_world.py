@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import weakref
 from collections import defaultdict
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -61,6 +60,11 @@ class PybulletWorld:
     def complete(self) -> bool:
         """True if no link and no joint was lost."""
         return bool((self.link >= _BASE).all() and (self.joint >= 0).all())
+
+    @cached_property
+    def freeing(self) -> weakref.finalize[..., Any]:
+        """Frees the world, once: PyBullet gives the same number to the next one."""
+        return weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
 
     @cached_property
     def indices(self) -> list[int]:
@@ -210,7 +214,7 @@ class PybulletWorld:
 
     def disconnect(self) -> None:
         """Free the world now; it is freed anyway when nothing refers to it any more."""
-        disconnect(self.client)
+        self.freeing()
 
 
 def load(
@@ -253,7 +257,7 @@ def load(
         margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
         mass_scale=scale,
     )
-    weakref.finalize(loaded, disconnect, client)
+    assert loaded.freeing.alive
     if loaded.complete:
         loaded.act(_welded_pairs(mechanism), on=False)
     return loaded
@@ -279,12 +283,6 @@ def _welded_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:
     for link, body in enumerate(mechanism.body_of_link.tolist()):
         members[body].append(link)
     return [pair for group in members.values() for pair in combinations(group, 2)]
-
-
-def disconnect(client: int) -> None:
-    """Free a world that may be gone already."""
-    with suppress(bullet.error):
-        bullet.disconnect(physicsClientId=client)
 
 
 def text_of(name: bytes) -> str:
