@@ -13,9 +13,10 @@ from kinematify.robot.mechanism import Mechanism, sweep_rows
 from kinematify.robot.read import read_without_geometry
 from kinematify.simulation.configurations import EnginePoses, agreement_configurations, write_poses
 from kinematify.simulation.contacts import touching
-from kinematify.simulation.drive import drive_all, servos
+from kinematify.simulation.drive import drive_all
 from kinematify.simulation.engines import open_engine
 from kinematify.simulation.prepared import load_prepared
+from kinematify.simulation.servos import servos
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,10 +27,11 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
     from kinematify.simulation.configurations import Configurations
     from kinematify.simulation.contacts import Touching
-    from kinematify.simulation.drive import Driven, DriveSession, Servos
+    from kinematify.simulation.drive import Driven, DriveSession
     from kinematify.simulation.engine import Dropped, Engine, EngineModel, FreeRun, Measured, PhysicsModel, Simulation
     from kinematify.simulation.engines import EngineEntry
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.servos import Servos
     from kinematify.validation.stage import StageRequest
 
 

@@ -29,7 +29,6 @@ from pydrake.systems.framework import DiagramBuilder
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import deepest
-from kinematify.simulation.drive import acting_pairs, commands
 from kinematify.simulation.engine import (
     FINER,
     SLOW_SECONDS,
@@ -41,6 +40,7 @@ from kinematify.simulation.engine import (
     Measured,
     Refused,
 )
+from kinematify.simulation.servos import acting_pairs, commands
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -50,8 +50,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Mechanism
     from kinematify.simulation.contacts import Contacts, Touching
-    from kinematify.simulation.drive import Drive, Servos
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.servos import Drive, Servos
 
 _RESERVED = ("world", "WorldBody")
 """Drake's names of the outside; links of these names are loaded under other ones."""

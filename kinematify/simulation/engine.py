@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Mechanism
     from kinematify.simulation.contacts import Contacts, Touching
-    from kinematify.simulation.drive import Drive, Servos
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.servos import Drive, Servos
 
 FINER = 4
 """Small steps per step of `Simulation.release` with `fine`."""

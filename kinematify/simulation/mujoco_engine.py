@@ -12,7 +12,6 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
-from kinematify.simulation.drive import commands
 from kinematify.simulation.engine import (
     FINER,
     SLOW_SECONDS,
@@ -36,6 +35,7 @@ from kinematify.simulation.mujoco_model import (
     with_floor,
     with_servos,
 )
+from kinematify.simulation.servos import commands
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Mechanism
     from kinematify.simulation.contacts import Contacts, Touching
-    from kinematify.simulation.drive import Drive, Servos
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.servos import Drive, Servos
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _NUMBERS = 20_000_000

@@ -13,7 +13,6 @@ from scipy.spatial.transform import Rotation
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts
-from kinematify.simulation.drive import acting_pairs
 from kinematify.simulation.engine import (
     FINER,
     SLOW_SECONDS,
@@ -26,6 +25,7 @@ from kinematify.simulation.engine import (
     Refused,
 )
 from kinematify.simulation.pybullet_world import PybulletWorld, load, text_of
+from kinematify.simulation.servos import acting_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Mechanism
     from kinematify.simulation.contacts import Touching
-    from kinematify.simulation.drive import Drive, Servos
     from kinematify.simulation.prepared import Prepared
+    from kinematify.simulation.servos import Drive, Servos
 
 _CHATTER = ("pybullet build time", "numActiveThreads", "argc=", "started thread", "stopping threads", "Thread with")
 _DECIMALS = 6
