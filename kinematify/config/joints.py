@@ -79,7 +79,7 @@ class PanelsConfig(StageConfig):
     bearing_bonus: float
     """What a bearing that passes the gate adds to its line."""
     weights: dict[str, float]
-    """Weight of each cue of `joints/panels.py`; lengths in diagonals."""
+    """Weight of each cue of `hypotheses/panels.py`; lengths in diagonals."""
 
 
 class SlidesConfig(StageConfig):
@@ -98,7 +98,7 @@ class SlidesConfig(StageConfig):
     cap: float
     """Largest influence of a single cue, in units of the score."""
     weights: dict[str, float]
-    """Weight of each cue of `joints/slides.py`; lengths in diagonals."""
+    """Weight of each cue of `hypotheses/slides.py`; lengths in diagonals."""
 
 
 class KindConfig(StageConfig):
@@ -149,7 +149,7 @@ class KindConfig(StageConfig):
     stuck_slide: float
     """Travel below which a part counts as stuck, fraction of its own diagonal."""
     weights: dict[str, float]
-    """Weight of each cue of `joints/kind.py`; positive for sliding."""
+    """Weight of each cue of `choice/kind.py`; positive for sliding."""
 
 
 class JournalConfig(StageConfig):

@@ -4,7 +4,7 @@ A revolute joint that was designed leaves two kinds of evidence on *both* parts 
 rotation about the axis maps onto itself (all normals meet the axis: the linear-complex criterion of Pottmann and
 Gelfand-Guibas slippage), and circular edges about the axis. Lines are proposed from pairs of normals and from circles
 through feature edges, scored on both parts, and refined by robust Gauss-Newton on the same residuals.
-feasibility.md section 4 measured why the paper's own pool and ranking (joints/cavl.py) are not enough.
+feasibility.md section 4 measured why the paper's own pool and ranking (`paper.cavl`) are not enough.
 """
 
 from __future__ import annotations
