@@ -1,1 +1,1 @@
-"""A URDF in the languages of other tools: MJCF, USD, SDFormat and glTF."""
+"""A URDF in the languages of other tools: MJCF, USD, SDFormat, glTF and SRDF."""

@@ -1,1 +1,1 @@
-"""Surface samples, signed distance and OpenGL-free pictures."""
+"""Surfaces, samples, distances, sweeps, solids and convex pieces."""

@@ -1,4 +1,4 @@
-"""From failed checks to another choice: infer, simulate, feed back, choose again (design section 5)."""
+"""From failed checks to another choice: infer, simulate, feed back, choose again."""
 
 from kinematify.refinement.loop import Refinement, refine
 
