@@ -60,21 +60,6 @@ class GraspReport:
     """Why there are none."""
 
 
-def find_grasps(
-    scene: Scene,
-    joint: str,
-    opening: float,
-    *,
-    settings: GraspSettings,
-    point: FloatArray | None = None,
-    leaders: FloatArray | None = None,
-    seed: int = 0,
-) -> list[Grasp]:
-    """Return the grasps of `search_grasps`."""
-    report = search_grasps(scene, joint, opening, settings=settings, point=point, leaders=leaders, seed=seed)
-    return list(report.grasps)
-
-
 def search_grasps(
     scene: Scene,
     joint: str,

@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from kinematify.config.validation import load_settings
 from kinematify.geometry.scene import read_scene
-from kinematify.manipulation.grasp import Grasp, find_grasps
+from kinematify.manipulation.grasp import Grasp, search_grasps
 from kinematify.manipulation.motion import Motion
 from kinematify.manipulation.robot import TaskRobot, builtin_robot
 from kinematify.robot.read import read_robot
@@ -109,7 +109,7 @@ def planned(
     T_world_base = np.eye(4)
     T_world_base[:2, :2] = [[np.cos(base[2]), -np.sin(base[2])], [np.sin(base[2]), np.cos(base[2])]]
     T_world_base[:2, 3] = base[:2]
-    for grasp in find_grasps(scene, joint, robot.opening, settings=SETTINGS.task.grasp):
+    for grasp in search_grasps(scene, joint, robot.opening, settings=SETTINGS.task.grasp).grasps:
         targets = [
             np.linalg.inv(T_world_base) @ link_pose(scene, joint, value) @ grasp.T_link_grasp for value in opened
         ]
@@ -193,4 +193,4 @@ def solved(robot: TaskRobot, target: np.ndarray, start: np.ndarray) -> np.ndarra
 def grasps(urdf: Path, joint: str, opening: float = 0.1, **options) -> list[Grasp]:
     """Grasps of a joint's part."""
     scene = read_scene(read_robot(urdf), SETTINGS.geometry)
-    return find_grasps(scene, joint, opening, settings=SETTINGS.task.grasp, **options)
+    return list(search_grasps(scene, joint, opening, settings=SETTINGS.task.grasp, **options).grasps)
