@@ -41,6 +41,12 @@ def test_help_loads_no_engine(words: list[str]) -> None:
     assert loaded & HEAVY == set()
 
 
+def test_the_list_of_studies_loads_no_engine() -> None:
+    loaded = loaded_after("from kinematify.cli.app import run; assert run(['bench', '--list']) == 0")
+    assert "pydantic" in loaded
+    assert loaded & {"torch", "mujoco", "pybullet", "pinocchio", "trimesh"} == set()
+
+
 def test_public_names_resolve_and_are_all_there_is() -> None:
     resolved = {name for name in kinematify.__all__ if getattr(kinematify, name) is not None}
     assert resolved == set(kinematify.__all__)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def study_command(name: str) -> click.Command | None:
     """Return the command of a study, None if there is none of this name."""
-    from kinematify.evaluation.study import load_study, study_names
+    from kinematify.evaluation.study import load_study, study_names, study_text
 
     if name not in study_names():
         return None
@@ -38,26 +38,17 @@ def study_command(name: str) -> click.Command | None:
     def run(**values: Any) -> int:
         return _run(name, study, values)
 
-    command = click.command(name, help=f"{study.title}.\n\n{_told(study)}")(run)
+    command = click.command(name, help=f"{study.title}.\n\n{study_text(name)}")(run)
     command.params = [*options, *command.params]
     return command
 
 
 def print_studies() -> None:
     """Print name and question of every study."""
-    from kinematify.evaluation.study import load_study, study_names
+    from kinematify.evaluation.study import study_names, study_text
 
-    rows = []
-    for name in study_names():
-        rows.append((name, _told(load_study(name)).partition("\n")[0]))
+    rows = [(name, study_text(name).partition("\n")[0]) for name in study_names()]
     click.echo(format_table(("study", "what it answers"), rows))
-
-
-def _told(study: Study[Any]) -> str:
-    """What the module of a study says of it."""
-    import sys
-
-    return (sys.modules[study.measure.__module__].__doc__ or "").strip()
 
 
 def _option(name: str, info: FieldInfo) -> click.Option:

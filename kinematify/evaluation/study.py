@@ -5,11 +5,13 @@ Every module of `kinematify.evaluation.studies` is one and defines `STUDY`; `kin
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import importlib
 import pkgutil
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
@@ -22,7 +24,6 @@ from kinematify.evaluation.sources import code_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
-    from pathlib import Path
 
     from matplotlib.figure import Figure
 
@@ -127,6 +128,12 @@ class Study(Generic[_Options]):
 def study_names() -> tuple[str, ...]:
     """Names of all studies, without importing one."""
     return tuple(module.name.replace("_", "-") for module in pkgutil.iter_modules(studies.__path__))
+
+
+def study_text(name: str) -> str:
+    """What the module of a study says of it, read without importing what it measures with."""
+    path = Path(studies.__path__[0], f"{name.replace('-', '_')}.py")
+    return ast.get_docstring(ast.parse(path.read_text("utf-8"))) or ""
 
 
 def load_study(name: str) -> Study[Any]:
