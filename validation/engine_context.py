@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.model.collision_pieces import Method
 from kinematify.robot.mechanism import Mechanism, sweep_rows
-from kinematify.robot.read import read_without_geometry
+from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import EnginePoses, agreement_configurations, write_poses
 from kinematify.simulation.contacts import touching
 from kinematify.simulation.drive import drive_all
@@ -68,7 +68,7 @@ class EngineContext:
     @cached_property
     def declared(self) -> Robot:
         """The file without its geometry."""
-        return read_without_geometry(self.request.urdf)
+        return read_robot(self.request.urdf, geometry="none")
 
     @cached_property
     def prepared(self) -> Prepared:
@@ -78,7 +78,7 @@ class EngineContext:
     @cached_property
     def mechanism(self) -> Mechanism:
         """The tree."""
-        return Mechanism(robot=self.declared.kinematics)
+        return Mechanism(robot=self.declared)
 
     @cached_property
     def engine(self) -> Engine:
@@ -102,9 +102,7 @@ class EngineContext:
     @cached_property
     def rows(self) -> Configurations:
         """Where all engines are compared."""
-        return agreement_configurations(
-            self.declared.kinematics, self.request.settings.agreement, self.request.settings.seed
-        )
+        return agreement_configurations(self.declared, self.request.settings.agreement, self.request.settings.seed)
 
     @cached_property
     def seen(self) -> Measured:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.robot.read import read_model
+from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE
 from kinematify.validation import engine_stage
@@ -53,7 +53,7 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
     request = prepared_request(pendulum(), tmp_path)
     tell(run, request)
     poses = read_poses(tmp_path, "drake")
-    robot = read_model(request.urdf)
+    robot = read_robot(request.urdf)
     rows = agreement_configurations(robot, request.settings.agreement, request.settings.seed)
     assert poses is not None
     np.testing.assert_allclose(poses.T_world_link, link_poses(robot, rows), atol=1e-12)
