@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation import engine_stage
-from kinematify.validation.catalogue import agreement, evidence, meshes, task
+from kinematify.validation.catalogue import agreement, task
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.isolation import Stage
 
@@ -25,9 +25,7 @@ CheckKey = tuple[str, str | None]
 
 def asset_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
-    return Stage(
-        name="asset", function="kinematify.validation.asset.stage:run", checks=keys((*meshes.CHECKS, *checks_of("KV2")))
-    )
+    return Stage(name="asset", function="kinematify.validation.asset.stage:run", checks=keys(checks_of("KV15", "KV2")))
 
 
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
@@ -39,7 +37,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             function="kinematify.validation.geometry.stage:run",
             checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
         ),
-        Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(evidence.CHECKS)),
+        Stage(name="evidence", function="kinematify.validation.evidence.stage:run", checks=keys(checks_of("KV34"))),
     ]
     for engine in chosen:
         checks = tuple(key for key in keys(tuple(CHECKS.values())) if key[1] == engine)

@@ -12,7 +12,7 @@ import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.robot.robot import Robot
-from kinematify.validation.asset.meshes import check_mesh_files
+from kinematify.validation.asset.stage import check_mesh_files
 from kinematify.validation.catalogue import CATALOGUE
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest

@@ -56,6 +56,11 @@ class MeshFile:
         return any(use.tag == "collision" for use in self.uses)
 
     @property
+    def worst_coordinate(self) -> float:
+        """The largest absolute coordinate, NaN where one is not a number, 0 where it cannot be read."""
+        return 0.0 if self.mesh is None else float(np.abs(self.mesh.vertices).max(initial=0.0))
+
+    @property
     def called(self) -> str:
         """Its name with the links that use it, for messages."""
         links = list(dict.fromkeys(use.link for use in self.uses))
@@ -101,8 +106,3 @@ def _opened(path: Path, uses: tuple[MeshUse, ...], source: GeometrySource, setti
         units = frozenset(part.unit for part in parts if part.unit)
         source.cache[path] = mesh
     return MeshFile(path=path, uses=uses, mesh=mesh, fault=fault, units=units)
-
-
-def worst_coordinate(mesh: RawMesh) -> float:
-    """The largest absolute coordinate, NaN where one is not a number."""
-    return float(np.abs(mesh.vertices).max(initial=0.0))

@@ -5,12 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.asset.bodies import measure
-from kinematify.validation.asset.meshes import check_mesh_files
+from kinematify.validation.asset.mesh_look import MeshLook
 from kinematify.validation.checks import checks_of
+from kinematify.validation.finding import Status
 from kinematify.validation.left_model import leave_model
 
 if TYPE_CHECKING:
+    from kinematify.robot.robot import Robot
     from kinematify.validation.stage import Recorder, StageRequest
+
+_GUARDS = checks_of("KV150", "KV151", "KV152")
+"""After an error of these nothing else can open the meshes."""
 
 
 def run(request: StageRequest, recorder: Recorder) -> None:
@@ -24,3 +29,24 @@ def run(request: StageRequest, recorder: Recorder) -> None:
         physics = measure(model, request.settings.physics)
         for check in declared:
             recorder.run(check, physics)
+
+
+def check_mesh_files(request: StageRequest, recorder: Recorder) -> Robot | None:
+    """Tell KV150 to KV159 and return the model, or None where a mesh keeps it from being read.
+
+    Args:
+        request: Names the document, which has passed the pre-check.
+        recorder: Told every check; the later ones are blocked where a mesh cannot be used.
+    """
+    look, usable = MeshLook(request), True
+    for check in _GUARDS:
+        with recorder.check(check.id) as result:
+            check.run(result, look)
+        usable &= not result.harmful and result.status is not Status.BLOCKED
+    others = [check for check in checks_of("KV15") if check not in _GUARDS]
+    if not usable:
+        recorder.block(others, "a mesh cannot be used")
+        return None
+    for check in others:
+        recorder.run(check, look)
+    return look.model

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 
 from kinematify.errors import InputError
-from kinematify.validation.catalogue import agreement, evidence, meshes, task
+from kinematify.validation.catalogue import agreement, task
 from kinematify.validation.check import FAMILIES, Check
 from kinematify.validation.checks import CHECKS
 
@@ -15,7 +15,7 @@ CATALOGUE: dict[str, Check] = dict(
     sorted(
         {
             **CHECKS,
-            **{c.id: c for m in (meshes, evidence, agreement, task) for c in m.CHECKS},
+            **{c.id: c for m in (agreement, task) for c in m.CHECKS},
         }.items()
     )
 )

@@ -6,13 +6,14 @@ import difflib
 
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
-from kinematify.validation.checks import (
+from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
     collision,
     drives,
     engine_drive,
     engine_loading,
     engine_rest,
     engine_stability,
+    evidence,
     file_joints,
     file_names,
     file_numbers,
@@ -23,20 +24,14 @@ from kinematify.validation.checks import (
     inertias,
     limits,
     masses,
+    meshes,
     motion,
     rest,
+    sizes,
     together,
 )
 
 __all__ = ["CHECKS", "checks_of", "find_check"]
-
-_FAMILIES = (
-    file_text, file_names, file_tree, file_joints, file_numbers, file_shapes, file_references,
-    masses, inertias, limits, drives, collision,
-    rest, motion, together,
-    engine_loading, engine_rest, engine_drive, engine_stability,
-)  # fmt: skip
-"""Read for the checks that they register."""
 
 CHECKS: dict[str, Check] = dict(sorted(REGISTRY.items()))
 """All checks keyed by id, in ascending order."""

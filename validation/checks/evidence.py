@@ -1,261 +1,235 @@
-"""From figures to doubts: which of them speak against a declared joint, how badly, and what would fit better.
+"""KV341 to KV348: does the geometry of two links explain the joint between them?
 
-What geometry proves is an error, what it only makes unlikely a warning: people build doors that no rule has seen.
+What geometry proves is an error, what it only makes unlikely a warning: people build doors that no rule has seen. One
+cause, one finding: a joint with the wrong parent is judged no further, and where several joints in series share one
+contact only what holds for each of them is.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.finding import Severity
+from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from kinematify.config.validation import EvidenceSettings
-    from kinematify.robot.arrays import FloatArray
-    from kinematify.validation.evidence.bodies import Bodies
-    from kinematify.validation.evidence.measure import JointMeasures
-
-PARENT, DIRECTION, PLACE, FIT = "KV341", "KV342", "KV343", "KV344"
-TYPE, OPENING, TRAVEL, RANGE = "KV345", "KV346", "KV347", "KV348"
-
-_LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture
-_SMALL = 0.5  # `JointScene.smallness` from which a part is a button or knob
+    from kinematify.validation.evidence.case import JointCase
+    from kinematify.validation.stage import OpenCheck
 
 
-@dataclass(frozen=True, kw_only=True)
-class Doubt:
-    """Why one check does not believe in a declared joint."""
+@check(
+    "KV341",
+    title="child hangs on what it touches",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.NOT_CARRIED,
+    doubts=True,
+)
+def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
+    """At rest, every moving body touches the body that carries it, or at least no other one. A child that is more than
+    evidence.far_gap away from its parent and touches another body is an error; one whose contact with the parent
+    has less than evidence.weak_contact of the quality of its best other contact is a warning.
 
-    check: str
-    severity: Severity
-    message: str
-    remedy: str
-    value: float
-    limit: float
-    unit: str | None
+    Why it matters: A part on the wrong parent moves with the wrong thing: the handle stays behind when the door
+    opens.
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Alternative:
-    """A joint that explains the contact better than the declared one."""
-
-    kind: JointType
-    axis: FloatArray
-    """Unit direction, world frame at rest, shape (3,)."""
-    pivot: FloatArray
-    """A point on the axis, world frame at rest [m], shape (3,)."""
-    score: float
-    """By how much it leads over the declared joint."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Case:
-    """One joint before its judges."""
-
-    bodies: Bodies
-    measures: JointMeasures
-    settings: EvidenceSettings
-
-    @property
-    def linkage(self) -> bool:
-        """The pair belongs to a machine, not to furniture."""
-        return self.measures.weighed.scene.mechanism > _LINKAGE
-
-    @property
-    def small(self) -> bool:
-        """The child is a button, a knob or a lever."""
-        return self.measures.weighed.scene.smallness > _SMALL
-
-    @property
-    def parent(self) -> str:
-        """Name of the body that carries the joint."""
-        return self.bodies.links[self.measures.joint.parent]
-
-    @property
-    def child(self) -> str:
-        """Name of the body that moves."""
-        return self.bodies.links[self.measures.joint.child]
-
-
-def doubts_about(bodies: Bodies, measures: JointMeasures, settings: EvidenceSettings) -> tuple[Doubt, ...]:
-    """Everything that speaks against a declared joint, in the order of the checks.
-
-    A joint with the wrong parent is judged no further, and where several joints in series share one contact only what
-    holds for each of them is.
+    Remedy: Write the link that carries the part as the joint's parent and express the origin in its frame.
     """
-    case = _Case(bodies=bodies, measures=measures, settings=settings)
-    parent = _parent(case)
-    if parent is not None:
-        return (parent,)
-    judges: list[Callable[[_Case], Doubt | None]] = [_direction, _place]
-    if measures.alone:
-        judges += [_fit, _type, _opening, _travel, _range]
-    found = [doubt for judge in judges if (doubt := judge(case)) is not None]
-    unexplained = any(doubt.check == DIRECTION for doubt in found)
-    # One cause, one finding: a direction that nothing shows has no place, and of course another one fits better.
-    return tuple(doubt for doubt in found if not unexplained or doubt.check not in (PLACE, FIT))
-
-
-def better_joint(measures: JointMeasures, doubts: tuple[Doubt, ...]) -> Alternative | None:
-    """The joint that the geometry speaks for instead; None where it does not speak against the declared one."""
-    checks = {doubt.check for doubt in doubts}
-    if not checks & {DIRECTION, PLACE, FIT, TYPE}:
-        return None
-    line = measures.line
-    if TYPE not in checks:
-        kind = JointType.PRISMATIC if measures.slides else JointType.REVOLUTE
-        return Alternative(kind=kind, axis=line.best_axis, pivot=line.best_pivot, score=line.deficit)
-    turns, slides, score = measures.weighed.turns.proposed, measures.weighed.slides.proposed, measures.odds_against
-    if measures.slides:
-        return Alternative(kind=JointType.REVOLUTE, axis=turns.lines.axes[0], pivot=turns.lines.pivots[0], score=score)
-    return Alternative(kind=JointType.PRISMATIC, axis=slides.axes[0], pivot=measures.anchor, score=score)
-
-
-# ---- the judges, in the order of the checks --------------------------------------------------------------------------
-
-
-def _parent(case: _Case) -> Doubt | None:
-    found, limit = case.measures.parent, case.settings.weak_contact
-    if found.best is None or found.best_quality <= 0.0:
-        return None
+    found = case.measures.parent
+    if not case.hangs_elsewhere or found.best is None:
+        return
     other = case.bodies.links[found.best]
     remedy = f"Make {other} the parent, or mend the pose or the meshes of {case.child} and {case.parent}."
     if not found.touches:
         apart = found.gap * case.bodies.diagonal
-        return Doubt(
-            check=PARENT,
-            severity=Severity.ERROR if found.gap > case.settings.far_gap else Severity.WARNING,
-            message=f"{case.child} does not touch {case.parent}, which carries it (they are {apart:.3g} m apart), but "
+        _doubt(
+            result,
+            case,
+            f"{case.child} does not touch {case.parent}, which carries it (they are {apart:.3g} m apart), but "
             f"it touches {other}.",
-            remedy=remedy,
+            remedy,
+            severity=Severity.ERROR if found.gap > case.settings.far_gap else Severity.WARNING,
             value=apart,
             limit=case.bodies.graph.tolerance,
             unit="m",
         )
-    share = found.quality / found.best_quality
-    if share >= limit:
-        return None
-    return Doubt(
-        check=PARENT,
-        severity=Severity.WARNING,
-        message=f"The contact of {case.child} with {case.parent}, which carries it, is far weaker than that with "
-        f"{other}: {share:.0%} of its quality.",
-        remedy=remedy,
-        value=share,
-        limit=limit,
-        unit=None,
+        return
+    _doubt(
+        result,
+        case,
+        f"The contact of {case.child} with {case.parent}, which carries it, is far weaker than that with "
+        f"{other}: {case.share_of_contact:.0%} of its quality.",
+        remedy,
+        value=case.share_of_contact,
+        limit=case.settings.weak_contact,
     )
 
 
-def _direction(case: _Case) -> Doubt | None:
+@check(
+    "KV342",
+    title="axis direction is one that the parts show",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.LINE,
+    doubts=True,
+)
+def unknown_direction(result: OpenCheck, case: JointCase) -> None:
+    """The axis lies within evidence.unknown_deg of a direction that the two bodies show: axes of round surfaces and
+    circular edges on both sides of the contact, edges and faces of either body, guides, the normal and the long
+    side of the contact. Beyond evidence.wrong_deg it is an error where another joint also explains the contact
+    better by evidence.clearly_better. It needs no ground truth: people build along what they build.
+
+    Why it matters: A hinge that is turned by some degrees lets a door scrape and lift, and no engine complains.
+
+    Remedy: Align the axis with the hinge or guide; the message names the direction that fits best.
+    """
+    if not case.unexplained:
+        return
     line, settings = case.measures.line, case.settings
-    if not case.measures.parent.touches or line.angle <= settings.unknown_deg:
-        return None
     certain = line.angle > settings.wrong_deg and line.deficit > settings.clearly_better and case.measures.alone
-    return Doubt(
-        check=DIRECTION,
-        severity=Severity.ERROR if certain else Severity.WARNING,
-        message=f"The axis runs {line.angle:.1f} deg off every direction that {case.child} and {case.parent} show: "
+    _doubt(
+        result,
+        case,
+        f"The axis runs {line.angle:.1f} deg off every direction that {case.child} and {case.parent} show: "
         "their edges, faces, round surfaces and where they touch.",
-        remedy=_instead(case),
+        _instead(case),
+        severity=Severity.ERROR if certain else Severity.WARNING,
         value=line.angle,
         limit=settings.unknown_deg,
         unit="deg",
     )
 
 
-def _place(case: _Case) -> Doubt | None:
+@check(
+    "KV343",
+    title="axis runs where the parts have a hinge",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.LINE,
+    doubts=True,
+)
+def unknown_place(result: OpenCheck, case: JointCase) -> None:
+    """A turning joint's axis runs within evidence.unknown_distance of the child's size (in linkages
+    evidence.linkage_distance) of a line that the two bodies show: a bearing, an edge or middle line of the part,
+    the line along which they touch.
+
+    Why it matters: A door that turns about a line beside its edge cuts through its frame or leaves a gap.
+
+    Remedy: Move the joint's origin onto the hinge line; the message names the line that fits best.
+    """
     line, settings = case.measures.line, case.settings
     limit = settings.linkage_distance if case.linkage else settings.unknown_distance
-    if case.measures.slides or not case.measures.parent.touches or line.distance <= limit:
-        return None
+    if case.measures.slides or not case.lines_judged or case.unexplained or line.distance <= limit:
+        return  # a direction that nothing shows has no place
     size = case.measures.weighed.scene.frame.diagonal
     far = f"{line.distance * size:.3g} m" if np.isfinite(line.distance) else "far"
-    return Doubt(
-        check=PLACE,
-        severity=Severity.WARNING,
-        message=f"The axis runs {far} beside every line along its direction that {case.child} and {case.parent} show "
+    _doubt(
+        result,
+        case,
+        f"The axis runs {far} beside every line along its direction that {case.child} and {case.parent} show "
         f"as a hinge ({case.child} is {size:.3g} m large).",
-        remedy=_instead(case),
+        _instead(case),
         value=line.distance * size if np.isfinite(line.distance) else size,
         limit=limit * size,
         unit="m",
     )
 
 
-def _fit(case: _Case) -> Doubt | None:
+@check(
+    "KV344",
+    title="no other joint fits the contact far better",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.LINE,
+    doubts=True,
+)
+def another_fits(result: OpenCheck, case: JointCase) -> None:
+    """The declared joint is scored beside all candidates of its type by the cues of the inference (room, contact near
+    the axis, bearings, handles, margins). A lead of evidence.better (evidence.better_slide for slides) is a
+    warning, unless both bodies are round about the declared line itself. In linkages, whose bearings are often not
+    modelled, it takes a lead of evidence.linkage_better with a bearing on both bodies about another line
+    (evidence.bearing_lead) or a range of which the parent blocks evidence.blocked.
+
+    Why it matters: A door on the wrong edge, or a knob about the wrong line, moves plausibly in an engine and
+    wrongly.
+
+    Remedy: Compare with the candidate that the message names, and correct axis and origin.
+    """
     line, settings = case.measures.line, case.settings
-    limit = _better(case)
-    if line.deficit <= limit or _supported(case):
-        return None
-    if case.linkage and not (_contradicted(case) or _blocked(case) > settings.blocked):
-        return None
-    return Doubt(
-        check=FIT,
-        severity=Severity.WARNING,
-        message=f"Another joint of the same type explains the contact of {case.child} and {case.parent} clearly "
+    if case.linkage:
+        limit = settings.linkage_better
+    else:
+        limit = settings.better_slide if case.measures.slides else settings.better
+    if not case.judged_alone or case.unexplained or line.deficit <= limit or _supported(case):
+        return  # of course another one fits better than a direction that nothing shows
+    if case.linkage and not (_contradicted(case) or case.blocked > settings.blocked):
+        return
+    _doubt(
+        result,
+        case,
+        f"Another joint of the same type explains the contact of {case.child} and {case.parent} clearly "
         f"better: its score leads by {line.deficit:.2g}.",
-        remedy=_instead(case),
+        _instead(case),
         value=line.deficit,
         limit=limit,
-        unit=None,
     )
 
 
-def _better(case: _Case) -> float:
-    settings = case.settings
-    if case.linkage:
-        return settings.linkage_better
-    return settings.better_slide if case.measures.slides else settings.better
-
-
-def _supported(case: _Case) -> bool:
+def _supported(case: JointCase) -> bool:
     """Both bodies are round about the declared line about as clearly as about any: then no habit speaks against it."""
     measures = case.measures
     return measures.own_bearing > max(case.settings.bearing_score, 0.5 * measures.bearing)
 
 
-def _contradicted(case: _Case) -> bool:
+def _contradicted(case: JointCase) -> bool:
     """Both bodies are beyond doubt round about another line."""
     own = max(case.measures.own_bearing, 1e-4)
     return case.measures.weighed.scene.has_bearing and case.measures.bearing > case.settings.bearing_lead * own
 
 
-def _blocked(case: _Case) -> float:
-    """Share of the declared range in which the parent is in the way, of as much of it as was swept."""
-    joint, room = case.measures.joint, case.measures.room
-    upper, lower = min(max(joint.upper, 0.0), room.reach), min(max(-joint.lower, 0.0), room.reach)
-    missing = max(upper - room.forward, 0.0) + max(lower - room.backward, 0.0)
-    return missing / max(upper + lower, 1e-12)
+@check(
+    "KV345",
+    title="type fits the parts",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.TYPE,
+    doubts=True,
+)
+def other_type(result: OpenCheck, case: JointCase) -> None:
+    """Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity slide,
+    round parts with a bearing turn, small caps are pressed. Log odds above evidence.type_odds are a warning; a
+    slide of a linkage must also have a bearing, a better direction (evidence.better_slide) or a parent in the way
+    (evidence.blocked), and a continuous joint is taken as meant.
 
+    Why it matters: A drawer that turns and a door that slides are useless for training, and nothing else reports
+    them.
 
-def _type(case: _Case) -> Doubt | None:
+    Remedy: Write the other type with limits in its unit, or accept the finding with a reason.
+    """
     measures, settings = case.measures, case.settings
     odds = measures.odds_against
-    if odds <= settings.type_odds or not _type_open(case):
-        return None
+    if not case.judged_alone or odds <= settings.type_odds or not _type_open(case):
+        return
     declared, other = ("slide", "turn") if measures.slides else ("turn", "slide")
     cues = {name: value for name, value in measures.weighed.decision.cues.items() if value > 0.0}
-    return Doubt(
-        check=TYPE,
-        severity=Severity.WARNING,
-        message=f"{case.child} is declared to {declared} on {case.parent}, but its shape and room speak for a part "
+    _doubt(
+        result,
+        case,
+        f"{case.child} is declared to {declared} on {case.parent}, but its shape and room speak for a part "
         f"that {other}s (log odds {odds:.1f}; {', '.join(cues) or 'no cue for either'}).",
-        remedy=f"Check the type: written as {'revolute' if measures.slides else 'prismatic'} it would fit. "
-        + _instead(case, other_type=True),
+        f"Check the type: written as {'revolute' if measures.slides else 'prismatic'} it would fit. "
+        "The report names the joint that fits best.",
         value=odds,
         limit=settings.type_odds,
         unit="log odds",
     )
 
 
-def _type_open(case: _Case) -> bool:
+def _type_open(case: JointCase) -> bool:
     """False where the odds are no more than habit: few joints of linkages slide, but those that do are meant to.
 
     They count against a slide only where something else does too: a bearing, a better slide, a parent in the way. Nor
@@ -266,104 +240,113 @@ def _type_open(case: _Case) -> bool:
     if not case.linkage or not case.measures.slides:
         return True
     better = case.measures.line.deficit > case.settings.better_slide
-    return better or case.measures.weighed.scene.has_bearing or _blocked(case) > case.settings.blocked
+    return better or case.measures.weighed.scene.has_bearing or case.blocked > case.settings.blocked
 
 
-def _opening(case: _Case) -> Doubt | None:
+@check("KV346", title="permitted motion opens", severity=Severity.WARNING, blame=Blame.KINEMATICS, doubts=True)
+def opens_inwards(result: OpenCheck, case: JointCase) -> None:
+    """With a one-sided range (evidence.one_sided), the permitted side does not lead into the parent within
+    evidence.shut of the range while the other side is free for evidence.open of it; a closed panel does not turn
+    into its body (evidence.panel_inward), and small parts that slide do not move outwards
+    (evidence.button_outward).
+
+    Why it matters: A drawer that opens inwards is stuck in every engine, or flies out of the back of the cabinet.
+
+    Remedy: Reverse the axis, or swap the limits together with their signs.
+    """
     joint, room, settings = case.measures.joint, case.measures.room, case.settings
     short, long = sorted((abs(joint.lower), abs(joint.upper)))
-    if not np.isfinite(long) or short >= settings.one_sided * long:
-        return None
+    if not case.judged_alone or not np.isfinite(long) or short >= settings.one_sided * long:
+        return
     forward = abs(joint.upper) > abs(joint.lower)
     free, other = (room.forward, room.backward) if forward else (room.backward, room.forward)
     outward = room.outward if forward else -room.outward
     wanted = min(long, room.reach)
-    unit = "m" if case.measures.slides else "rad"
     remedy = "Turn the axis round (or swap the limits with their signs), so that the permitted motion opens."
     if case.measures.slides and case.small and not case.linkage:
-        # Pressed parts sink into what they stand on: only the way out is wrong.
-        return _button_opening(case, outward, remedy)
-    if free >= settings.shut * wanted or other <= settings.open * wanted:
-        return _panel_opening(case, outward, remedy)
-    return Doubt(
-        check=OPENING,
-        severity=Severity.WARNING,
-        message=f"The permitted motion of {case.child} leads into {case.parent} after {free:.3g} {unit} of "
-        f"{long:.3g} {unit}, while the other way is free for {other:.3g} {unit}.",
-        remedy=remedy,
-        value=free,
-        limit=settings.shut * wanted,
-        unit=unit,
-    )
+        if outward > settings.button_outward:  # pressed parts sink into what they stand on: only the way out is wrong
+            message = f"{case.child} is a small part on {case.parent} and moves out of it; buttons go in."
+            _doubt(result, case, message, remedy, value=outward, limit=settings.button_outward)
+    elif free < settings.shut * wanted and other > settings.open * wanted:
+        unit = "m" if case.measures.slides else "rad"
+        _doubt(
+            result,
+            case,
+            f"The permitted motion of {case.child} leads into {case.parent} after {free:.3g} {unit} of "
+            f"{long:.3g} {unit}, while the other way is free for {other:.3g} {unit}.",
+            remedy,
+            value=free,
+            limit=settings.shut * wanted,
+            unit=unit,
+        )
+    elif case.closed_panel and outward < -settings.panel_inward:  # it does not open inwards, though nothing stops it
+        message = f"{case.child} is a closed panel and the permitted motion turns it into {case.parent}."
+        _doubt(result, case, message, remedy, value=outward, limit=-settings.panel_inward)
 
 
-def _panel_opening(case: _Case, outward: float, remedy: str) -> Doubt | None:
-    """A closed door or lid that nothing stops still does not open into its body."""
-    limit = -case.settings.panel_inward
-    closed = case.measures.weighed.scene.panel and not case.measures.room.ajar
-    if case.measures.slides or case.linkage or not closed or outward >= limit:
-        return None
-    return Doubt(
-        check=OPENING,
-        severity=Severity.WARNING,
-        message=f"{case.child} is a closed panel and the permitted motion turns it into {case.parent}.",
-        remedy=remedy,
-        value=outward,
-        limit=limit,
-        unit=None,
-    )
+@check("KV347", title="a slide stays with its parent", severity=Severity.WARNING, blame=Blame.KINEMATICS)
+def leaves_guides(result: OpenCheck, case: JointCase) -> None:
+    """At the end of its range, a part that slides by more than its own length along the axis is not evidence.far_gap
+    of the model's size farther away from its parent than at rest; beyond, it has left its guides.
 
+    Why it matters: A drawer that travels twice its length hangs in the air.
 
-def _button_opening(case: _Case, outward: float, remedy: str) -> Doubt | None:
-    limit = case.settings.button_outward
-    if outward <= limit:
-        return None
-    return Doubt(
-        check=OPENING,
-        severity=Severity.WARNING,
-        message=f"{case.child} is a small part on {case.parent} and moves out of it; buttons go in.",
-        remedy=remedy,
-        value=outward,
-        limit=limit,
-        unit=None,
-    )
-
-
-def _travel(case: _Case) -> Doubt | None:
+    Remedy: Reduce the limits, for a drawer to about four fifths of its length.
+    """
     joint, room = case.measures.joint, case.measures.room
     travel = max(abs(joint.lower), abs(joint.upper))
     limit = case.settings.far_gap * case.bodies.diagonal
-    if not case.measures.slides or room.parted <= limit or travel <= room.length:
-        return None
-    return Doubt(
-        check=TRAVEL,
-        severity=Severity.WARNING,
-        message=f"{case.child} travels by {travel:.3g} m, more than its own length of {room.length:.3g} m along the "
+    if not case.judged_alone or not case.measures.slides or room.parted <= limit or travel <= room.length:
+        return
+    _doubt(
+        result,
+        case,
+        f"{case.child} travels by {travel:.3g} m, more than its own length of {room.length:.3g} m along the "
         f"axis, and is {room.parted:.3g} m away from {case.parent} at the end.",
-        remedy=f"Reduce the range to about {0.8 * room.length:.3g} m, four fifths of its length.",
+        f"Reduce the range to about {0.8 * room.length:.3g} m, four fifths of its length.",
         value=room.parted,
         limit=limit,
         unit="m",
     )
 
 
-def _range(case: _Case) -> Doubt | None:
-    """What is wide for such a part although nothing stops it."""
+@check("KV348", title="range is usual for such a part", severity=Severity.WARNING, blame=Blame.KINEMATICS)
+def unusual_range(result: OpenCheck, case: JointCase) -> None:
+    """No limited range is a whole turn, mostly to one side (evidence.whole_turn). Outside linkages, an upright panel
+    opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid, and a button
+    travels by no more than evidence.button_travel of its own length. Meshes do not hold designed stops, so this is
+    experience.
+
+    Why it matters: A robot that learns to open a door to twice its angle fails on the real one.
+
+    Remedy: Correct the limit, or accept the finding with a reason.
+    """
     joint, room, scene, settings = case.measures.joint, case.measures.room, case.measures.weighed.scene, case.settings
     span = max(abs(joint.lower), abs(joint.upper))
-    if not np.isfinite(span):
-        return None
+    if not case.judged_alone or not np.isfinite(span):
+        return
     if not case.measures.slides and _turns_round(joint.lower, joint.upper, settings):
-        return _round(case, float(np.degrees(joint.upper - joint.lower)))
-    if case.linkage:
-        return None
-    if case.measures.slides:
-        pressed = case.small and abs(room.outward) > settings.button_outward
-        return _wide(case, "button", span, settings.button_travel * room.length, "m") if pressed else None
-    if not scene.panel or not (scene.upright or scene.flat):
-        return None
-    name, limit = ("door", settings.widest_door) if scene.upright else ("lid", settings.widest_lid)
-    return _wide(case, name, float(np.degrees(span)), limit, "deg")
+        turned = float(np.degrees(joint.upper - joint.lower))
+        _doubt(
+            result,
+            case,
+            f"{case.child} turns by {turned:.3g} deg, mostly to one side: that is more than a whole turn, so no stop "
+            "can be there.",
+            'Write type="continuous" if it turns without end; otherwise check the limits, and halve them if the '
+            "range was doubled.",
+            value=turned,
+            limit=settings.whole_turn,
+            unit="deg",
+        )
+    elif case.linkage:
+        return
+    elif case.measures.slides:
+        if case.small and abs(room.outward) > settings.button_outward:
+            _wide(result, case, "button", span, settings.button_travel * room.length)
+    elif scene.panel and scene.upright:
+        _wide(result, case, "door", float(np.degrees(span)), settings.widest_door)
+    elif scene.panel and scene.flat:
+        _wide(result, case, "lid", float(np.degrees(span)), settings.widest_lid)
 
 
 def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool:
@@ -372,39 +355,49 @@ def _turns_round(lower: float, upper: float, settings: EvidenceSettings) -> bool
     return bool(np.degrees(span) >= settings.whole_turn and abs(lower + upper) > settings.lopsided * span)
 
 
-def _round(case: _Case, span: float) -> Doubt:
-    return Doubt(
-        check=RANGE,
-        severity=Severity.WARNING,
-        message=f"{case.child} turns by {span:.3g} deg, mostly to one side: that is more than a whole turn, so no stop "
-        "can be there.",
-        remedy='Write type="continuous" if it turns without end; otherwise check the limits, and halve them if the '
-        "range was doubled.",
-        value=span,
-        limit=case.settings.whole_turn,
-        unit="deg",
-    )
+def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: float) -> None:
+    """Tell a range [m or deg] that is wide for such a part although nothing stops it."""
+    unit = "m" if case.measures.slides else "deg"
+    if span > limit:
+        _doubt(
+            result,
+            case,
+            f"{case.child} looks like a {name} and moves by {span:.3g} {unit} to one side; such parts hardly ever "
+            f"move by more than {limit:.3g} {unit}.",
+            "Check the limit, and halve it if the range was doubled; suppress the finding if it is meant.",
+            value=span,
+            limit=limit,
+            unit=unit,
+        )
 
 
-def _wide(case: _Case, name: str, span: float, limit: float, unit: str) -> Doubt | None:
-    if span <= limit:
-        return None
-    return Doubt(
-        check=RANGE,
-        severity=Severity.WARNING,
-        message=f"{case.child} looks like a {name} and moves by {span:.3g} {unit} to one side; such parts hardly ever "
-        f"move by more than {limit:.3g} {unit}.",
-        remedy="Check the limit, and halve it if the range was doubled; suppress the finding if it is meant.",
-        value=span,
-        limit=limit,
-        unit=unit,
-    )
-
-
-def _instead(case: _Case, *, other_type: bool = False) -> str:
-    if other_type:
-        return "The report names the joint that fits best."
+def _instead(case: JointCase) -> str:
     line = case.measures.line
     axis = ", ".join(f"{value:.3f}" for value in line.best_axis)
     where = "" if case.measures.slides else " through (" + ", ".join(f"{value:.3f}" for value in line.best_pivot) + ")"
     return f"Best candidate in the world frame at rest: axis ({axis}){where}."
+
+
+def _doubt(
+    result: OpenCheck,
+    case: JointCase,
+    message: str,
+    remedy: str,
+    *,
+    value: float,
+    limit: float,
+    unit: str | None = None,
+    severity: Severity = Severity.WARNING,
+) -> None:
+    """Add a finding against the declared joint."""
+    joint = case.measures.joint
+    result.find(
+        message,
+        remedy,
+        severity=severity,
+        joint=joint.source,
+        q={joint.source: joint.value},
+        value=value,
+        limit=limit,
+        unit=unit,
+    )

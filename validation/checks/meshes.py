@@ -1,131 +1,77 @@
-"""KV15x: every mesh file by itself, then the sizes of the model as a whole."""
+"""KV150 to KV159 but the sizes: every mesh file by itself."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kinematify.errors import DescriptionError
-from kinematify.robot.read import read_parsed
-from kinematify.robot.urdf_geometry import geometry_source
-from kinematify.robot.urdf_text import parse_description
-from kinematify.validation.asset.mesh_files import open_mesh_files, worst_coordinate
-from kinematify.validation.asset.mesh_quality import surface_quality
-from kinematify.validation.asset.units import check_model_size, check_unit_slips
+from kinematify.validation.check import check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from lxml.etree import _Element
-
-    from kinematify.config.validation import FileSettings
-    from kinematify.robot.declared import DeclaredModel
-    from kinematify.robot.urdf_geometry import GeometrySource
-    from kinematify.validation.asset.mesh_files import MeshFile
-    from kinematify.validation.asset.mesh_quality import SurfaceQuality
-    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
-
-    Measured = list[tuple[MeshFile, SurfaceQuality]]
+    from kinematify.validation.asset.mesh_look import MeshLook
+    from kinematify.validation.stage import OpenCheck
 
 
-def check_mesh_files(request: StageRequest, recorder: Recorder) -> DeclaredModel | None:
-    """Tell KV150 to KV159 and return the model, or None where a mesh keeps it from being read.
+@check("KV150", title="Mesh files can be read", severity=Severity.ERROR, blame=Blame.ASSET)
+def unreadable(result: OpenCheck, look: MeshLook) -> None:
+    """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to
+    vertices that it has.
 
-    Args:
-        request: Names the document, which has passed the pre-check.
-        recorder: Told every check; the later ones are blocked where a mesh cannot be used.
+    Why it matters: A truncated or lying mesh is dropped in silence by PyBullet, which also reads past the end of
+    its arrays where a face of an OBJ refers to a vertex that is not there; MuJoCo refuses to load the model.
+
+    Remedy: Export the mesh again and check that it opens in a viewer.
     """
-    settings = request.settings.file
-    robot = parse_description(request.urdf)
-    source = geometry_source(request.urdf, request.package_dirs)
-    files: tuple[MeshFile, ...] = ()
-    model: DeclaredModel | None = None
-    with recorder.check("KV150") as check:
-        files = open_mesh_files(robot, source, settings)
-        _tell_unreadable(check, files)
-        if not check.findings:
-            model = _read(robot, request, source, check)
-    with recorder.check("KV151") as check:
-        _tell_wild_coordinates(check, files, settings)
-        model = None if check.findings else model
-    with recorder.check("KV152") as check:
-        too_many = _tell_counts(check, files, settings)
-        model = None if too_many else model
-    if model is None:
-        _block_rest(recorder)
-    else:
-        _check_usable(files, model, request, recorder)
-    return model
-
-
-def _read(robot: _Element, request: StageRequest, source: GeometrySource, check: OpenCheck) -> DeclaredModel | None:
-    try:
-        with np.errstate(all="ignore"):  # what is not finite is told by the next check
-            return read_parsed(robot, request.urdf, source)
-    except DescriptionError as error:
-        check.find(str(error), "Mend what the message names.")
-        return None
-
-
-def _block_rest(recorder: Recorder) -> None:
-    for name in ("KV153", "KV154", "KV155", "KV156", "KV157", "KV158", "KV159"):
-        with recorder.check(name) as check:
-            check.block("a mesh cannot be used")
-
-
-def _check_usable(files: tuple[MeshFile, ...], model: DeclaredModel, request: StageRequest, recorder: Recorder) -> None:
-    """Tell the checks that need readable meshes."""
-    settings = request.settings.file
-    measured: Measured = []
-    if recorder.wants("KV153", "KV154", "KV155", "KV156"):
-        measured = [(file, surface_quality(file.mesh)) for file in files if file.mesh is not None]
-    for name, tell in (("KV153", _tell_flat), ("KV154", _tell_degenerate), ("KV156", _tell_winding)):
-        with recorder.check(name) as check:
-            tell(check, measured, settings)
-    with recorder.check("KV155") as check:
-        _tell_open(check, measured)
-    with recorder.check("KV157") as check:
-        check_unit_slips(model, settings, check)
-    with recorder.check("KV158") as check:
-        check_model_size(model, settings, check)
-    with recorder.check("KV159") as check:
-        _tell_units(check, files)
-
-
-def _tell_unreadable(check: OpenCheck, files: tuple[MeshFile, ...]) -> None:
-    for file in files:
+    for file in look.files:
         if file.mesh is None:
-            check.find(
+            result.find(
                 f"The mesh {file.called} cannot be used. {file.fault}",
                 "Export it again and check that it opens in a viewer.",
                 link=file.first.link,
                 line=file.first.line,
             )
+    if look.fault is not None:
+        result.find(look.fault, "Mend what the message names.")
 
 
-def _tell_wild_coordinates(check: OpenCheck, files: tuple[MeshFile, ...], settings: FileSettings) -> None:
-    for file in files:
-        worst = 0.0 if file.mesh is None else worst_coordinate(file.mesh)
-        if not worst <= settings.max_number:
-            check.find(
+@check("KV151", title="Mesh coordinates are finite", severity=Severity.ERROR, blame=Blame.ASSET)
+def wild_coordinates(result: OpenCheck, look: MeshLook) -> None:
+    """Every coordinate is a finite number of at most `max_number`.
+
+    Why it matters: PyBullet takes NaN without a word, and the state of the simulation becomes NaN with it.
+
+    Remedy: Export the mesh again; a file that was cut or changed on the way has such numbers.
+    """
+    for file in look.files:
+        worst = file.worst_coordinate
+        if not worst <= look.settings.max_number:
+            result.find(
                 f"The mesh {file.called} has a coordinate of {worst:g}; expected finite numbers up to "
-                f"{settings.max_number:g}.",
+                f"{look.settings.max_number:g}.",
                 "Export it again; a file that was cut or changed on the way has such numbers.",
                 link=file.first.link,
                 line=file.first.line,
                 value=worst,
-                limit=settings.max_number,
+                limit=look.settings.max_number,
             )
 
 
-def _tell_counts(check: OpenCheck, files: tuple[MeshFile, ...], settings: FileSettings) -> bool:
-    """True if there are too many triangles to go on."""
-    counts = [0 if file.mesh is None else len(file.mesh.faces) for file in files]
+@check("KV152", title="Triangle counts", severity=Severity.ERROR, blame=Blame.ASSET)
+def triangle_counts(result: OpenCheck, look: MeshLook) -> None:
+    """All meshes together have at most `max_faces` triangles; a single mesh with more than `stl_faces` is a warning.
+
+    Why it matters: MuJoCo refuses an STL with more than 200,000 triangles; collision checks of scans with millions
+    take hours.
+
+    Remedy: Reduce the mesh, or split it.
+    """
+    settings = look.settings
+    counts = [0 if file.mesh is None else len(file.mesh.faces) for file in look.files]
     total = sum(counts)
-    check.measured["faces"] = total
-    for file, count in zip(files, counts, strict=True):
+    result.measured["faces"] = total
+    for file, count in zip(look.files, counts, strict=True):
         if count > settings.stl_faces:
-            check.find(
+            result.find(
                 f"The mesh {file.called} has {count} triangles; MuJoCo reads at most {settings.stl_faces} from an STL, "
                 "and collisions take long with so many.",
                 "Reduce it (for example with MeshLab or Blender), or split it into several meshes.",
@@ -136,19 +82,25 @@ def _tell_counts(check: OpenCheck, files: tuple[MeshFile, ...], settings: FileSe
                 limit=settings.stl_faces,
             )
     if total > settings.max_faces:
-        check.find(
+        result.find(
             f"The meshes have {total} triangles together; at most {settings.max_faces} are checked.",
             "Reduce the meshes to what collisions need; 20,000 triangles per link are plenty.",
             value=total,
             limit=settings.max_faces,
         )
-    return total > settings.max_faces
 
 
-def _tell_flat(check: OpenCheck, measured: Measured, settings: FileSettings) -> None:
-    for file, quality in measured:
-        if quality.thickness <= settings.flat * quality.diagonal:
-            check.find(
+@check("KV153", title="Meshes have a thickness", severity=Severity.WARNING, blame=Blame.ASSET)
+def flat_meshes(result: OpenCheck, look: MeshLook) -> None:
+    """No mesh is thinner than `flat` times its diagonal; for meshes that are only seen it is a note.
+
+    Why it matters: MuJoCo cannot make a hull of a flat mesh, and nothing rests on it safely.
+
+    Remedy: Give it a thickness, or use a thin box for the collision.
+    """
+    for file, quality in look.measured:
+        if quality.thickness <= look.settings.flat * quality.diagonal:
+            result.find(
                 f"The mesh {file.called} is flat: {quality.thickness:.2g} thick over a diagonal of "
                 f"{quality.diagonal:.3g}. MuJoCo cannot make a hull of it.",
                 "Give it a thickness, or use a thin box for the collision.",
@@ -157,34 +109,47 @@ def _tell_flat(check: OpenCheck, measured: Measured, settings: FileSettings) -> 
                 link=file.first.link,
                 line=file.first.line,
                 value=quality.thickness,
-                limit=settings.flat * quality.diagonal,
+                limit=look.settings.flat * quality.diagonal,
             )
 
 
-def _tell_degenerate(check: OpenCheck, measured: Measured, settings: FileSettings) -> None:
-    check.measured["degenerate_faces"] = sum(quality.degenerate for _, quality in measured)
-    for file, quality in measured:
+@check("KV154", title="Triangles have an area", severity=Severity.WARNING, blame=Blame.ASSET)
+def degenerate_faces(result: OpenCheck, look: MeshLook) -> None:
+    """At most `degenerate_share` of the triangles of a mesh have no area; for meshes that are only seen it is a note.
+
+    Why it matters: Normals of such triangles are noise, and so are masses and contacts computed from them.
+
+    Remedy: Merge doubled vertices and delete degenerate faces.
+    """
+    result.measured["degenerate_faces"] = sum(quality.degenerate for _, quality in look.measured)
+    for file, quality in look.measured:
         share = quality.degenerate / quality.faces
-        if share > settings.degenerate_share:
-            check.find(
+        if share > look.settings.degenerate_share:
+            result.find(
                 f"{quality.degenerate} of the {quality.faces} triangles of the mesh {file.called} have no area.",
                 "Merge doubled vertices and delete degenerate faces, for example in MeshLab.",
                 severity=None if file.collides else Severity.NOTE,
                 link=file.first.link,
                 line=file.first.line,
                 value=share,
-                limit=settings.degenerate_share,
+                limit=look.settings.degenerate_share,
             )
 
 
-def _tell_open(check: OpenCheck, measured: Measured) -> None:
-    """One note for all: most meshes of everyday objects are open, and nothing here depends on it."""
-    open_files = [(file, quality) for file, quality in measured if not quality.closed]
-    check.measured["open_meshes"] = len(open_files)
+@check("KV155", title="Meshes are closed", severity=Severity.NOTE, blame=Blame.ASSET)
+def open_meshes(result: OpenCheck, look: MeshLook) -> None:
+    """Mesh files that do not enclose a volume are counted.
+
+    Why it matters: Volumes, masses and signed distances of open meshes are estimates.
+
+    Remedy: Close the holes if masses are to be computed from the meshes.
+    """
+    open_files = [(file, quality) for file, quality in look.measured if not quality.closed]
+    result.measured["open_meshes"] = len(open_files)
     if open_files:
         file, quality = max(open_files, key=lambda item: item[1].open_edges)
-        check.find(
-            f"{len(open_files)} of {len(measured)} mesh files do not enclose a volume; the mesh {file.called} has "
+        result.find(
+            f"{len(open_files)} of {len(look.measured)} mesh files do not enclose a volume; the mesh {file.called} has "
             f"{quality.open_edges} open edges. Volumes and masses computed from them are estimates.",
             "Close the holes if masses are to be computed from the meshes.",
             link=file.first.link,
@@ -194,14 +159,22 @@ def _tell_open(check: OpenCheck, measured: Measured) -> None:
         )
 
 
-def _tell_winding(check: OpenCheck, measured: Measured, settings: FileSettings) -> None:
-    """Inside out counts for collisions; opposed and branched edges are one note for all."""
-    torn = [(file, q) for file, q in measured if q.opposed_edges + q.branched_edges]
-    check.measured["torn_meshes"] = len(torn)
-    for file, quality in measured:
-        solid = quality.closed and quality.thickness > settings.flat * quality.diagonal
+@check("KV156", title="Triangles face outward", severity=Severity.WARNING, blame=Blame.ASSET)
+def inward_faces(result: OpenCheck, look: MeshLook) -> None:
+    """No closed collision mesh is inside out. Edges at which triangles face opposite sides, or with more than two
+    triangles, are counted in a note.
+
+    Why it matters: A mesh that is inside out has a negative volume, which MuJoCo refuses; some viewers show it
+    hollow.
+
+    Remedy: Flip the normals and split surfaces that share edges.
+    """
+    torn = [(file, q) for file, q in look.measured if q.opposed_edges + q.branched_edges]
+    result.measured["torn_meshes"] = len(torn)
+    for file, quality in look.measured:
+        solid = quality.closed and quality.thickness > look.settings.flat * quality.diagonal
         if solid and not quality.opposed_edges and quality.volume < 0.0:
-            check.find(
+            result.find(
                 f"The mesh {file.called} is inside out: its triangles face inward.",
                 "Flip the normals.",
                 severity=None if file.collides else Severity.NOTE,
@@ -210,8 +183,8 @@ def _tell_winding(check: OpenCheck, measured: Measured, settings: FileSettings) 
             )
     if torn:
         file, quality = max(torn, key=lambda item: item[1].opposed_edges + item[1].branched_edges)
-        check.find(
-            f"{len(torn)} of {len(measured)} mesh files are no clean surfaces; the mesh {file.called} has "
+        result.find(
+            f"{len(torn)} of {len(look.measured)} mesh files are no clean surfaces; the mesh {file.called} has "
             f"{quality.opposed_edges} edges at which triangles face opposite sides and {quality.branched_edges} with "
             "more than two triangles.",
             "Make the faces point outward and split surfaces that share edges, if masses are to be computed from them.",
@@ -223,19 +196,26 @@ def _tell_winding(check: OpenCheck, measured: Measured, settings: FileSettings) 
         )
 
 
-def _tell_units(check: OpenCheck, files: tuple[MeshFile, ...]) -> None:
-    for file in files:
+@check("KV159", title="Units and axes that files state", severity=Severity.NOTE, blame=Blame.ASSET)
+def stated_units(result: OpenCheck, look: MeshLook) -> None:
+    """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they heed it.
+
+    Why it matters: The same file has another size or lies on its side in another simulator.
+
+    Remedy: Export OBJ or STL in metres with z up.
+    """
+    for file in look.files:
         if file.units:
-            check.find(
+            result.find(
                 f"The mesh {file.called} states the unit {', '.join(sorted(file.units))}, which URDF readers ignore: "
                 "its numbers are taken for metres.",
                 "Write the factor to metres as its scale, or export it in metres.",
                 link=file.first.link,
                 line=file.first.line,
             )
-    collada = [file for file in files if file.path.suffix.lower() == ".dae"]
+    collada = [file for file in look.files if file.path.suffix.lower() == ".dae"]
     if collada:
-        check.find(
+        result.find(
             f"COLLADA meshes: {len(collada)}. Readers differ in whether they heed the unit and the up axis that these "
             "state; here the unit is heeded and the up axis is not, as in RViz.",
             "Export OBJ or STL in metres with z up to be sure.",
