@@ -1,11 +1,12 @@
-"""Validation reports built in code, with checks of their own so that they do not hang on the catalogue."""
+"""Validation reports built in code, with checks of their own so that they do not hang on the real ones."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import CATALOGUE, Check
+from kinematify.validation.check import Check
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.report import JointSummary, ValidationReport
 
@@ -17,7 +18,7 @@ EVIL = "<b>&\"'\x00\x1b[31m\udcff"
 
 
 def add_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put KV396 (no engine) and KV496 (MuJoCo) into the catalogue for one test."""
+    """Put KV396 (no engine) and KV496 (MuJoCo) among the checks for one test."""
     for name, engines in (("KV396", ()), ("KV496", ("mujoco",))):
         check = Check(
             id=name,
@@ -29,7 +30,7 @@ def add_checks(monkeypatch: pytest.MonkeyPatch) -> None:
             matters="It jams.",
             remedy="Move it.",
         )
-        monkeypatch.setitem(CATALOGUE, name, check)
+        monkeypatch.setitem(CHECKS, name, check)
 
 
 def finding(**changes: object) -> Finding:

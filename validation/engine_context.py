@@ -244,23 +244,3 @@ class EngineContext:
         side = values >= travel.rest if driven.drive.end == travel.upper else values <= travel.rest
         rows = sweep_rows(driven.drive.leader, count)
         return self.drives.sweep.excess[:, rows][:, side], values[side]
-
-
-def nothing_moves(context: EngineContext) -> str | None:
-    """Return the reason why there is nothing to move."""
-    return None if context.mechanism.travels else "no joint moves"
-
-
-def no_geometry(context: EngineContext) -> str | None:
-    """Return the reason why there is nothing that can touch a floor."""
-    return None if any(link.pieces for link in context.prepared.links) else "no link has geometry"
-
-
-def late(context: EngineContext) -> str | None:
-    """Return the reason why there is no time."""
-    return "time ran out before it" if context.request.remaining <= 0.0 else None
-
-
-def not_driven(context: EngineContext) -> str | None:
-    """Return the reason why joints were not driven and will not be."""
-    return None if "drives" in vars(context) else nothing_moves(context) or late(context)

@@ -12,6 +12,7 @@ from kinematify.robot.read import read_without_geometry
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.simulation.configurations import agreement_configurations, read_poses
 from kinematify.simulation.engines import ENGINES
+from kinematify.simulation.prepared import load_prepared
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.declared import DeclaredModel
     from kinematify.simulation.configurations import Configurations, EnginePoses
+    from kinematify.simulation.prepared import Prepared
     from kinematify.validation.stage import OpenCheck, StageRequest
 
 EXACT = "geometry"
@@ -48,6 +50,11 @@ class EngineResults:
     def model(self) -> DeclaredModel:
         """The file without its geometry."""
         return read_without_geometry(self.request.urdf)
+
+    @cached_property
+    def prepared(self) -> Prepared:
+        """What the engines loaded."""
+        return load_prepared(self.request.work)
 
     @cached_property
     def rows(self) -> Configurations:

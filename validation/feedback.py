@@ -4,23 +4,8 @@ A failure seldom proves anything. Each signal carries a weight in log odds, the 
 own evidence, and the search decides. Failures that are not the search's to mend are listed with the reason, so that
 nothing is dropped in silence; above all, no collision is ever switched off.
 
-==============================================================  ====================================================
-failure                                                         signal
-==============================================================  ====================================================
-into its parent at once, to both sides (KV310)                  against this line and, weaker, against this type
-into its parent to one side only (KV310, KV312)                 range ends there; the free side is the opening one
-into a body that is not its parent (KV311)                      against this parent, for that body where they touch
-contact with the parent lost (KV320, KV303, KV341)              against line and type, or against the parent
-out of its guide (KV321)                                        range ends before
-another line or type fits better (KV342 to KV346)               against the line, or against the type
-hulls meet where the meshes do not (KV332, KV403)               none: collision geometry
-overlap at rest (KV301, KV302)                                  allowance with its reason
-engines or tools disagree (KV401, KV402, KV501, KV502, KV6xx)   none: files, frames, inertia
-driven, an end is not reached (KV405, KV505)                    against the line, unless hulls explain it
-limits escaped, unstable, gains energy (KV407 to KV409, ...)    none at first; weak once masses and overlaps are fine
-sinks under gravity (KV404, KV504, KV411, KV511)                weak, against the direction
-handle found, but no way to pull it (KV703 to KV706)            weak, and only if several placements were tried
-==============================================================  ====================================================
+Which row of the table (`FeedbackRow`) a finding belongs to stands at its check, here stands what each row does;
+`docs/checks.md` shows the table.
 """
 
 from __future__ import annotations
@@ -28,6 +13,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from kinematify.validation.check import FeedbackRow
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -248,16 +235,17 @@ class _Case:
 
 def _route(case: _Case, finding: Finding) -> None:
     """Hand a finding to the row of the table that it belongs to."""
-    if finding.check in _AT_REST:
+    row = CHECKS[finding.check].feedback
+    if row is FeedbackRow.ALLOWED:
         _at_rest(case, finding)
     elif finding.severity is Severity.NOTE:
         return
-    elif finding.check in _HULLS or (finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")):
+    elif row is FeedbackRow.COLLISION or (finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")):
         case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
-    elif finding.check in _FILES or finding.check.startswith(("KV1", "KV2", "KV6")):
+    elif row is FeedbackRow.EXPORTER:
         case.leave(finding, "frames, masses or files disagree; that is the exporter's to mend")
-    elif finding.check in _ROWS and finding.joint is not None and finding.joint in case.joints:
-        _ROWS[finding.check](case, finding, case.joints[finding.joint])
+    elif row in _ROWS and finding.joint is not None and finding.joint in case.joints:
+        _ROWS[row](case, finding, case.joints[finding.joint])
     else:
         case.leave(finding, "it names no joint that could be chosen again")
 
@@ -409,26 +397,19 @@ def _no_way(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
 
 
 _TURNING = ("revolute", "continuous")
-_AT_REST = frozenset(("KV301", "KV302"))
-_HULLS = frozenset(("KV332", "KV403", "KV503", "KV406", "KV506"))
-_FILES = frozenset(("KV401", "KV402", "KV410", "KV412", "KV501", "KV502", "KV510", "KV512"))
-_ROWS: dict[str, Callable[[_Case, Finding, DeclaredJoint], None]] = {
-    "KV310": _into_parent,
-    "KV312": _end_there,
-    "KV311": _into_others,
-    "KV303": _not_carried,
-    "KV341": _not_carried,
-    "KV320": _derailed,
-    "KV321": _out_of_guide,
-    "KV342": _line_doubted,
-    "KV343": _line_doubted,
-    "KV344": _line_doubted,
-    "KV345": _type_doubted,
-    "KV405": _not_reached,
-    "KV505": _not_reached,
-    **dict.fromkeys(("KV407", "KV408", "KV409", "KV507", "KV508", "KV509"), _unstable),
-    **dict.fromkeys(("KV404", "KV504", "KV411", "KV511"), _sinks),
-    **dict.fromkeys(("KV703", "KV704", "KV705", "KV706"), _no_way),
+_ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, DeclaredJoint], None]] = {
+    FeedbackRow.INTO_PARENT: _into_parent,
+    FeedbackRow.END: _end_there,
+    FeedbackRow.OTHER_PARENT: _into_others,
+    FeedbackRow.NOT_CARRIED: _not_carried,
+    FeedbackRow.DERAILED: _derailed,
+    FeedbackRow.GUIDE: _out_of_guide,
+    FeedbackRow.LINE: _line_doubted,
+    FeedbackRow.TYPE: _type_doubted,
+    FeedbackRow.NOT_REACHED: _not_reached,
+    FeedbackRow.UNSTABLE: _unstable,
+    FeedbackRow.SINKS: _sinks,
+    FeedbackRow.NO_WAY: _no_way,
 }
 
 

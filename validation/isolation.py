@@ -7,7 +7,6 @@ result through a pipe at once; what it sent before it died is kept.
 from __future__ import annotations
 
 import gc
-import importlib
 import multiprocessing
 import os
 import resource
@@ -42,12 +41,15 @@ _PRELOADED = (
     "kinematify.validation.stage",
     "kinematify.config.validation",
     "kinematify.manipulation.request",
-    "kinematify.validation.asset.stage",
-    "kinematify.validation.prepare_stage",
-    "kinematify.validation.geometry.stage",
-    "kinematify.validation.evidence.stage",
-    "kinematify.validation.engine_stage",
-    "kinematify.validation.agreement",
+    "kinematify.validation.asset.bodies",
+    "kinematify.validation.asset.mesh_look",
+    "kinematify.simulation.prepare",
+    "kinematify.validation.geometry.look",
+    "kinematify.validation.geometry.exact_contacts",
+    "kinematify.validation.evidence.case",
+    "kinematify.validation.evidence.measure",
+    "kinematify.validation.engine_context",
+    "kinematify.validation.engine_results",
 )
 """What requests hold and stages need, imported once for all of them; not the libraries of engines, one for each."""
 
@@ -57,8 +59,8 @@ class Stage:
     """A group of checks that runs in one process."""
 
     name: str
-    function: str | Callable[[StageRequest, Recorder], None]
-    """What runs; as ``module:function`` where its module is not to be imported here."""
+    run: Callable[[StageRequest, Recorder], None]
+    """What runs in the process; what it measures with is imported there."""
     checks: tuple[tuple[str, str | None], ...]
     """Every (id, engine) that it tells if nothing goes wrong."""
     after: tuple[str, ...] = ()
@@ -152,14 +154,8 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     # Imported here, and by the server: the sooner the caller starts that, the sooner everything ends.
     from kinematify.validation.stage import Recorder  # noqa: PLC0415
 
-    run: Callable[[StageRequest, Recorder], None]
-    if isinstance(stage.function, str):
-        module, function = stage.function.split(":")
-        run = getattr(importlib.import_module(module), function)
-    else:
-        run = stage.function
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
-        run(request, Recorder(sender.send, request.selected))
+        stage.run(request, Recorder(sender.send, request.selected))
         sender.send(None)
 
 

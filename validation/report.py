@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ class ValidationReport:
 def _check_json(check: CheckResult) -> dict[str, Any]:
     return {
         "check": check.check,
-        "title": CATALOGUE[check.check].title,
+        "title": CHECKS[check.check].title,
         "engine": check.engine,
         "status": check.status.value,
         "reason": check.reason,

@@ -1,6 +1,6 @@
 """The whole of `kinematify validate` for one model: pre-check, then isolated stages, then one report.
 
-Every check of the catalogue ends up in the report: passed, failed, skipped or blocked, the latter two with a reason.
+Every check ends up in the report: passed, failed, skipped or blocked, the latter two with a reason.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from kinematify.config.validation import load_settings
 from kinematify.manipulation.request import Suspicion
 from kinematify.simulation.engines import ENGINES, require_engine
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.inferred import inferred_beside, with_next_best
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.request import TaskRequest
-    from kinematify.validation.catalogue import Check
+    from kinematify.validation.check import Check
     from kinematify.validation.isolation import StageEnd
     from kinematify.validation.plan import CheckKey
     from kinematify.validation.report import Summary
@@ -105,14 +105,14 @@ def validate(
     return run.report(settings, suppressions)
 
 
-_GUARDS = frozenset(check for check in CATALOGUE if check.startswith("KV1"))
+_GUARDS = frozenset(check for check in CHECKS if check.startswith("KV1"))
 """Checks of file and meshes: they always run, and their errors always count, since nothing else can run after one."""
 _MESH_GUARDS = frozenset(check for check in _GUARDS if check.startswith("KV15"))
 _LAST_GUARD = "KV152"
 """Told when every mesh file has been opened and read."""
 
 
-_DOUBTS = frozenset(("KV310", "KV320", "KV341", "KV342", "KV343", "KV344", "KV345", "KV346"))
+_DOUBTS = frozenset(name for name, check in CHECKS.items() if check.doubts)
 """What the stage of a task wants to know of the joints: whether parent, axis, place, type and direction are right."""
 _LEEWAY = 20.0
 """Seconds in which the comparison of engines, and what the stage of a task is at, may end after the budget."""
@@ -123,7 +123,7 @@ def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check
     known = {None, *DEFAULT_ENGINES, *engines}
     return {
         name: check
-        for name, check in CATALOGUE.items()
+        for name, check in CHECKS.items()
         if (task is not None or not name.startswith("KV7")) and known & {*(check.engines or (None,))}
     }
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ class OpenCheck:
         Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
         after which later stages may read the file all the same.
         """
-        check = CATALOGUE[self.id]
+        check = CHECKS[self.id]
         self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
         self.findings.append(
             Finding(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from kinematify.errors import InputError
-from kinematify.validation.catalogue import CATALOGUE, find_check
+from kinematify.validation.checks import CHECKS, find_check
 from kinematify.validation.suppression import Suppression
 
 if TYPE_CHECKING:
@@ -68,13 +68,13 @@ def _rule(rule: Any, name: str) -> Suppression:
 
 
 def known_pattern(pattern: str) -> str:
-    """Return an id or a glob of ids as the catalogue writes it.
+    """Return an id or a glob of ids as the registry writes it.
 
     Raises:
         InputError: No check matches; the message names the nearest.
     """
     wanted = pattern.strip().upper()
-    if not any(fnmatchcase(check, wanted) for check in CATALOGUE):
+    if not any(fnmatchcase(check, wanted) for check in CHECKS):
         return find_check(wanted).id
     return wanted
 

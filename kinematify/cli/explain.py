@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-    from kinematify.validation.catalogue import Check
+    from kinematify.validation.check import Check
 
 _WIDTH = 100
 
@@ -39,13 +39,13 @@ def command(*, checks: tuple[str, ...], as_list: bool, markdown: bool, json_to: 
 
     Without CHECK, --json writes all of them.
     """
-    from kinematify.validation.catalogue import CATALOGUE, find_check
+    from kinematify.validation.checks import CHECKS, find_check
 
     if checks and (as_list or markdown):
         raise click.UsageError("--list and --markdown show all checks. Leave the ids or the option out.")
     if not (checks or as_list or markdown or json_to):
         raise click.UsageError("Give the id of a check, such as KV301, or --list.")
-    chosen = [find_check(name) for name in checks] or list(CATALOGUE.values())
+    chosen = [find_check(name) for name in checks] or list(CHECKS.values())
     if json_to:
         write_answer({"schema": 1, "checks": [_as_answer(check) for check in chosen]}, json_to)
     if json_to == "-":
@@ -60,12 +60,12 @@ def command(*, checks: tuple[str, ...], as_list: bool, markdown: bool, json_to: 
 
 def as_markdown(checks: Sequence[Check]) -> str:
     """Return the page `docs/checks.md`."""
-    from kinematify.validation.catalogue import FAMILIES
+    from kinematify.validation.check import FAMILIES
 
     lines = [
         "# Checks of `kinematify validate`",
         "",
-        "Written by `kinematify explain --markdown > docs/checks.md`; change `validation/catalogue/`, not this page.",
+        "Written by `kinematify explain --markdown > docs/checks.md`; change `validation/checks/`, not this page.",
         "",
         "An id stays the same for ever. The severity is the worst that a check reports. Words in `this_form` are",
         "settings of [configs/validation.yaml](../configs/validation.yaml).",
@@ -75,6 +75,7 @@ def as_markdown(checks: Sequence[Check]) -> str:
         if members:
             lines += ["", f"## {prefix}xx: {family}", "", *_index(members)]
             lines += [line for check in members for line in ("", *_section(check))]
+    lines += ["", "## What `kinematify refine` makes of findings", "", *_feedback(checks)]
     return "\n".join(lines) + "\n"
 
 
@@ -85,6 +86,20 @@ def _index(checks: Sequence[Check]) -> list[str]:
         for check in checks
     ]
     return ["| id | check | severity | blames | engines |", "|---|---|---|---|---|", *rows]
+
+
+def _feedback(checks: Sequence[Check]) -> list[str]:
+    from kinematify.validation.check import FAMILIES, FeedbackRow
+
+    table = ["| signal | checks |", "|---|---|"]
+    for row in FeedbackRow:
+        inside = {check.id for check in checks if check.feedback is row}
+        whole = [
+            family for family in FAMILIES if {check.id for check in checks if check.id.startswith(family)} <= inside
+        ]
+        single = [f"[{name}](#{name.lower()})" for name in sorted(inside) if not name.startswith(tuple(whole))]
+        table.append(f"| {row.value} | {', '.join([f'{family}xx' for family in whole] + single)} |")
+    return table
 
 
 def _section(check: Check) -> list[str]:
@@ -109,7 +124,7 @@ def _as_table(checks: Sequence[Check]) -> str:
 
 
 def _describe(check: Check) -> str:
-    from kinematify.validation.catalogue import FAMILIES
+    from kinematify.validation.check import FAMILIES
 
     family = f"{check.id[:3]}xx, {FAMILIES[check.id[:3]]}"
     facts = f"severity {check.severity.value}, blames {check.blame.value}, engines {_engines(check)}"

@@ -170,9 +170,9 @@ def _existing(folders: Sequence[Path]) -> tuple[Path, ...]:
 
 
 def _selected(checks: str | None, skip: str | None) -> frozenset[str]:
-    from kinematify.validation.catalogue import CATALOGUE
+    from kinematify.validation.checks import CHECKS
 
-    wanted = _matching(checks) if checks is not None else frozenset(CATALOGUE)
+    wanted = _matching(checks) if checks is not None else frozenset(CHECKS)
     left = wanted - (_matching(skip) if skip is not None else frozenset())
     if not left:
         raise click.UsageError(f"--checks {checks} and --skip {skip} leave no check. Give other patterns.")
@@ -182,11 +182,11 @@ def _selected(checks: str | None, skip: str | None) -> frozenset[str]:
 def _matching(patterns: str) -> frozenset[str]:
     from fnmatch import fnmatchcase
 
-    from kinematify.validation.catalogue import CATALOGUE
+    from kinematify.validation.checks import CHECKS
     from kinematify.validation.suppression_file import known_pattern
 
     known = [known_pattern(word) for word in patterns.split(",")]
-    return frozenset(check for check in CATALOGUE if any(fnmatchcase(check, pattern) for pattern in known))
+    return frozenset(check for check in CHECKS if any(fnmatchcase(check, pattern) for pattern in known))
 
 
 def _engines(words: str) -> tuple[str, ...]:

@@ -8,7 +8,6 @@ part but, with contact, for the piece between the pads (`grip_piece`).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,18 +22,10 @@ if TYPE_CHECKING:
     from kinematify.config.task import ExecutionSettings
     from kinematify.config.validation import PrepareSettings
     from kinematify.manipulation.motion import Motion, Reference
+    from kinematify.manipulation.outcome import Hold
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
-
-
-class Hold(StrEnum):
-    """What connects the hand with the part."""
-
-    WELD = "weld"
-    """They are fixed to each other once the fingers have arrived."""
-    CONTACT = "contact"
-    """Fingers that close, and friction."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.manipulation.execute import Execution, Frame, Hold, Log, judged
+from kinematify.manipulation.execute import Execution, Frame, Log, judged
 from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.motion import timed
+from kinematify.manipulation.outcome import Hold
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import joint_values, rest_configuration

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
-from kinematify.manipulation.execute import Execution, Hold, Log, judged
+from kinematify.manipulation.execute import Execution, Log, judged
 from kinematify.manipulation.motion import timed
+from kinematify.manipulation.outcome import Hold
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.robot.transforms import quaternion_of

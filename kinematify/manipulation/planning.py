@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,12 +12,15 @@ from kinematify.manipulation.clearing import Clearing, Freedom, clear_way, pull_
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.manifold import search_pull
+from kinematify.manipulation.motion import Motion
+from kinematify.manipulation.outcome import Failure
 from kinematify.manipulation.place import Places, object_box, object_motion
 from kinematify.manipulation.pull import ITSELF, Pull, Puller, Stop
 from kinematify.manipulation.reach import plan_reach
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
 
     from kinematify.config.planning import PlanSettings
     from kinematify.config.task import TaskSettings
@@ -26,25 +28,8 @@ if TYPE_CHECKING:
     from kinematify.manipulation.grasp import GraspReport
     from kinematify.manipulation.kinematics import Arm
     from kinematify.manipulation.place import Place
+    from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
-
-
-class Failure(StrEnum):
-    """At which step a plan ended; nothing failed where it is None."""
-
-    NO_WAY = "no way"
-    """The joint moves nothing, or hardly at all."""
-    NO_GRASP = "no grasp"
-    NO_REACH = "no reach"
-    """No place from which the arm's kinematics reach the grasp."""
-    NO_PATH = "no path"
-    """The grasp is reached, but no way free of collisions leads there."""
-    STOPS = "stops"
-    """The arm does not get far enough."""
-    COVERED = "covered"
-    """Another part of the object is in the way, and opening that one first does not help or fails."""
-    JAMS = "jams"
-    """The part runs into what no other joint can move away."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -311,3 +296,27 @@ class _Planning:
     @property
     def _spent(self) -> float:
         return time.process_time() - self._started
+
+
+def motion_of(plan: PullPlan, robot: TaskRobot, model: Path) -> Motion | None:
+    """Return what the engines are to track; None where the plan leads nowhere.
+
+    Args:
+        plan: The plan.
+        robot: Its robot.
+        model: URDF of the object at its real size.
+    """
+    if plan.pull is None or plan.reach is None or plan.opened is None or plan.place is None or len(plan.pull) < 2:
+        return None
+    return Motion(
+        robot=robot,
+        object_urdf=model,
+        T_world_base=plan.place.T_world_base,
+        T_world_object=plan.T_world_object,
+        joint=plan.joint,
+        start=plan.first,
+        grasp=plan.place.grasp,
+        reach=plan.reach,
+        pull=plan.pull,
+        opened=plan.opened,
+    )

@@ -13,6 +13,7 @@ from kinematify.geometry.scene import read_scene, relative
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
 from kinematify.manipulation.motion import Motion
+from kinematify.manipulation.outcome import Failure
 from kinematify.manipulation.place import Places, object_box
 from kinematify.manipulation.pour_scene import CARRY, LIFT, TILT, pour_motion, write_pour
 from kinematify.manipulation.pull import Pull, Puller
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
     from kinematify.manipulation.pour_scene import Pour, Vessel
     from kinematify.robot.arrays import FloatArray
 
-GRASP, REACH, PATH, CARRIED = "grasp", "reach", "path", "carried"
-"""How far a plan got that fails: no hold, no place, no way, or not all the way."""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PourPlan:
@@ -41,8 +39,8 @@ class PourPlan:
     """To be executed; None if there is no way to a grasp."""
     fraction: float
     """Of lift, carry and tilt together, in [0, 1]."""
-    failure: str | None
-    """`GRASP`, `REACH`, `PATH` or `CARRIED`; None if it is complete."""
+    failure: Failure | None
+    """`NO_GRASP`, `NO_REACH`, `NO_PATH` or `STOPS`; None if it is complete."""
     words: str
     """Why, a clause."""
     seconds: float
@@ -94,10 +92,10 @@ class _Planning:
             self._scene, TILT, self._arm.robot.opening, settings=self._settings.task.grasp, seed=self._seed
         )
         if not report.grasps:
-            return self._ended(GRASP, report.reason or "")
+            return self._ended(Failure.NO_GRASP, report.reason or "")
         meeting = self._meeting()
         if meeting is not None:
-            return self._ended(CARRIED, meeting)
+            return self._ended(Failure.STOPS, meeting)
         world = CollisionWorld(self._arm, self._scene, TILT, self._plan)
         puller = Puller(self._arm, world, self._motion, self._plan)
         best, words = None, "none of the places and grasps"
@@ -115,10 +113,12 @@ class _Planning:
             if pull.stop is None:
                 break
         if best is None:
-            return self._ended(REACH if words.startswith(("none", "its", "the next")) else PATH, words)
+            return self._ended(
+                Failure.NO_REACH if words.startswith(("none", "its", "the next")) else Failure.NO_PATH, words
+            )
         pull, way = best
         return self._ended(
-            None if pull.stop is None else CARRIED, pull.stop.words if pull.stop else "", pull=pull, way=way
+            None if pull.stop is None else Failure.STOPS, pull.stop.words if pull.stop else "", pull=pull, way=way
         )
 
     def _meeting(self) -> str | None:
@@ -146,7 +146,7 @@ class _Planning:
         return reach.path if reach.path is not None else reach.reason or ""
 
     def _ended(
-        self, failure: str | None, words: str, *, pull: Pull | None = None, way: FloatArray | None = None
+        self, failure: Failure | None, words: str, *, pull: Pull | None = None, way: FloatArray | None = None
     ) -> PourPlan:
         motion = None
         if pull is not None and way is not None and len(pull.path) > 1:

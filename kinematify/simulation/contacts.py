@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.model.collision_pieces import Method
-
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
@@ -117,7 +115,7 @@ def stand_in_error(prepared: Prepared, pair: tuple[str, str]) -> float:
     Infinite where one is the hull of a concave mesh: it fills hollows, in which the other may rightly be.
     """
     links = [prepared.link_by_name[name] for name in pair]
-    return float("inf") if any(link.method is Method.HULL for link in links) else sum(link.gap for link in links)
+    return float("inf") if any(link.filled for link in links) else sum(link.gap for link in links)
 
 
 def stand_in_reason(prepared: Prepared, pair: tuple[str, str]) -> str:

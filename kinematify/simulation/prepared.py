@@ -38,6 +38,11 @@ class PreparedLink:
     inertia_added: bool
     """True if the file has no inertia that engines can use, or one that had to be changed by more than rounding."""
 
+    @property
+    def filled(self) -> bool:
+        """True if one of its pieces is the hull of a concave mesh, in whose hollows others may rightly be."""
+        return self.method is Method.HULL
+
 
 @dataclass(frozen=True, kw_only=True)
 class Prepared:

@@ -7,7 +7,8 @@ import json
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.validation.catalogue import CATALOGUE, FAMILIES
+from kinematify.validation.check import FAMILIES
+from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
 from tests.reports import add_checks
 
@@ -44,12 +45,12 @@ def test_unknown_ids_are_answered_with_the_nearest(
 
 def test_list_has_every_check(capsys: pytest.CaptureFixture[str]) -> None:
     lines = said(capsys, "--list").splitlines()[2:]
-    assert sorted(line.split()[0] for line in lines) == sorted(CATALOGUE)
+    assert sorted(line.split()[0] for line in lines) == sorted(CHECKS)
 
 
 def test_json_has_every_field(capsys: pytest.CaptureFixture[str]) -> None:
     answer = json.loads(said(capsys, "--json", "-"))
-    assert [check["id"] for check in answer["checks"]] == list(CATALOGUE)
+    assert [check["id"] for check in answer["checks"]] == list(CHECKS)
     assert all(check["verifies"] and check["matters"] and check["remedy"] for check in answer["checks"])
 
 
@@ -59,7 +60,7 @@ def test_words_that_make_no_sense_end_with_2(words: list[str]) -> None:
 
 
 def test_every_check_belongs_to_a_family_and_is_written_out() -> None:
-    for check in CATALOGUE.values():
+    for check in CHECKS.values():
         assert check.id[:3] in FAMILIES
         assert check.title.strip() == check.title
         assert all(text.endswith((".", "?", ")")) for text in (check.verifies, check.matters, check.remedy)), check.id
@@ -68,5 +69,5 @@ def test_every_check_belongs_to_a_family_and_is_written_out() -> None:
 def test_the_page_of_checks_is_up_to_date(capsys: pytest.CaptureFixture[str]) -> None:
     text = said(capsys, "--markdown")
     assert PAGE.read_text(encoding="utf-8") == text, (
-        "docs/checks.md is older than the catalogue: kinematify explain --markdown > docs/checks.md"
+        "docs/checks.md is older than the checks: kinematify explain --markdown > docs/checks.md"
     )

@@ -18,13 +18,13 @@ import kinematify
 from kinematify.cli import validation_run
 from kinematify.cli.app import run
 from kinematify.errors import InputError
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 from kinematify.validation.plan import keys
 from kinematify.validation.report import ValidationReport
 from tests.reports import add_checks, finding, full_report, report, result
 
-USUAL = [check for check in CATALOGUE.values() if not check.id.startswith(("KV7", "KV8"))]
+USUAL = [check for check in CHECKS.values() if not check.id.startswith(("KV7", "KV8"))]
 """KV7 is told only with --task, KV8 only with Drake."""
 INERTIAL = """<inertial><origin xyz="{x} 0 {z}"/><mass value="2"/>
       <inertia ixx="0.05" iyy="0.05" izz="0.08" ixy="0" ixz="0" iyz="0"/></inertial>"""
@@ -213,14 +213,14 @@ def test_choices_reach_the_run(answered: dict[str, Any], chest: Path, tmp_path: 
     ]
     assert run(["validate", str(chest), *words, "--jobs", "1", "--package-dir", str(tmp_path)]) == 0
     asked = answered["asked"]
-    assert asked["selected"] == {"KV396", *(check for check in CATALOGUE if check.startswith("KV4"))} - {"KV496"}
+    assert asked["selected"] == {"KV396", *(check for check in CHECKS if check.startswith("KV4"))} - {"KV496"}
     assert asked["engines"] == ("mujoco", "pybullet")
     assert (asked["settings"].budget.seconds, asked["settings"].seed) == (7.0, 3)
     assert asked["workers"] == 1
     assert asked["package_dirs"] == (tmp_path,)
     assert run(["validate", str(chest), "--engines", "none"]) == 0
     assert answered["asked"]["engines"] == ()
-    assert answered["asked"]["selected"] == set(CATALOGUE)
+    assert answered["asked"]["selected"] == set(CHECKS)
 
 
 def test_suppressions_reach_the_run_and_useless_ones_are_named(
@@ -310,7 +310,7 @@ def test_what_is_no_urdf_ends_with_a_remedy(
 def test_errors_of_the_file_count_whatever_was_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "model.urdf"
     file.write_text(CHEST.replace('<box size="0.4 0.4 0.4"/>', '<mesh filename="none.stl"/>', 1))
-    others = [check for check in CATALOGUE if not check.startswith("KV1")]
+    others = [check for check in CHECKS if not check.startswith("KV1")]
     words = ["--checks", others[0]] if others else []
     assert run(["validate", str(file), *words]) == 1
     assert "none.stl" in capsys.readouterr().out

@@ -10,10 +10,11 @@ import pytest
 from PIL import Image
 
 from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.execute import Execution, Hold, Loaded, load
+from kinematify.manipulation.execute import Execution, Loaded, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.motion import Motion, timed
+from kinematify.manipulation.outcome import Hold
 from tests.manipulation import furniture
 
 SETTINGS = furniture.SETTINGS

@@ -16,8 +16,9 @@ from kinematify.geometry.scene import Scene, read_scene
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.manifold import search_manifold
+from kinematify.manipulation.outcome import Failure
 from kinematify.manipulation.place import object_motion
-from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pull
+from kinematify.manipulation.planning import PullPlan, depend, plan_pull
 from kinematify.manipulation.pull import Puller
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.manipulation.robot import builtin_robot

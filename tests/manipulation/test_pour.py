@@ -11,9 +11,10 @@ from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.execute import Hold, load
+from kinematify.manipulation.execute import load
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.pour import GRASP, PourPlan, plan_pour
+from kinematify.manipulation.outcome import Failure, Hold
+from kinematify.manipulation.pour import PourPlan, plan_pour
 from kinematify.manipulation.pour_scene import Vessel, pour_motion, read_vessel, write_pour
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.robot.read import read_robot
@@ -103,7 +104,7 @@ def test_a_cup_that_is_too_wide_is_not_held(vessels: tuple[Vessel, Vessel, Path]
     block.write_text(f'<robot name="box"><link name="b">{box((0.3, 0.3, 0.3), (0, 0, 0.15))}</link></robot>')
     vessel = read_vessel(block, tmp_path / "c.urdf", SETTINGS)
     arm = Arm(builtin_robot(tmp_path), SETTINGS.task.plan)
-    assert plan_pour(arm, vessel, vessels[1], tmp_path, SETTINGS).failure == GRASP
+    assert plan_pour(arm, vessel, vessels[1], tmp_path, SETTINGS).failure is Failure.NO_GRASP
 
 
 def test_a_vessel_needs_geometry(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.config.validation import load_settings
 from kinematify.robot.read import read_robot
 from kinematify.simulation.prepare import prepare
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult
 from kinematify.validation.report import JointCurve
 from kinematify.validation.stage import Recorder, StageRequest
@@ -157,7 +157,7 @@ def prepared_request(
         package_dirs=(),
         work=folder,
         settings=settings,
-        selected=frozenset(CATALOGUE),
+        selected=frozenset(CHECKS),
         deadline=time.time() + seconds,
     )
 

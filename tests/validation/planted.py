@@ -14,14 +14,14 @@ from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
 from kinematify.topology.tree import KinematicTree
-from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.evidence.stage import run
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
 from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.evidence import run
 from tests.known import KnownJoint, KnownObject, rotation
 
-SELECTED = frozenset(CATALOGUE)
+SELECTED = frozenset(CHECKS)
 Told = list[CheckResult | JointSummary]
 
 

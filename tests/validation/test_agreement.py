@@ -25,10 +25,11 @@ from kinematify.simulation.configurations import (
 from kinematify.simulation.engine import LoadedJoint, LoadedModel
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
-from kinematify.validation import agreement, engine_stage
 from kinematify.validation.checks.engine_loading import compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+from kinematify.validation.stages import agreement as agreement_stage
+from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import Box, Model, Part, cabinet, prepared_request, tell
 
@@ -78,7 +79,8 @@ def compared(
     request: StageRequest, chosen: Sequence[str] = ENGINES, failures: Mapping[str, str] | None = None
 ) -> dict[str, CheckResult]:
     told: list[CheckResult] = []
-    agreement.compare(request, Recorder(told.append, request.selected), chosen, failures or {})  # type: ignore[arg-type]
+    request = replace(request, engines=tuple(chosen), failures=failures or {})
+    agreement_stage.run(request, Recorder(told.append, request.selected))  # type: ignore[arg-type]
     return {result.check: result for result in told}
 
 

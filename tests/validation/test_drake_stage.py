@@ -12,14 +12,14 @@ import pytest
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE
-from kinematify.validation import engine_stage
-from kinematify.validation.checks import CHECKS
+from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.stages import engine as engine_stage
 from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
 
 pytest.importorskip("pydrake.multibody.plant", reason="Drake is not installed: pip install 'kinematify[drake]'")
 
-IDS = {check.id for check in CHECKS.values() if "drake" in check.engines}
+IDS = {check.id for check in checks_of("KV8")}
 run = partial(engine_stage.run, engine="drake")
 
 

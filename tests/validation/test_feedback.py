@@ -10,9 +10,9 @@ import pytest
 from kinematify.config import load_config
 from kinematify.validation.feedback import DeclaredJoint, Feedback, feedback_from
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity
-from kinematify.validation.geometry.stage import run
 from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import Recorder
+from kinematify.validation.stages.geometry import run
 from tests.validation.engine_models import Box, Model, Part, cabinet
 from tests.validation.test_geometry import SELECTED, beam, block, request_for
 

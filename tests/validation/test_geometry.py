@@ -11,16 +11,15 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.configurations import read_poses
-from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.checks import checks_of
+from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.engine_results import EXACT
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
-from kinematify.validation.geometry.stage import run
 from kinematify.validation.report import JointSummary, PairTable
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.geometry import run
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
 
-SELECTED = frozenset(CATALOGUE)
+SELECTED = frozenset(CHECKS)
 
 
 def request_for(model: Model, folder: Path, *, seconds: float = 100.0) -> StageRequest:

@@ -12,13 +12,13 @@ import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.robot.robot import Robot
-from kinematify.validation.asset.stage import check_mesh_files
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.asset import check_mesh_files
 
 SETTINGS = load_settings()
-MESH_CHECKS = [check for check in CATALOGUE if "KV15" <= check < "KV16"]
+MESH_CHECKS = [check for check in CHECKS if "KV15" <= check < "KV16"]
 MODEL = """\
 <robot name="cupboard">
   <link name="body">
@@ -55,7 +55,7 @@ def check_model(path: Path) -> tuple[Robot | None, dict[str, CheckResult]]:
         package_dirs=(),
         work=path.parent,
         settings=SETTINGS,
-        selected=frozenset(CATALOGUE),
+        selected=frozenset(CHECKS),
         deadline=time.time() + 60.0,
     )
     model = check_mesh_files(request, Recorder(results.append, request.selected))

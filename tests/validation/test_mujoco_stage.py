@@ -16,13 +16,13 @@ from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
-from kinematify.validation import engine_stage
-from kinematify.validation.checks import CHECKS
+from kinematify.validation.checks import checks_of
 from kinematify.validation.checks.engine_rest import find_drop, find_growth
 from kinematify.validation.checks.engine_stability import find_unstable
 from kinematify.validation.engine_context import RunEnd
 from kinematify.validation.finding import Blame, Finding, Severity, Status
 from kinematify.validation.stage import OpenCheck, StageRequest
+from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import (
     Box,
@@ -35,7 +35,7 @@ from tests.validation.engine_models import (
     tell,
 )
 
-IDS = {check.id for check in CHECKS.values() if "mujoco" in check.engines}
+IDS = {check.id for check in checks_of("KV4")}
 run = partial(engine_stage.run, engine="mujoco")
 PANDA = BENCH / "robots/panda/model.urdf"
 

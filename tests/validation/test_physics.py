@@ -11,11 +11,10 @@ import trimesh
 from lxml import etree
 
 from kinematify.config.validation import load_settings
-from kinematify.validation.asset.stage import run
-from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.checks import checks_of
+from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.asset import run
 from tests.validation.engine_models import Box, Model, Part
 
 SETTINGS = load_settings()
@@ -81,7 +80,7 @@ def checked(urdf: Path) -> dict[str, CheckResult]:
         package_dirs=(),
         work=urdf.parent,
         settings=SETTINGS,
-        selected=frozenset(CATALOGUE),
+        selected=frozenset(CHECKS),
         deadline=time.time() + 60.0,
     )
     run(request, Recorder(results.append, request.selected))

@@ -11,7 +11,7 @@ import pytest
 from kinematify.config.validation import load_settings
 from kinematify.errors import DescriptionError
 from kinematify.robot.read import read_robot
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
 from kinematify.validation.precheck.document import precheck
 from kinematify.validation.stage import Recorder, StageRequest
@@ -68,7 +68,7 @@ def check_path(path: Path, package_dirs: tuple[Path, ...] = ()) -> tuple[bool, l
         package_dirs=package_dirs,
         work=path.parent,
         settings=SETTINGS,
-        selected=frozenset(CATALOGUE),
+        selected=frozenset(CHECKS),
         deadline=time.time() + 60.0,
     )
     return precheck(request, Recorder(results.append, request.selected)), results
@@ -82,7 +82,7 @@ def findings(results: list[CheckResult], *, notes: bool = False) -> list[Finding
 def test_a_clean_file_passes_every_check_once(tmp_path: Path) -> None:
     usable, results = check_text(tmp_path, CLEAN)
     assert usable
-    assert [result.check for result in results] == [check for check in CATALOGUE if check < "KV15"]
+    assert [result.check for result in results] == [check for check in CHECKS if check < "KV15"]
     assert findings(results, notes=True) == []
 
 

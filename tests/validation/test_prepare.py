@@ -29,9 +29,9 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rpy_of
 from kinematify.simulation.prepared import Prepared, load_prepared
-from kinematify.validation.catalogue import CATALOGUE
-from kinematify.validation.prepare_stage import run
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.stages.prepare import run
 from tests.engines import quiet
 
 SETTINGS = load_settings()
@@ -60,7 +60,7 @@ def prepared(urdf: Path, settings: ValidationSettings = SETTINGS) -> Prepared:
         package_dirs=(),
         work=work,
         settings=settings,
-        selected=frozenset(CATALOGUE),
+        selected=frozenset(CHECKS),
         deadline=time.time() + 60.0,
     )
     run(request, Recorder(told.append, request.selected))

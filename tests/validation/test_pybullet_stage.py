@@ -16,13 +16,13 @@ from kinematify.simulation.configurations import agreement_configurations, link_
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
 from kinematify.simulation.pybullet_engine import PybulletEngine
-from kinematify.validation import engine_stage
-from kinematify.validation.checks import CHECKS
+from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Finding, Severity, Status
+from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prepared_request, tell
 
-IDS = {check.id for check in CHECKS.values() if "pybullet" in check.engines}
+IDS = {check.id for check in checks_of("KV5")}
 run = partial(engine_stage.run, engine="pybullet")
 PANDA = BENCH / "robots/panda/model.urdf"
 

@@ -9,11 +9,11 @@ import pytest
 from kinematify.evaluation.corruption.bases import Base, built_base
 from kinematify.evaluation.corruption.cases import KINDS, write_case
 from kinematify.evaluation.corruption.validation import READY, CorruptionTask, run_case
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.plan import later_stages, needed
 from kinematify.validation.run import validate
 
-FILE_CHECKS = tuple(check for check in CATALOGUE if check.startswith(("KV1", "KV2")))
+FILE_CHECKS = tuple(check for check in CHECKS if check.startswith(("KV1", "KV2")))
 
 
 @pytest.fixture(scope="module")
@@ -53,4 +53,4 @@ def test_stages_without_a_selected_check_do_not_start() -> None:
     stages = later_stages(["mujoco", "pybullet"])
     assert needed(stages, {"KV101", "KV201"}) == []
     assert [stage.name for stage in needed(stages, {"KV401"})] == ["prepare", "mujoco"]
-    assert needed(stages, set(CATALOGUE)) == stages
+    assert needed(stages, set(CHECKS)) == stages

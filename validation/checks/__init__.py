@@ -7,7 +7,9 @@ import difflib
 from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
+    agreement,
     collision,
+    contact_agreement,
     drives,
     engine_drive,
     engine_loading,
@@ -28,6 +30,7 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     motion,
     rest,
     sizes,
+    task,
     together,
 )
 

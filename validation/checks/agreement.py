@@ -1,4 +1,4 @@
-"""The stage `agreement`: what the engines left behind, compared with each other and the analytical model (KV6xx)."""
+"""KV601 to KV605 but the contacts: what the engines left, compared with each other and the analytical model."""
 
 from __future__ import annotations
 
@@ -9,58 +9,38 @@ import numpy as np
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES
-from kinematify.simulation.prepared import load_prepared
-from kinematify.validation.contact_agreement import compare_contacts
-from kinematify.validation.engine_results import EngineResults
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import DescribedJoint
     from kinematify.simulation.configurations import EnginePoses
-    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+    from kinematify.validation.engine_results import EngineResults
+    from kinematify.validation.stage import OpenCheck
 
 REFERENCE = "pinocchio"
 """Masses and torques are held against it: it computes them in closed form."""
 _TINY = 1e-12
 
 
-def run(request: StageRequest, recorder: Recorder) -> None:
-    """Compare the engines that were asked for; see `kinematify.validation.stage`."""
-    compare(request, recorder, request.engines, request.failures)
+@check("KV601", title="Links stand where they should, in every engine", severity=Severity.ERROR, blame=Blame.ENGINE)
+def poses_differ(result: OpenCheck, left: EngineResults) -> None:
+    """Forward kinematics of MuJoCo, PyBullet, Pinocchio and Kinematify in the same configurations: zero, rest, both
+    ends of every joint and quasi-random ones. A joint whose child stands elsewhere relative to its parent by more
+    than agreement.position (times the size of the model) or agreement.angle is an error, so is a link that an
+    engine has lost.
 
+    Why it matters: A policy that was trained in one engine fails in another where a link stands elsewhere.
 
-def compare(request: StageRequest, recorder: Recorder, chosen: Sequence[str], failures: Mapping[str, str]) -> None:
-    """Tell KV601 to KV605.
-
-    Args:
-        request: Of the run; `poses-ENGINE.npz` and `prepared.json` are read from its folder.
-        recorder: Told the results.
-        chosen: Engines that were asked for.
-        failures: Why a stage did not end by itself, keyed by engine.
+    Remedy: Write the joint with a unit axis, plain decimal numbers and a type that every engine knows.
     """
-    left = EngineResults(request, tuple(chosen), failures)
-    checks: dict[str, Callable[[OpenCheck, EngineResults], None]] = {
-        "KV601": _compare_poses,
-        "KV602": _compare_mass_matrices,
-        "KV603": _compare_gravity,
-        "KV604": compare_contacts,
-        "KV605": _compare_masses,
-    }
-    for name, run in checks.items():
-        if recorder.wants(name):
-            with recorder.check(name) as check:
-                run(check, left)
-
-
-def _compare_poses(check: OpenCheck, left: EngineResults) -> None:
     if not left.chosen:
-        check.skip("no engine was asked for")
+        result.skip("no engine was asked for")
         return
     for engine, poses in left.engines.items():
         for link in _lost(poses, left.rows.links):
-            check.find(
+            result.find(
                 f"{ENGINES[engine].title} has lost the link {link}: it has no pose.",
                 "Give the link a mass and a name that is not used twice.",
                 link=link,
@@ -73,15 +53,15 @@ def _compare_poses(check: OpenCheck, left: EngineResults) -> None:
     limits = np.array([left.settings.position * left.size, left.settings.angle])
     for engine, error in errors.items():
         largest = np.nanmax(error, axis=(0, 1), initial=0.0)
-        check.measured[f"{engine}_position_m"], check.measured[f"{engine}_angle_rad"] = largest.tolist()
+        result.measured[f"{engine}_position_m"], result.measured[f"{engine}_angle_rad"] = largest.tolist()
     for index, joint in enumerate(joints):
         off = [engine for engine, error in errors.items() if (error[:, index] > limits).any()]
         if len(off) >= 2 and len(off) == len(errors) and _agree([theirs[e][:, index] for e in off], limits):
-            _tell_pose(check, left, joint, errors[off[0]][:, index], limits, engine=None)
+            _tell_pose(result, left, joint, errors[off[0]][:, index], limits, engine=None)
         else:
             for engine in off:
-                _tell_pose(check, left, joint, errors[engine][:, index], limits, engine=engine)
-    left.say_absent(check, left.chosen, left.engines)
+                _tell_pose(result, left, joint, errors[engine][:, index], limits, engine=engine)
+    left.say_absent(result, left.chosen, left.engines)
 
 
 def _lost(poses: EnginePoses, links: tuple[str, ...]) -> list[str]:
@@ -115,7 +95,7 @@ def _agree(poses: list[FloatArray], limits: FloatArray) -> bool:
 
 
 def _tell_pose(
-    check: OpenCheck,
+    result: OpenCheck,
     left: EngineResults,
     joint: DescribedJoint,
     error: FloatArray,
@@ -128,7 +108,7 @@ def _tell_pose(
     row, what = (int(index) for index in np.unravel_index(int(np.argmax(excess)), excess.shape))
     value, unit = float(error[row, what]), ("m", "rad")[what]
     who = "All engines have" if engine is None else f"{ENGINES[engine].title} has"
-    check.find(
+    result.find(
         f"{who} the link {joint.child} {value:.3g} {unit} away from where the {joint.kind} joint {joint.name} of the "
         f"file puts it relative to {joint.parent}.",
         f"Write the joint {joint.name} with a unit axis, plain decimal numbers and a type that every engine knows.",
@@ -143,9 +123,17 @@ def _tell_pose(
     )
 
 
-def _compare_mass_matrices(check: OpenCheck, left: EngineResults) -> None:
+@check("KV602", title="Mass matrix: MuJoCo and Pinocchio agree", severity=Severity.WARNING, blame=Blame.ENGINE)
+def mass_matrices_differ(result: OpenCheck, left: EngineResults) -> None:
+    """The joint-space inertia of the tree in the same configurations, entry by entry, relative to the inertias of the
+    two joints that it couples; more than agreement.mass_matrix is a warning at the joint where it begins.
+
+    Why it matters: An engine that has changed an inertia moves the joint with another acceleration.
+
+    Remedy: Write inertias that a rigid body can have: positive, and no moment above the sum of the others.
+    """
     reference = left.engines.get(REFERENCE)
-    if not _has_reference(check, left) or reference is None or reference.mass_matrix is None:
+    if not _has_reference(result, left) or reference is None or reference.mass_matrix is None:
         return
     diagonal = np.abs(np.einsum("kii->ki", reference.mass_matrix))
     diagonal = np.maximum(diagonal, _TINY * np.nanmax(diagonal, initial=1.0))
@@ -154,21 +142,29 @@ def _compare_mass_matrices(check: OpenCheck, left: EngineResults) -> None:
         if engine == REFERENCE or poses.mass_matrix is None:
             continue
         error = np.abs(poses.mass_matrix - reference.mass_matrix) / scale
-        check.measured[f"{engine}_relative"] = float(np.nanmax(error, initial=0.0))
+        result.measured[f"{engine}_relative"] = float(np.nanmax(error, initial=0.0))
         _tell_dynamics(
-            check,
+            result,
             left,
             engine,
             error=np.nan_to_num(error).max(axis=2),
             limit=left.settings.mass_matrix,
             what="the inertia that the joint {joint} moves",
         )
-    left.say_absent(check, ("mujoco", REFERENCE), left.engines)
+    left.say_absent(result, ("mujoco", REFERENCE), left.engines)
 
 
-def _compare_gravity(check: OpenCheck, left: EngineResults) -> None:
+@check("KV603", title="Gravity torques: MuJoCo and Pinocchio agree", severity=Severity.WARNING, blame=Blame.ENGINE)
+def gravity_differs(result: OpenCheck, left: EngineResults) -> None:
+    """The torques and forces that hold the model still, relative to the largest that the joint sees; more than
+    agreement.gravity is a warning at the joint farthest from the root that shows it.
+
+    Why it matters: Motors that were chosen with one engine's torques do not hold the model in the other.
+
+    Remedy: Check mass and centre of mass of the links that hang on the joint.
+    """
     reference = left.engines.get(REFERENCE)
-    if not _has_reference(check, left) or reference is None or reference.gravity is None:
+    if not _has_reference(result, left) or reference is None or reference.gravity is None:
         return
     # A joint that gravity hardly loads is held against the weight of the model.
     turns = np.array([left.model.kinematics.joint_by_name[name].kind.turns for name in left.rows.joints], dtype=bool)
@@ -178,38 +174,38 @@ def _compare_gravity(check: OpenCheck, left: EngineResults) -> None:
         if engine == REFERENCE or poses.gravity is None:
             continue
         error = np.abs(poses.gravity - reference.gravity) / scale
-        check.measured[f"{engine}_relative"] = float(np.nanmax(error, initial=0.0))
+        result.measured[f"{engine}_relative"] = float(np.nanmax(error, initial=0.0))
         _tell_dynamics(
-            check,
+            result,
             left,
             engine,
             error=np.nan_to_num(error),
             limit=left.settings.gravity,
             what="the torque or force that holds the joint {joint} against gravity",
         )
-    left.say_absent(check, ("mujoco", REFERENCE), left.engines)
+    left.say_absent(result, ("mujoco", REFERENCE), left.engines)
 
 
-def _has_reference(check: OpenCheck, left: EngineResults) -> bool:
+def _has_reference(result: OpenCheck, left: EngineResults) -> bool:
     """False, with the reason said, where there is nothing to compare."""
     if REFERENCE not in left.chosen or not set(left.chosen) - {REFERENCE}:
-        check.skip("it needs Pinocchio and another engine, which were not both asked for")
+        result.skip("it needs Pinocchio and another engine, which were not both asked for")
     elif not left.rows.joints:
-        check.skip("the model has no joint that moves")
+        result.skip("the model has no joint that moves")
     elif REFERENCE not in left.engines:
-        left.say_absent(check, (REFERENCE,), left.engines)
+        left.say_absent(result, (REFERENCE,), left.engines)
     else:
         return True
     return False
 
 
 def _tell_dynamics(
-    check: OpenCheck, left: EngineResults, engine: str, *, error: FloatArray, limit: float, what: str
+    result: OpenCheck, left: EngineResults, engine: str, *, error: FloatArray, limit: float, what: str
 ) -> None:
     """Add a finding for every joint that differs and carries no other that does: what lies above only inherits it.
 
     Args:
-        check: Open.
+        result: Open.
         left: What is compared.
         engine: That differs from the reference.
         error: Relative, shape (k, j).
@@ -224,7 +220,7 @@ def _tell_dynamics(
         column = error[:, left.rows.joints.index(name)]
         row = int(np.argmax(column))
         child = left.model.kinematics.joint_by_name[name].child
-        check.find(
+        result.find(
             f"{ENGINES[engine].title} and {ENGINES[REFERENCE].title} differ in {what.format(joint=name)} by "
             f"{column[row]:.2%} of it.",
             f"Check mass, centre of mass and inertia of {child} and of what is fixed to it: a body can have no moment "
@@ -239,32 +235,39 @@ def _tell_dynamics(
         )
 
 
-def _compare_masses(check: OpenCheck, left: EngineResults) -> None:
+@check("KV605", title="The model weighs the same everywhere", severity=Severity.ERROR, blame=Blame.ENGINE)
+def masses_differ(result: OpenCheck, left: EngineResults) -> None:
+    """The mass of each link and of the whole model in every engine against the file; a relative difference above
+    agreement.mass_error is an error. Links without a mass in the file are left out.
+
+    Why it matters: A mass that an engine drops or makes up changes every motion, and no message tells.
+
+    Remedy: Give every link an <inertial> element with a mass above zero.
+    """
     if not left.chosen:
-        check.skip("no engine was asked for")
+        result.skip("no engine was asked for")
         return
     if not left.engines:  # the stage `prepare` may have left nothing then
-        left.say_absent(check, left.chosen, ())
+        left.say_absent(result, left.chosen, ())
         return
-    prepared = load_prepared(left.request.work)
     for engine, poses in left.engines.items():
         known = {} if poses.masses is None else dict(zip(poses.links, poses.masses.tolist(), strict=True))
-        for link in prepared.links:
+        for link in left.prepared.links:
             mass = known.get(link.link, np.nan)
             if np.isfinite(mass) and not link.mass_added:
-                _compare_mass(check, left, engine, mass, link.mass, link=link.link)
+                _compare_mass(result, left, engine, mass, link.mass, link=link.link)
         if poses.total_mass is not None:
-            check.measured[f"{engine}_kg"] = poses.total_mass
-            _compare_mass(check, left, engine, poses.total_mass, prepared.total_mass)
-    left.say_absent(check, left.chosen, left.engines)
+            result.measured[f"{engine}_kg"] = poses.total_mass
+            _compare_mass(result, left, engine, poses.total_mass, left.prepared.total_mass)
+    left.say_absent(result, left.chosen, left.engines)
 
 
 def _compare_mass(
-    check: OpenCheck, left: EngineResults, engine: str, found: float, expected: float, *, link: str | None = None
+    result: OpenCheck, left: EngineResults, engine: str, found: float, expected: float, *, link: str | None = None
 ) -> None:
     if np.isclose(found, expected, rtol=left.settings.mass_error, atol=1e-9):
         return
-    check.find(
+    result.find(
         f"{'The model' if link is None else f'The link {link}'} weighs {found:.6g} kg in {ENGINES[engine].title} and "
         f"{expected:.6g} kg in the file.",
         "Give every link an <inertial> element with a mass above zero, written as a plain decimal number.",

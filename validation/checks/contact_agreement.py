@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.simulation.prepared import load_prepared
+from kinematify.validation.check import check
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
@@ -46,11 +47,20 @@ class _Disagreement:
     overlap: _Overlap
 
 
-def compare_contacts(check: OpenCheck, left: EngineResults) -> None:
-    """Tell for every pair of bodies the deepest overlap that one source sees and another has no contact for."""
+@check("KV604", title="Engines see the same collisions", severity=Severity.WARNING, blame=Blame.PHYSICS)
+def contacts_differ(result: OpenCheck, left: EngineResults) -> None:
+    """Pairs of links that overlap in one engine by more than agreement.contact_depth and do not touch in the other,
+    and either against the exact geometry, in the same configurations.
+
+    Why it matters: A motion that is free in one engine is blocked in the other: margins, hulls or lost shapes
+    differ.
+
+    Remedy: Give the two links collision geometry of boxes, cylinders, spheres or convex meshes.
+    """
+    # Of every pair of bodies, the deepest overlap that one source sees and another has no contact for
     engines = [engine for engine in left.chosen if ENGINES[engine].runs]
     if len(engines) + (left.exact is not None) < 2:
-        check.skip("fewer than two sources of contacts were asked for")
+        result.skip("fewer than two sources of contacts were asked for")
         return
     views = [
         view for engine in engines if engine in left.engines for view in _views(left, left.engines[engine], engine)
@@ -66,12 +76,12 @@ def compare_contacts(check: OpenCheck, left: EngineResults) -> None:
     for item in sorted(found, key=lambda item: -item.overlap.depth):
         first, second = sorted(left.body[list(item.overlap.links)].tolist())
         worst.setdefault((first, second), item)
-    check.measured["pairs"] = float(len(worst))
+    result.measured["pairs"] = float(len(worst))
     if left.exact is None:
-        check.reason = "only the engines were compared with each other: the geometry stage left no contacts"
+        result.reason = "only the engines were compared with each other: the geometry stage left no contacts"
     for item in list(worst.values())[:_TOLD_PAIRS]:
-        _tell(check, left, item)
-    left.say_absent(check, engines, [view.engine for view in views if view.engine])
+        _tell(result, left, item)
+    left.say_absent(result, engines, [view.engine for view in views if view.engine])
 
 
 def _views(left: EngineResults, poses: EnginePoses, engine: str | None) -> list[_View]:
@@ -90,8 +100,7 @@ def _views(left: EngineResults, poses: EnginePoses, engine: str | None) -> list[
 
 def _reach(left: EngineResults) -> FloatArray:
     """How far the convex pieces of each link reach beyond its surface, which the exact geometry does not [m]."""
-    prepared = load_prepared(left.request.work)
-    return np.array([prepared.link_by_name[name].gap for name in left.rows.links])
+    return np.array([left.prepared.link_by_name[name].gap for name in left.rows.links])
 
 
 def _unseen(left: EngineResults, sees: _View, misses: _View, slack: FloatArray) -> list[_Disagreement]:
@@ -108,10 +117,10 @@ def _limit(left: EngineResults) -> float:
     return max(left.settings.contact_depth, left.settings.contact_share * left.size)
 
 
-def _tell(check: OpenCheck, left: EngineResults, item: _Disagreement) -> None:
+def _tell(result: OpenCheck, left: EngineResults, item: _Disagreement) -> None:
     first, second = (left.rows.links[index] for index in item.overlap.links)
     depth = item.overlap.depth
-    check.find(
+    result.find(
         f"In {item.sees.title}, {first} and {second} are {depth * 1e3:.1f} mm deep in each other, without any "
         f"contact between them in {item.misses.title}.",
         "Give both links collision geometry of boxes, cylinders, spheres or convex meshes, which every engine treats "

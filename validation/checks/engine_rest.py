@@ -9,7 +9,7 @@ import numpy as np
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import FeedbackRow, engine_check
-from kinematify.validation.engine_context import late, no_geometry, nothing_moves
+from kinematify.validation.checks.needs import late, no_geometry, nothing_moves
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import FeedbackRow, engine_check
-from kinematify.validation.engine_context import late, nothing_moves
+from kinematify.validation.checks.needs import late, nothing_moves
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:

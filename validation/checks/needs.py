@@ -1,4 +1,4 @@
-"""What several checks of declared physics need, each as the reason why there is nothing to look at, or None."""
+"""What several checks need, each as the reason why there is nothing to look at, or None."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.validation.asset.bodies import Physics
+    from kinematify.validation.engine_context import EngineContext
 
 
 def something_moves(physics: Physics) -> str | None:
@@ -29,3 +30,23 @@ def something_follows(physics: Physics) -> str | None:
 def something_collides(physics: Physics) -> str | None:
     """A link with collision geometry."""
     return None if physics.collision else "no link has collision geometry"
+
+
+def nothing_moves(context: EngineContext) -> str | None:
+    """In an engine, a joint that moves."""
+    return None if context.mechanism.travels else "no joint moves"
+
+
+def no_geometry(context: EngineContext) -> str | None:
+    """In an engine, something that can touch a floor."""
+    return None if any(link.pieces for link in context.prepared.links) else "no link has geometry"
+
+
+def late(context: EngineContext) -> str | None:
+    """In an engine, time for one more run."""
+    return "time ran out before it" if context.request.remaining <= 0.0 else None
+
+
+def not_driven(context: EngineContext) -> str | None:
+    """In an engine, joints that were driven or can be."""
+    return None if "drives" in vars(context) else nothing_moves(context) or late(context)

@@ -5,13 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics, rest_configuration
+from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Collection
+    from typing import Any
 
     from kinematify.config.validation import EvidenceSettings
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Robot
     from kinematify.validation.evidence.bodies import Bodies
     from kinematify.validation.evidence.measure import JointMeasures
 
@@ -120,3 +126,30 @@ def better_joint(measures: JointMeasures, doubts: Collection[str]) -> Alternativ
     if measures.slides:
         return Alternative(kind=JointType.REVOLUTE, axis=turns.lines.axes[0], pivot=turns.lines.pivots[0], score=score)
     return Alternative(kind=JointType.PRISMATIC, axis=slides.axes[0], pivot=measures.anchor, score=score)
+
+
+def summary_of(robot: Robot, case: JointCase, doubts: Collection[str]) -> JointSummary:
+    """Return what the report tells of the joint besides its checks, `doubts` as for `better_joint`."""
+    joint = case.measures.joint
+    declared = robot.joint_by_name[joint.source]
+    limited = declared.kind in (JointType.REVOLUTE, JointType.PRISMATIC)
+    better = better_joint(case.measures, doubts)
+    return JointSummary(
+        joint=joint.source,
+        kind=declared.kind.value,
+        declared_limits=(declared.lower, declared.upper) if limited else None,
+        best_alternative=None if better is None else _at_zero(robot, case, better),
+    )
+
+
+def _at_zero(robot: Robot, case: JointCase, better: Alternative) -> dict[str, Any]:
+    """The better joint in the world frame at zero: where the parent carries it from its place at rest."""
+    carrier = case.bodies.truth.part_links[case.measures.joint.parent][0]
+    T_world_rest = forward_kinematics(robot, rest_configuration(robot))[carrier]
+    T_zero_rest = forward_kinematics(robot, {})[carrier] @ np.linalg.inv(T_world_rest)
+    return {
+        "kind": better.kind.value,
+        "axis": (T_zero_rest[:3, :3] @ better.axis).tolist(),
+        "pivot": (T_zero_rest[:3, :3] @ better.pivot + T_zero_rest[:3, 3]).tolist(),
+        "score": better.score,
+    }

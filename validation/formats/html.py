@@ -8,7 +8,7 @@ import math
 import struct
 from typing import TYPE_CHECKING
 
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
@@ -266,7 +266,7 @@ def _remark(check: CheckResult) -> str:
 def _explained(outcomes: Sequence[Outcome]) -> str:
     """What each check looks at of which a finding is shown."""
     told = {f.check for outcome in outcomes if not isinstance(outcome, Unusable) for f in outcome.findings}
-    checks = [CATALOGUE[name] for name in sorted(told)]
+    checks = [CHECKS[name] for name in sorted(told)]
     if not checks:
         return ""
     parts = (

@@ -67,7 +67,7 @@ def drawing_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
     Returns:
         What was drawn in time.
     """
-    stage = Stage(name="picture", function="kinematify.validation.formats.picture:run", checks=())
+    stage = Stage(name="picture", run=run, checks=())
     with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
         request = StageRequest(
             urdf=path.absolute(),

@@ -1,4 +1,4 @@
-"""SARIF 2.1.0 as GitHub code scanning and editors read it: rules from the catalogue, a result per finding."""
+"""SARIF 2.1.0 as GitHub code scanning and editors read it: rules from the registry of checks, a result per finding."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from kinematify import __version__
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.text import configuration, family, measure, printable, title, where
 from kinematify.validation.outcome import Unusable
@@ -18,7 +18,7 @@ from kinematify.validation.outcome import Unusable
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.catalogue import Check
+    from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
@@ -31,7 +31,7 @@ _UNUSABLE = "unusable-input"
 def as_sarif(outcomes: Sequence[Outcome]) -> str:
     """Return the outcomes as one SARIF run."""
     reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
-    index = {check: position for position, check in enumerate(CATALOGUE)}
+    index = {check: position for position, check in enumerate(CHECKS)}
     run = {
         "tool": {"driver": _driver()},
         "columnKind": "utf16CodeUnits",
@@ -47,7 +47,7 @@ def _driver() -> dict[str, Any]:
         "name": "kinematify validate",
         "version": __version__,
         "semanticVersion": __version__,
-        "rules": [_rule(check) for check in CATALOGUE.values()],
+        "rules": [_rule(check) for check in CHECKS.values()],
         "notifications": [
             {"id": status.value, "shortDescription": {"text": f"A check was {status.value}."}}
             for status in (Status.SKIPPED, Status.BLOCKED)

@@ -6,7 +6,8 @@ import math
 import re
 from typing import TYPE_CHECKING, Any
 
-from kinematify.validation.catalogue import CATALOGUE, FAMILIES
+from kinematify.validation.check import FAMILIES
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Status
 
 if TYPE_CHECKING:
@@ -141,7 +142,7 @@ def family_rows(report: ValidationReport) -> list[tuple[str, ...]]:
 def title(check: CheckResult | Finding) -> str:
     """Id, title and engine of a check."""
     engine = f" [{check.engine}]" if check.engine else ""
-    return f"{check.check} {CATALOGUE[check.check].title}{engine}"
+    return f"{check.check} {CHECKS[check.check].title}{engine}"
 
 
 def family(check: str) -> str:

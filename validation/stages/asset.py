@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.asset.bodies import measure
-from kinematify.validation.asset.mesh_look import MeshLook
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Status
-from kinematify.validation.left_model import leave_model
 
 if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
@@ -20,6 +17,9 @@ _GUARDS = checks_of("KV150", "KV151", "KV152")
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Tell KV150 to KV159, and KV201 to KV243 where the meshes can be read."""
+    from kinematify.validation.asset.bodies import measure
+    from kinematify.validation.left_model import leave_model
+
     model = check_mesh_files(request, recorder)
     if model is None:
         return
@@ -38,6 +38,8 @@ def check_mesh_files(request: StageRequest, recorder: Recorder) -> Robot | None:
         request: Names the document, which has passed the pre-check.
         recorder: Told every check; the later ones are blocked where a mesh cannot be used.
     """
+    from kinematify.validation.asset.mesh_look import MeshLook
+
     look, usable = MeshLook(request), True
     for check in _GUARDS:
         with recorder.check(check.id) as result:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.engine_context import EngineContext
 from kinematify.validation.report import JointCurve
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kinematify.validation.engine_context import EngineContext
     from kinematify.validation.stage import Recorder, StageRequest
 
 _LOAD, _POSES, _REST = "01", "02", "03"
@@ -29,6 +29,8 @@ def run(request: StageRequest, recorder: Recorder, *, engine: str) -> None:
         recorder: Told the results.
         engine: Of `ENGINES`.
     """
+    from kinematify.validation.engine_context import EngineContext
+
     context = EngineContext(request=request, entry=ENGINES[engine])
     if context.entry.runs:
         _run(context, recorder)

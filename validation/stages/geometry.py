@@ -7,20 +7,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.geometry.scene import read_scene
 from kinematify.robot.joint_type import JointType
-from kinematify.simulation.configurations import write_poses
 from kinematify.validation.checks import checks_of
-from kinematify.validation.engine_results import EXACT
-from kinematify.validation.geometry.exact_contacts import exact_contacts
-from kinematify.validation.geometry.look import GeometryLook
-from kinematify.validation.left_model import model_of
 from kinematify.validation.report import JointSummary
 
 if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.geometry.sweep import JointSweep
     from kinematify.validation.check import Check
+    from kinematify.validation.geometry.look import GeometryLook
     from kinematify.validation.stage import Recorder, StageRequest
 
 AT_REST, IN_MOTION, TOGETHER = checks_of("KV30"), checks_of("KV31", "KV32"), checks_of("KV33")
@@ -28,6 +23,13 @@ AT_REST, IN_MOTION, TOGETHER = checks_of("KV30"), checks_of("KV31", "KV32"), che
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Look at the model at rest and in motion; see `kinematify.validation.stage`."""
+    from kinematify.geometry.scene import read_scene
+    from kinematify.simulation.configurations import write_poses
+    from kinematify.validation.engine_results import EXACT
+    from kinematify.validation.geometry.exact_contacts import exact_contacts
+    from kinematify.validation.geometry.look import GeometryLook
+    from kinematify.validation.left_model import model_of
+
     every = (*AT_REST, *IN_MOTION, *TOGETHER)
     if not recorder.wants(*(entry.id for entry in every)):
         return

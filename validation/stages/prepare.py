@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.simulation.prepare import prepare
-from kinematify.validation.left_model import model_of
-
 if TYPE_CHECKING:
     from kinematify.validation.stage import Recorder, StageRequest
 
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Write `prepared.urdf` and `prepared.json` (`kinematify.simulation.prepared`)."""
+    from kinematify.simulation.prepare import prepare
+    from kinematify.validation.left_model import model_of
+
     del recorder  # what was changed is told by the checks that look at it
     prepare(model_of(request), request.work, request.settings.prepare)

@@ -1,136 +1,144 @@
-"""The stage `task` where the task is to pour: plan, executions and film, told as KV701 to KV709."""
+"""The task of pouring from the object into a container."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
 from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.execute import Execution, Hold, Loaded, load
+from kinematify.manipulation.execute import Execution, Loaded, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.pour import CARRIED, GRASP, PATH, REACH, PourPlan, plan_pour
-from kinematify.manipulation.pour_scene import read_vessel
+from kinematify.manipulation.outcome import Failure, Hold
+from kinematify.manipulation.pour import PourPlan, plan_pour
+from kinematify.manipulation.pour_scene import Vessel, read_vessel
 from kinematify.manipulation.robot import robot_of
-from kinematify.validation.catalogue.task import CHECKS
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
     from kinematify.manipulation.request import TaskRequest
-    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+    from kinematify.validation.stage import OpenCheck, StageRequest
 
-_CHECK_OF = {GRASP: "KV702", REACH: "KV703", PATH: "KV704", CARRIED: "KV705"}
-_RUNS = (
-    ("KV707", "mujoco", Hold.WELD, "in MuJoCo, with the hand welded to the cup"),
-    ("KV707", "pybullet", Hold.WELD, "in PyBullet, with the hand welded to the cup"),
-    ("KV708", "mujoco", Hold.CONTACT, "in MuJoCo, with fingers that hold by friction"),
-)
-_MESSAGES = {
-    GRASP: "A gripper finds no hold on the cup. {words}",
-    REACH: "The arm does not take the cup to the container: {words}.",
-    PATH: "A hold of the cup can be reached, but {words}.",
-    CARRIED: "The arm gets through {share:.0%} of lifting, carrying and tilting the cup, because {words}.",
+_WHERE = {
+    ("mujoco", Hold.WELD): "in MuJoCo, with the hand welded to the cup",
+    ("pybullet", Hold.WELD): "in PyBullet, with the hand welded to the cup",
+    ("mujoco", Hold.CONTACT): "in MuJoCo, with fingers that hold by friction",
 }
+_MESSAGES = {
+    Failure.NO_GRASP: "A gripper finds no hold on the cup. {words}",
+    Failure.NO_REACH: "The arm does not take the cup to the container: {words}.",
+    Failure.NO_PATH: "A hold of the cup can be reached, but {words}.",
+    Failure.STOPS: "The arm gets through {share:.0%} of lifting, carrying and tilting the cup, because {words}.",
+}
+_NOT_PULLED = "nothing is pulled"
 
 
-@dataclass(frozen=True, eq=False)
-class _Poured:
-    """A plan and what the engines load for it."""
+class PourTask:
+    """A robot with the cup that it takes and the container that it pours into."""
 
-    plan: PourPlan
-    loaded: Loaded | None
+    def __init__(self, request: StageRequest, task: TaskRequest) -> None:
+        """Keep what is asked for."""
+        self.request, self.task = request, task
+        self.settings = request.settings.task
+        self._vessels: tuple[Vessel, Vessel] | None = None
+        self._runs: dict[tuple[str, Hold], Execution] = {}
 
+    @cached_property
+    def arm(self) -> Arm:
+        """The robot."""
+        return Arm(robot_of(self.task, self.request.work), self.settings.plan, seed=self.request.settings.seed)
 
-def run(request: StageRequest, task: TaskRequest, recorder: Recorder) -> None:
-    """Pour from the object of the request into the container of the task; see `kinematify.validation.stage`."""
-    told: set[tuple[str, str | None]] = {("KV701", None)}
-    with recorder.check("KV701") as check:
-        poured = _poured(request, task, check)
-    if poured is not None:
-        told |= _tell_plan(recorder, poured.plan, request)
-        told |= _tell_runs(recorder, poured, request, task)
-    reason = "nothing is pulled" if poured is not None else "the task cannot be set up, see KV701"
-    for entry in CHECKS:
-        for engine in entry.engines or (None,):
-            if (entry.id, engine) not in told:
-                with recorder.check(entry.id, engine) as left:
-                    left.skip(reason)
+    @cached_property
+    def planned(self) -> PourPlan:
+        """What became of the plan."""
+        assert self._vessels is not None
+        settings = self.request.settings
+        return plan_pour(self.arm, *self._vessels, self.request.work, settings, seed=settings.seed)
 
+    @cached_property
+    def world(self) -> Loaded | None:
+        """What the engines load; None where there is no plan that could be executed."""
+        motion = self.planned.motion
+        return None if motion is None else load(motion, self.request.work, self.request.settings.prepare)
 
-def _poured(request: StageRequest, task: TaskRequest, check: OpenCheck) -> _Poured | None:
-    """Measure both vessels and plan; None with a finding where that makes no sense."""
-    settings, work = request.settings, request.work
-    try:
-        if task.into is None:
-            raise InputError("--task pour needs --into with the URDF of the container, e.g. --into bowl.urdf.")
-        cup = read_vessel(request.urdf, work / "cup.urdf", settings, scale=task.scale)
-        into = read_vessel(task.into, work / "into.urdf", settings)
-        arm = Arm(robot_of(task, work), settings.task.plan, seed=settings.seed)
-        plan = plan_pour(arm, cup, into, work, settings, seed=settings.seed)
-    except InputError as error:
-        check.find(str(error), "Give what the message asks for.")
-        return None
-    return _Poured(plan, None if plan.motion is None else load(plan.motion, work, settings.prepare))
+    def set_up(self, result: OpenCheck) -> None:
+        """Measure both vessels; add a finding where that makes no sense."""
+        work, settings = self.request.work, self.request.settings
+        try:
+            if self.task.into is None:
+                raise InputError("--task pour needs --into with the URDF of the container, e.g. --into bowl.urdf.")
+            cup = read_vessel(self.request.urdf, work / "cup.urdf", settings, scale=self.task.scale)
+            self._vessels = cup, read_vessel(self.task.into, work / "into.urdf", settings)
+            _ = self.arm
+        except InputError as error:
+            result.find(str(error), "Give what the message asks for.")
+            return
 
+    def plan(self) -> None:
+        """Plan the way of the cup."""
+        _ = self.planned
 
-def _tell_plan(recorder: Recorder, plan: PourPlan, request: StageRequest) -> set[tuple[str, str | None]]:
-    """KV702 to KV705."""
-    for name in _CHECK_OF.values():
-        with recorder.check(name) as check:
-            if plan.failure is not None and _CHECK_OF[plan.failure] == name:
-                message = _MESSAGES[plan.failure].format(words=plan.words, share=plan.fraction)
-                check.find(message, "Give another --robot or another container.", value=plan.fraction, limit=1.0)
-            elif name == "KV705" and plan.failure is None and plan.motion is not None:
-                grasp, tilt = plan.motion.grasp, request.settings.task.pour.tilt_deg
-                check.find(
-                    f"The arm lifts the cup at a {grasp.kind} that is {grasp.width * 1e3:.0f} mm thick, carries it "
-                    f"upright over the container and tilts it by {tilt:.0f} deg about its lip.",
-                    "Nothing to do.",
-                    severity=Severity.NOTE,
-                    value=plan.fraction,
-                )
-            if name == "KV705":
-                check.measured.update({"carried": plan.fraction, "seconds": plan.seconds})
-    return {(name, None) for name in _CHECK_OF.values()}
+    def tell_failures(self, result: OpenCheck, *failures: Failure) -> None:
+        """Add what failed, if it did at one of these steps."""
+        plan = self.planned
+        if plan.failure is None or plan.failure not in failures:
+            return
+        message = _MESSAGES[plan.failure].format(words=plan.words, share=plan.fraction)
+        result.find(message, "Give another --robot or another container.", value=plan.fraction, limit=1.0)
 
+    def tell_successes(self, result: OpenCheck) -> None:
+        """Add how the cup is taken."""
+        plan = self.planned
+        result.measured.update({"carried": plan.fraction, "seconds": plan.seconds})
+        if plan.failure is None and plan.motion is not None:
+            grasp = plan.motion.grasp
+            result.find(
+                f"The arm lifts the cup at a {grasp.kind} that is {grasp.width * 1e3:.0f} mm thick, carries it "
+                f"upright over the container and tilts it by {self.settings.pour.tilt_deg:.0f} deg about its lip.",
+                "Nothing to do.",
+                severity=Severity.NOTE,
+                value=plan.fraction,
+            )
 
-def _tell_runs(
-    recorder: Recorder, poured: _Poured, request: StageRequest, task: TaskRequest
-) -> set[tuple[str, str | None]]:
-    """KV707 to KV709."""
-    told: set[tuple[str, str | None]] = set()
-    first: Execution | None = None
-    for name, engine, hold, where in _RUNS:
-        if engine not in request.task_engines or not recorder.wants(name, "KV709"):
-            continue
-        told.add((name, engine))
-        with recorder.check(name, engine) as check:
-            if poured.loaded is None:
-                check.skip("there is no plan that could be executed")
-                continue
-            execution = _executed(poured.loaded, engine, hold, request)
-            first = first or execution
-            check.measured.update({"share": execution.share, "depth": execution.depth})
-            if not execution.success:
-                check.find(
-                    f"The pouring fails {where}: {execution.reason}.",
-                    "Check masses and collision geometry of the cup; the plan itself is free of collisions.",
-                    value=execution.share,
-                    limit=request.settings.task.execution.opened,
-                    pair=execution.deepest,
-                )
-    if first is not None and poured.loaded is not None and task.films is not None and recorder.wants("KV709"):
-        told.add(("KV709", None))
-        with recorder.check("KV709") as check:
-            film = task.films / f"{task.stem}.gif"
-            write_film(poured.loaded, first, film, film.with_suffix(".png"), request.settings.task.film)
-            check.find(f"{film.name} shows how it is poured.", "Nothing to do.", severity=Severity.NOTE)
-    return told
+    def tell_doubts(self, result: OpenCheck) -> None:
+        """Say that no joint is opened."""
+        result.skip(_NOT_PULLED)
 
+    def tell_executions(self, result: OpenCheck, hold: Hold) -> None:
+        """Pour in the engine of the check, and add what fails."""
+        if self.world is None:
+            result.skip("there is no plan that could be executed")
+            return
+        engine = result.engine or ""
+        execution = self._execute(self.world, engine, hold)
+        result.measured.update({"share": execution.share, "depth": execution.depth})
+        if not execution.success:
+            result.find(
+                f"The pouring fails {_WHERE[engine, hold]}: {execution.reason}.",
+                "Check masses and collision geometry of the cup; the plan itself is free of collisions.",
+                value=execution.share,
+                limit=self.settings.execution.opened,
+                pair=execution.deepest,
+            )
 
-def _executed(loaded: Loaded, engine: str, hold: Hold, request: StageRequest) -> Execution:
-    settings = request.settings.task.execution
-    if engine == "mujoco":
-        return execute_mujoco.execute(loaded, settings, hold=hold)
-    return execute_pybullet.execute(loaded, settings)
+    def _execute(self, world: Loaded, engine: str, hold: Hold) -> Execution:
+        if (engine, hold) not in self._runs:
+            settings = self.settings.execution
+            self._runs[engine, hold] = (
+                execute_mujoco.execute(world, settings, hold=hold)
+                if engine == "mujoco"
+                else execute_pybullet.execute(world, settings)
+            )
+        return self._runs[engine, hold]
+
+    def tell_films(self, result: OpenCheck) -> None:
+        """Film the first execution and add the name of the film."""
+        known = [engine for engine, _ in _WHERE if engine in self.request.task_engines]
+        if self.task.films is None or self.world is None or not known:
+            result.skip(_NOT_PULLED)
+            return
+        first = next(iter(self._runs.values()), None) or self._execute(self.world, known[0], Hold.WELD)
+        film = self.task.films / f"{self.task.stem}.gif"
+        write_film(self.world, first, film, film.with_suffix(".png"), self.settings.film)
+        result.find(f"{film.name} shows how it is poured.", "Nothing to do.")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.corruption.cases import write_case
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.json_lines import as_json_text
@@ -63,7 +63,7 @@ def _validated(urdf: Path, task: CorruptionTask) -> Record:
     settings = load_settings()
     hurried = settings.model_copy(update={"budget": settings.budget.model_copy(update={"seconds": task.seconds})})
     try:
-        engines = sorted({engine for check in task.selected for engine in CATALOGUE[check].engines})
+        engines = sorted({engine for check in task.selected for engine in CHECKS[check].engines})
         report = validate(urdf, settings=hurried, selected=task.selected, engines=engines, workers=1)
     except InputError as error:
         _write_all(Unusable(model=str(urdf), message=str(error)))

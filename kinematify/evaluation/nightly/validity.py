@@ -16,7 +16,7 @@ from kinematify.evaluation.datasets import CONDITIONS, BenchObject
 from kinematify.evaluation.job import erased_item, imported, shown_parts
 from kinematify.evaluation.nightly.record import Problem, Run
 from kinematify.model.urdf import write_urdf
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.picture import scene_of
@@ -76,7 +76,7 @@ def run_validation(validation: Validation) -> Run:
         urdf, package_dirs = validation.item.urdf, validation.item.package_dirs
         if validation.source == "inferred":
             urdf, package_dirs = _inferred(validation, Path(folder)), ()
-        selected = [check for check in CATALOGUE if any(fnmatchcase(check, word) for word in validation.checks)]
+        selected = [check for check in CHECKS if any(fnmatchcase(check, word) for word in validation.checks)]
         start = time.perf_counter()
         report = validate(
             urdf,

@@ -21,7 +21,7 @@ from kinematify.evaluation.mutants.outcome import Verdict, facts, judge
 from kinematify.evaluation.mutants.plan import FAULTS, write_mutants
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def measure(options: DetectionOptions, work: Work) -> Measured:
 
 def validated(asked: Validation) -> Record:
     """Validate one model without engines; notes are left out."""
-    selected = [check for check in CATALOGUE if check.startswith(asked.families)]
+    selected = [check for check in CHECKS if check.startswith(asked.families)]
     start = time.perf_counter()
     report = validate(asked.urdf, settings=load_settings(), selected=selected, engines=(), workers=1)
     return {"findings": facts(report), "seconds": round(time.perf_counter() - start, 2)}

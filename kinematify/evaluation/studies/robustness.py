@@ -17,7 +17,7 @@ from kinematify.evaluation.corruption.cases import KINDS
 from kinematify.evaluation.corruption.validation import READY, CorruptionTask, run_case
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
-from kinematify.validation.catalogue import CATALOGUE
+from kinematify.validation.checks import CHECKS
 
 if TYPE_CHECKING:
     from kinematify.evaluation.pool import Failure
@@ -43,7 +43,7 @@ class RobustnessOptions(Options):
 def measure(options: RobustnessOptions, work: Work) -> Measured:
     """Validate every corrupted model."""
     bases = tuple(all_bases(work.folder / "bases", options.data))
-    selected = tuple(check for check in CATALOGUE if check.startswith(options.checks))
+    selected = tuple(check for check in CHECKS if check.startswith(options.checks))
     wanted = options.cases or tuple(range(options.count))
     asked = {
         str(number): CorruptionTask(

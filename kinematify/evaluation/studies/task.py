@@ -24,10 +24,11 @@ from kinematify.evaluation.study import Options, Study
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation import execute_mujoco, execute_pybullet
 from kinematify.manipulation.copies import write_scaled
-from kinematify.manipulation.execute import Hold, load
+from kinematify.manipulation.execute import load
 from kinematify.manipulation.kinematics import Arm
+from kinematify.manipulation.outcome import Failure, Hold
 from kinematify.manipulation.place import object_box
-from kinematify.manipulation.planning import Failure, PullPlan, depend, plan_pull
+from kinematify.manipulation.planning import PullPlan, depend, motion_of, plan_pull
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.manipulation.sizes import sizing
@@ -36,7 +37,6 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.transforms import rotation_about
 from kinematify.robot.write import write_robot
 from kinematify.validation.run import validate
-from kinematify.validation.task.stage import motion_of
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings

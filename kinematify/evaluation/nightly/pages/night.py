@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kinematify.evaluation.nightly.compare import QUALITY, Class
 from kinematify.evaluation.nightly.store import MODELS
 from kinematify.evaluation.nightly.validity import page_name
-from kinematify.validation.catalogue import FAMILIES
+from kinematify.validation.check import FAMILIES
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
 if TYPE_CHECKING:

@@ -1,0 +1,100 @@
+"""The registry of checks: one function each, documented in three parts, and readable without an engine."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from kinematify.validation.check import REGISTRY, FeedbackRow, check, engine_check
+from kinematify.validation.checks import CHECKS, checks_of
+from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.plan import ENGINES, agreement_stage, asset_stage, keys, later_stages, task_stage
+from kinematify.validation.stage import OpenCheck, Recorder
+
+HEAVY = {"torch", "mujoco", "pybullet", "pinocchio", "coal", "fcl", "igl", "ompl", "trimesh", "scipy", "pydantic"}
+
+
+@pytest.fixture
+def registry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A registry to which a test may add."""
+    for name in ("KV398", "KV498", "KV598"):
+        monkeypatch.setitem(REGISTRY, name, CHECKS["KV301"])
+        monkeypatch.delitem(REGISTRY, name)
+
+
+def documented(result: OpenCheck, context: float) -> None:
+    """Nothing is above `most`.
+
+    It is about {engine}.
+
+    Why it matters: It jams.
+
+    Remedy: Move it.
+    """
+    result.find(f"It is {context}.", "Move it.")
+
+
+def test_reading_the_checks_loads_no_engine() -> None:
+    code = "import sys, kinematify.validation.checks; print(*{name.partition('.')[0] for name in sys.modules})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "kinematify" in done.stdout.split()
+    assert set(done.stdout.split()) & HEAVY == set()
+
+
+def test_every_check_has_a_function_and_all_its_texts() -> None:
+    for name, entry in CHECKS.items():
+        assert entry.id == name
+        assert entry.function is not None, name
+        assert all((entry.title, entry.verifies, entry.matters, entry.remedy)), name
+
+
+def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
+    stages = [asset_stage(), *later_stages(ENGINES), agreement_stage(), task_stage(1.0)]
+    told = [key for stage in stages for key in stage.checks]
+    text = keys(checks_of("KV10", "KV11", "KV12", "KV13", "KV14"))
+    assert sorted(map(str, (*told, *text))) == sorted(map(str, keys(CHECKS.values())))
+
+
+@pytest.mark.usefixtures("registry")
+def test_a_check_needs_its_three_paragraphs() -> None:
+    decorate = check("KV398", title="t", severity=Severity.NOTE, blame=Blame.ASSET)
+    with pytest.raises(AssertionError, match="Why it matters"):
+        decorate(documented)
+    documented.__doc__ = (documented.__doc__ or "").replace("    It is about {engine}.\n\n", "")
+    decorate(documented)
+    assert (REGISTRY["KV398"].verifies, REGISTRY["KV398"].remedy) == ("Nothing is above `most`.", "Move it.")
+    with pytest.raises(AssertionError, match="two functions"):
+        decorate(documented)
+
+
+@pytest.mark.usefixtures("registry")
+def test_a_check_of_engines_is_registered_for_each_with_what_is_peculiar_to_it() -> None:
+    def loads(result: OpenCheck, context: object) -> None:
+        """{engine} loads it.
+
+        PyBullet: Without a message.
+
+        Why it matters: {engine} crashes.
+
+        Remedy: Mend it.
+        """
+
+    engine_check("98", title="t", severity=Severity.NOTE, blame=Blame.ENGINE, feedback=FeedbackRow.EXPORTER)(loads)
+    assert REGISTRY["KV498"].verifies == "MuJoCo loads it."
+    assert REGISTRY["KV598"].verifies == "PyBullet loads it. Without a message."
+    assert (REGISTRY["KV598"].engines, REGISTRY["KV498"].matters) == (("pybullet",), "MuJoCo crashes.")
+
+
+def test_what_a_check_needs_is_the_reason_why_it_is_skipped() -> None:
+    told = []  # type: ignore[var-annotated]
+    recorder = Recorder(told.append, frozenset(("KV331",)))
+
+    class Late:
+        random = None
+
+    recorder.run(CHECKS["KV331"], Late())
+    recorder.run(CHECKS["KV330"], Late())  # it was not asked for, and would fail
+    (result,) = told
+    assert (result.status, result.reason) == (Status.SKIPPED, "time ran out")

@@ -1,0 +1,146 @@
+"""KV701 to KV709: a robot uses the object, in the way that the task says (`validation/task`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.manipulation.outcome import Failure, Hold
+from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.finding import Blame, Severity
+
+if TYPE_CHECKING:
+    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.task.robot_task import RobotTask
+
+
+@check("KV701", title="the task can be set up", severity=Severity.ERROR, blame=Blame.TASK)
+def task_set_up(result: OpenCheck, task: RobotTask) -> None:
+    """The object has a joint that moves, its size is that of a thing that an arm can use (objects of common
+    collections are brought to the usual size of what they are called; --scale wins), and the point of --grasp lies
+    on a part that moves.
+
+    Why it matters: Nothing can be said about a task with a cabinet of 300 m, or with a lamp that has no joint.
+
+    Remedy: Give --scale with the metres per unit of the model, or another point.
+    """
+    task.set_up(result)
+
+
+@check("KV702", title="a gripper finds a hold", severity=Severity.WARNING, blame=Blame.TASK)
+def no_hold(result: OpenCheck, task: RobotTask) -> None:
+    """On what the joint moves there is a place that two parallel pads can take: seen from outside, with opposite sides
+    within the opening of the gripper, and with room for the fingers beside it and for the hand behind it. Handles,
+    knobs and rims are found from the shape alone. Joints that move what they carry by less than task.plan.least_way
+    are noted and left out.
+
+    Why it matters: A part without a hold can only be pushed; a robot that pulls it needs another tool.
+
+    Remedy: Model the handle, free its surroundings, give --grasp with a point, or take a wider gripper.
+    """
+    task.tell_failures(result, Failure.NO_WAY, Failure.NO_GRASP)
+
+
+@check("KV703", title="an arm reaches the hold", severity=Severity.ERROR, blame=Blame.TASK, feedback=FeedbackRow.NO_WAY)
+def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
+    """From at least one place around the object (task.plan.bearings, distances, heights) the arm's inverse kinematics
+    reaches one of the holds, within the joints' limits and without meeting the object, the floor or itself while it
+    holds on.
+
+    Why it matters: What no place can reach is no question of the model's joints: the hold is hidden, or the arm
+    small.
+
+    Remedy: Give --grasp with a hold that is easier to reach, another --robot, or the right --scale.
+    """
+    task.tell_failures(result, Failure.NO_REACH)
+
+
+@check("KV704", title="a way leads to the hold", severity=Severity.ERROR, blame=Blame.TASK, feedback=FeedbackRow.NO_WAY)
+def no_path(result: OpenCheck, task: RobotTask) -> None:
+    """From the arm's home posture, RRTConnect finds a path free of collisions (task.plan.margin) to a place in front
+    of the hold, and a straight way leads in from there.
+
+    Why it matters: A hand that cannot get in without touching what is beside it pushes it over.
+
+    Remedy: Free the surroundings of the hold, or give --grasp with another one.
+    """
+    task.tell_failures(result, Failure.NO_PATH)
+
+
+@check("KV705", title="an arm opens the joint", severity=Severity.ERROR, blame=Blame.TASK, feedback=FeedbackRow.NO_WAY)
+def not_opened(result: OpenCheck, task: RobotTask) -> None:
+    """With the hand fixed to the part, the arm follows the joint from rest to the farther end of its range (joints
+    without limits by task.plan.range_turn); task.plan.opened of it counts. What ends a pull earlier is said: a
+    limit of the arm, a singular posture, the arm's own parts, the object, the floor. Where the checks of KV3xx
+    doubt the joint, that is blamed.
+
+    Why it matters: A policy can only learn to open what the arm can open.
+
+    Remedy: Give another --robot or --grasp, or accept the part of the range that opens; if the joint is blamed,
+    correct axis, type or limits first.
+    """
+    task.tell_failures(result, Failure.STOPS, Failure.COVERED)
+    task.tell_successes(result)
+
+
+@check(
+    "KV706",
+    title="the joint leaves its part the way that a pull needs",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.NO_WAY,
+)
+def jams(result: OpenCheck, task: RobotTask) -> None:
+    """On the way from rest to the open end, the moved part does not run into its own parent before task.plan.opened of
+    the range, and no check of KV3xx doubts axis, type, place or limits of the joint.
+
+    Why it matters: A robot that pulls at a part whose joint points elsewhere tears it out, or the gripper slips.
+
+    Remedy: Correct the joint as the named check of KV3xx says, and plan again.
+    """
+    task.tell_failures(result, Failure.JAMS)
+    task.tell_doubts(result)
+
+
+@check(
+    "KV707",
+    title="the plan works in simulation",
+    severity=Severity.ERROR,
+    blame=Blame.TASK,
+    engines=("mujoco", "pybullet"),
+)
+def plan_fails(result: OpenCheck, task: RobotTask) -> None:
+    """Joint servos track the plan with the hand welded to the part when the fingers have arrived; the joint ends at
+    task.execution.opened of the planned way, at rest, and the robot gets nowhere deeper into the object than
+    task.execution.depth.
+
+    Why it matters: A plan that an engine does not follow fails in training: masses, efforts or convex pieces are in
+    the way.
+
+    Remedy: Check the collision geometry beside the part (KV332) and the masses; the plan itself is free of
+    collisions.
+    """
+    task.tell_executions(result, Hold.WELD)
+
+
+@check("KV708", title="friction alone holds", severity=Severity.NOTE, blame=Blame.TASK, engines=("mujoco",))
+def slips(result: OpenCheck, task: RobotTask) -> None:
+    """The same with real contact: the fingers close with task.execution.grip_force, and nothing but friction
+    (task.execution.friction) holds the part.
+
+    Why it matters: A policy has no weld. Round knobs and thin rims slip where the motion turns in the hand.
+
+    Remedy: Take a hold with flat sides, or let the hand turn about the hold.
+    """
+    task.tell_executions(result, Hold.CONTACT)
+
+
+@check("KV709", title="films of the task", severity=Severity.NOTE, blame=Blame.TASK)
+def films(result: OpenCheck, task: RobotTask) -> None:
+    """Nothing: it names the films. Each shows the first execution of a plan, as a GIF, and beside it a still of its
+    three moments: before, at the grasp, and open.
+
+    Why it matters: A picture shows at once whether the hold and the motion are what was meant.
+
+    Remedy: Nothing to do.
+    """
+    task.tell_films(result)

@@ -1,0 +1,20 @@
+"""The stage `agreement`: what the engines left behind, compared with each other and the analytical model (KV6xx)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kinematify.validation.checks import checks_of
+
+if TYPE_CHECKING:
+    from kinematify.validation.stage import Recorder, StageRequest
+
+
+def run(request: StageRequest, recorder: Recorder) -> None:
+    """Compare the engines that were asked for, by what they left in the folder of the run."""
+    from kinematify.validation.engine_results import EngineResults
+
+    left = EngineResults(request, request.engines, request.failures)
+    for check in checks_of("KV6"):
+        if not check.engines:
+            recorder.run(check, left)
