@@ -13,9 +13,7 @@ from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus
-from kinematify.evaluation.metrics import score_object
-from kinematify.evaluation.prediction import prediction_of
-from kinematify.generate.procedural.truth import ground_truth
+from kinematify.evaluation.truth import score_blueprint
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import PARTS_FOLDER, TRUTH_FOLDER, write_parts, write_truth
@@ -115,15 +113,7 @@ class Generation:
 
     def score(self) -> ObjectScore:
         """Compare with the joints that the object was built with."""
-        truth = ground_truth(self.blueprint)
-        index = {name: k for k, name in enumerate(truth.part_names)}
-        found = self.inference
-        return score_object(
-            truth,
-            prediction_of(found.trees[0], found.joints, found.assembly.names, index),
-            centroids=[part.centroid for part in self.blueprint.parts],
-            diagonal=self.blueprint.assembly.diagonal,
-        )
+        return score_blueprint(self.blueprint, self.inference)
 
 
 def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationReport:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.erase import ErasedModel
     from kinematify.evaluation.perturb import Perturbed
-    from kinematify.evaluation.pool import Failure
+    from kinematify.evaluation.pool import TaskFailure
     from kinematify.evaluation.prediction import Prediction
     from kinematify.pipeline import Inference
 
@@ -91,7 +91,7 @@ class JobResult:
     """Cuts whose two sides came out as fixed to each other."""
 
 
-def run_job(job: Job, failure: Failure | None = None) -> JobResult:
+def run_job(job: Job, failure: TaskFailure | None = None) -> JobResult:
     """Pose an object, erase its kinematics, infer from the parts alone, and score the answer.
 
     Every exception becomes a result, so that one object never ends the run.
@@ -114,7 +114,7 @@ def run_job(job: Job, failure: Failure | None = None) -> JobResult:
     return replace(_result(job, status, answer.message, answer, score), cuts=len(given.pieces))
 
 
-def unscored(job: Job, failure: Failure) -> JobResult:
+def unscored(job: Job, failure: TaskFailure) -> JobResult:
     """Return the result of a job whose truth cannot be read either."""
     return _result(job, failure.status, failure.message, _Answer(seconds=failure.seconds), None)
 

@@ -41,7 +41,7 @@ WORK_FOLDER = Path(".kinematify-bench")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Failure:
+class TaskFailure:
     """How a task ended that gave no result."""
 
     status: Literal["error", "timeout", "crash"]
@@ -67,10 +67,10 @@ class Pool:
         *,
         ledger: str,
         timeout: float,
-        said: Callable[[str, _Result | Failure], str],
+        said: Callable[[str, _Result | TaskFailure], str],
         preload: Sequence[str] = (),
         reuse: int = 1,
-    ) -> dict[str, _Result | Failure]:
+    ) -> dict[str, _Result | TaskFailure]:
         """Return the result of every task in the order given, those of an earlier run taken up.
 
         Args:
@@ -109,7 +109,7 @@ def run_tasks(
     timeout: float,
     preload: Sequence[str] = (),
     reuse: int = 1,
-) -> Generator[tuple[str, _Result | Failure]]:
+) -> Generator[tuple[str, _Result | TaskFailure]]:
     """Yield key and result of every task as it ends; closing the iterator stops all processes.
 
     Args:
@@ -182,14 +182,14 @@ class _Worker:
         """What the process answered, or what became of it, and whether it can take another task."""
         seconds = time.monotonic() - self.started
         if not answered:
-            return Failure(status="timeout", message=f"stopped after {timeout:.0f} s", seconds=seconds), False
+            return TaskFailure(status="timeout", message=f"stopped after {timeout:.0f} s", seconds=seconds), False
         try:
             return self.channel.recv(), True
         except (EOFError, ConnectionResetError):
             self.process.join()
             code = self.process.exitcode
             cause = signal.Signals(-code).name if code is not None and code < 0 else f"status {code}"
-            return Failure(status="crash", message=f"the worker ended with {cause}", seconds=seconds), False
+            return TaskFailure(status="crash", message=f"the worker ended with {cause}", seconds=seconds), False
 
     def stop(self) -> None:
         self.channel.close()
@@ -212,7 +212,7 @@ def _serve(channel: Connection) -> None:
             try:
                 result = task()
             except Exception as error:  # one task never ends the run
-                result = Failure(status="error", message=sentence(error), seconds=time.perf_counter() - start)
+                result = TaskFailure(status="error", message=sentence(error), seconds=time.perf_counter() - start)
             channel.send(result)
 
 
@@ -253,20 +253,22 @@ class _Ledger(Generic[_Result]):
     ) -> None:
         self._file.close()
 
-    def read(self) -> dict[str, _Result | Failure]:
+    def read(self) -> dict[str, _Result | TaskFailure]:
         """Return the results so far by key; lines that an older version wrote are passed over."""
         self._file.seek(0)
-        results: dict[str, _Result | Failure] = {}
+        results: dict[str, _Result | TaskFailure] = {}
         for line in self._file.read().splitlines():
             with suppress(ValueError, KeyError, TypeError, ValidationError):
                 facts = json.loads(line)
                 failed = facts.get("failure")
-                results[facts["key"]] = Failure(**failed) if failed else self._adapter.validate_python(facts["result"])
+                results[facts["key"]] = (
+                    TaskFailure(**failed) if failed else self._adapter.validate_python(facts["result"])
+                )
         return results
 
-    def append(self, key: str, result: _Result | Failure) -> None:
+    def append(self, key: str, result: _Result | TaskFailure) -> None:
         """Add a result; it is on disk when this returns."""
-        if isinstance(result, Failure):
+        if isinstance(result, TaskFailure):
             facts = {"key": key, "failure": asdict(result)}
         else:
             facts = {"key": key, "result": self._adapter.dump_python(result, mode="json")}

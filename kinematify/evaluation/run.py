@@ -15,7 +15,7 @@ from kinematify.errors import ConfigError, InputError
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
 from kinematify.evaluation.job import INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.perturb import CLEAN
-from kinematify.evaluation.pool import WORK_FOLDER, Failure, Pool
+from kinematify.evaluation.pool import WORK_FOLDER, Pool, TaskFailure
 from kinematify.evaluation.record import Header, Report, new_header
 from kinematify.evaluation.sources import NOT_INFERRING, code_version
 from kinematify.evaluation.summary import summaries
@@ -125,13 +125,13 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
     }
     answers = pool.run({key: partial(run_job, job) for key, job in by_key.items()}, RESULT, **how)
     # A job that crashed or ran out of time gets a second process, which only scores the missing answer.
-    failed = {key: answer for key, answer in answers.items() if isinstance(answer, Failure)}
+    failed = {key: answer for key, answer in answers.items() if isinstance(answer, TaskFailure)}
     again = {key + _SCORED: partial(run_job, by_key[key], failure) for key, failure in failed.items()}
     scored = replace(pool, fresh=False).run(again, RESULT, **how) if again else {}
     results: dict[str, JobResult] = {}
     for key, job in by_key.items():
         answer = scored.get(key + _SCORED, answers[key])
-        results[key] = unscored(job, failed[key]) if isinstance(answer, Failure) else answer
+        results[key] = unscored(job, failed[key]) if isinstance(answer, TaskFailure) else answer
     # Two labels can name the same configuration, which is run once.
     ordered = tuple(replace(results[key], variant=job.variant) for key, job in keyed)
     return Report(header=_header(request, ordered, code), records=ordered, summary={"groups": summaries(ordered)})
@@ -140,7 +140,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
 class _How(TypedDict):
     ledger: str
     timeout: float
-    said: Callable[[str, JobResult | Failure], str]
+    said: Callable[[str, JobResult | TaskFailure], str]
     preload: tuple[str, ...]
 
 
@@ -215,7 +215,7 @@ def _condition(name: str) -> Condition:
     raise InputError(f"There is no condition {name}. Give some of {known}.")
 
 
-def _line(job: Job, result: JobResult | Failure) -> str:
+def _line(job: Job, result: JobResult | TaskFailure) -> str:
     given = "" if job.input == CLEAN else f", {job.input}"
     place = f"{job.item.name}, {job.condition.name}{given}, {job.variant}"
     if isinstance(result, JobResult) and result.status == "ok":

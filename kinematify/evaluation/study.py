@@ -18,7 +18,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
 
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation import studies
-from kinematify.evaluation.pool import Failure, Pool
+from kinematify.evaluation.pool import Pool, TaskFailure
 from kinematify.evaluation.record import Report, load_report, new_header, write_report
 from kinematify.evaluation.sources import code_version
 
@@ -56,7 +56,7 @@ class Work:
     study: str
     pool: Pool
     code: str
-    failures: dict[str, Failure] = field(default_factory=dict)
+    failures: dict[str, TaskFailure] = field(default_factory=dict)
     """Arguments that gave no record."""
 
     @property
@@ -72,7 +72,7 @@ class Work:
         timeout: float = 3600.0,
         workers: int | None = None,
         reuse: int = 1,
-        failed: Callable[[str, Failure], Record] | None = None,
+        failed: Callable[[str, TaskFailure], Record] | None = None,
     ) -> dict[str, Record]:
         """Call a function for every argument, each in a process, and return the records in the order given.
 
@@ -91,13 +91,13 @@ class Work:
             RECORD,
             ledger=self.study,
             timeout=timeout,
-            said=lambda key, answer: names[key] + (f": {answer.message}" if isinstance(answer, Failure) else ""),
+            said=lambda key, answer: names[key] + (f": {answer.message}" if isinstance(answer, TaskFailure) else ""),
             preload=(function.__module__,),
             reuse=reuse,
         )
         records: dict[str, Record] = {}
         for key, answer in answers.items():
-            if not isinstance(answer, Failure):
+            if not isinstance(answer, TaskFailure):
                 records[names[key]] = answer
             elif failed is not None:
                 records[names[key]] = failed(names[key], answer)

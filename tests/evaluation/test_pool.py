@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.pool import Failure, Pool
+from kinematify.evaluation.pool import Pool, TaskFailure
 from tests.places import ROOT
 
 NUMBER = TypeAdapter(int)
@@ -40,7 +40,7 @@ def hang_with_a_child(file: Path) -> int:
     return 0
 
 
-def results(tasks: dict[str, Callable[[], int]], folder: Path, **how: float) -> dict[str, int | Failure]:
+def results(tasks: dict[str, Callable[[], int]], folder: Path, **how: float) -> dict[str, int | TaskFailure]:
     settings = {"timeout": 60.0, **how}
     pool = Pool(folder=folder, workers=2)
     return pool.run(tasks, NUMBER, ledger="numbers", said=lambda key, result: key, **settings)  # type: ignore[arg-type]
@@ -62,8 +62,8 @@ def gone(pid: int) -> bool:
 def test_what_went_wrong_is_told_and_kept(tmp_path: Path) -> None:
     found = results({"crash": crash, "fail": fail}, tmp_path)
     crashed, failed = found["crash"], found["fail"]
-    assert isinstance(crashed, Failure)
-    assert isinstance(failed, Failure)
+    assert isinstance(crashed, TaskFailure)
+    assert isinstance(failed, TaskFailure)
     assert (crashed.status, failed.status) == ("crash", "error")
     assert "SIGSEGV" in crashed.message
     assert failed.message.startswith("ValueError: no such number (fail, line")
@@ -73,7 +73,7 @@ def test_what_went_wrong_is_told_and_kept(tmp_path: Path) -> None:
 def test_a_hang_is_stopped_with_all_that_it_started(tmp_path: Path) -> None:
     (tmp_path / "work").mkdir()
     found = results({"hang": partial(hang_with_a_child, tmp_path / "pids")}, tmp_path / "work", timeout=3.0)
-    assert isinstance(found["hang"], Failure)
+    assert isinstance(found["hang"], TaskFailure)
     assert found["hang"].status == "timeout"
     assert all(gone(int(pid)) for pid in (tmp_path / "pids").read_text().split())
 

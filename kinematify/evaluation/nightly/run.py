@@ -36,8 +36,8 @@ from kinematify.evaluation.nightly.store import (
     locked,
     write_night,
 )
-from kinematify.evaluation.nightly.validity import Validation, run_validation
-from kinematify.evaluation.pool import Failure, Pool
+from kinematify.evaluation.nightly.validity import NightValidation, run_validation
+from kinematify.evaluation.pool import Pool, TaskFailure
 from kinematify.evaluation.record import replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
 from kinematify.evaluation.sources import code_version
@@ -196,14 +196,14 @@ class _Work:
             preload=("kinematify.evaluation.nightly.validity", "kinematify.pipeline"),
         )
         return [
-            tasks[key].run(answer.status, answer.seconds, answer.message) if isinstance(answer, Failure) else answer
+            tasks[key].run(answer.status, answer.seconds, answer.message) if isinstance(answer, TaskFailure) else answer
             for key, answer in answers.items()
         ]
 
-    def _validations(self) -> Iterator[Validation]:
+    def _validations(self) -> Iterator[NightValidation]:
         for item in self.objects:
             for source in self.settings.sources:
-                yield Validation(
+                yield NightValidation(
                     item=item,
                     scenario=validation_scenario(item, source, self.settings, self.thresholds),
                     source=source,
@@ -216,7 +216,7 @@ class _Work:
                     pages=self.pages,
                 )
 
-    def _key(self, task: Validation) -> str:
+    def _key(self, task: NightValidation) -> str:
         return digest([task.item.name, task.source, task.scenario, self.code, task.infer, task.budget])
 
 

@@ -36,7 +36,7 @@ _STATES = ("fail", "warn", "blocked", "pass", "skipped")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Validation:
+class NightValidation:
     """What to validate."""
 
     item: BenchObject
@@ -70,7 +70,7 @@ class Validation:
         )
 
 
-def run_validation(validation: Validation) -> Run:
+def run_validation(validation: NightValidation) -> Run:
     """Validate the model."""
     with tempfile.TemporaryDirectory(prefix="kinematify-", ignore_cleanup_errors=True) as folder:
         urdf, package_dirs = validation.item.urdf, validation.item.package_dirs
@@ -91,7 +91,7 @@ def run_validation(validation: Validation) -> Run:
         return kept(validation, report, time.perf_counter() - start, selected)
 
 
-def _write_page(validation: Validation, urdf: Path, report: ValidationReport, folder: Path) -> None:
+def _write_page(validation: NightValidation, urdf: Path, report: ValidationReport, folder: Path) -> None:
     """Write the page that `kinematify validate --html` would, but for the picture, which takes seconds."""
     package_dirs = validation.item.package_dirs if validation.source == "truth" else ()
     named = replace(report, model=f"{validation.item.name}, {validation.source} model")
@@ -107,7 +107,7 @@ def page_name(item: str, source: str) -> str:
     return f"{plain}-{source}.html"
 
 
-def _inferred(validation: Validation, folder: Path) -> Path:
+def _inferred(validation: NightValidation, folder: Path) -> Path:
     """Write the model that the inference makes of the anonymous parts of an object at rest."""
     parts = shown_parts(erased_item(validation.item, CONDITIONS[0]))
     inference = imported(validation.infer)(parts, config=load_config(validation.infer_config))
@@ -120,7 +120,7 @@ def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings
     return settings.model_copy(update={"budget": budget})
 
 
-def kept(validation: Validation, report: ValidationReport, seconds: float, selected: Collection[str]) -> Run:
+def kept(validation: NightValidation, report: ValidationReport, seconds: float, selected: Collection[str]) -> Run:
     """Return what a night keeps of a report: what is wrong, what did not run, and counts.
 
     Args:

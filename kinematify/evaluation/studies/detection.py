@@ -46,7 +46,7 @@ class DetectionOptions(Options):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Validation:
+class MutantValidation:
     """One model to be validated."""
 
     urdf: str
@@ -56,7 +56,7 @@ class Validation:
 def measure(options: DetectionOptions, work: Work) -> Measured:
     """Validate the models as they are, and then those with faults."""
     bases = {item.name: write_base(item, work.folder) for item in find_objects(options.data)}
-    asked = {name: Validation(urdf=str(base.urdf), families=_MOTION_FAMILIES) for name, base in bases.items()}
+    asked = {name: MutantValidation(urdf=str(base.urdf), families=_MOTION_FAMILIES) for name, base in bases.items()}
     untouched = {name: record["findings"] for name, record in work.each(validated, asked).items()}
     clean = [bases[name] for name, found in untouched.items() if not _with(found, "error")]
     faults = {fault.name: fault for fault in FAULTS if options.only in (None, _FAMILY[fault.name].split()[0])}
@@ -64,7 +64,7 @@ def measure(options: DetectionOptions, work: Work) -> Measured:
         mutant.name: mutant for mutant in write_mutants(clean, options.count, options.seed, list(faults.values()))
     }
     asked = {
-        name: Validation(
+        name: MutantValidation(
             urdf=mutant.urdf, families=_MOTION_FAMILIES if faults[mutant.fault].kinematic else _FILE_FAMILIES
         )
         for name, mutant in mutants.items()
@@ -84,7 +84,7 @@ def measure(options: DetectionOptions, work: Work) -> Measured:
     return records, {UNTOUCHED: {"models": len(untouched), **alarms}}
 
 
-def validated(asked: Validation) -> Record:
+def validated(asked: MutantValidation) -> Record:
     """Validate one model without engines; notes are left out."""
     selected = [check for check in CHECKS if check.startswith(asked.families)]
     start = time.perf_counter()

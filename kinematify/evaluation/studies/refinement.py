@@ -45,7 +45,7 @@ _GIVEN = "given"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Part:
+class Comparison:
     """One table of the study."""
 
     title: str
@@ -56,8 +56,8 @@ class Part:
 
 
 PARTS = {
-    "everyday": Part(title="Everyday objects, clean input", data="everyday"),
-    "tiers": Part(
+    "everyday": Comparison(title="Everyday objects, clean input", data="everyday"),
+    "tiers": Comparison(
         title="The dear tiers, some everyday objects, clean input",
         data="everyday",
         objects=(
@@ -65,8 +65,8 @@ PARTS = {
         ),
         tiers=("geometry", "engines", "task"),
     ),
-    "robots": Part(title="Robots, clean input", data="robots", objects=("allegro", "fetch", "go2")),
-    "perturbed": Part(
+    "robots": Comparison(title="Robots, clean input", data="robots", objects=("allegro", "fetch", "go2")),
+    "perturbed": Comparison(
         title="Everyday objects, perturbed input",
         data="everyday",
         objects=(
@@ -142,7 +142,7 @@ def measure(options: RefinementOptions, work: Work) -> Measured:
     """Infer and refine every object."""
     parts = {name: PARTS[name] for name in options.parts}
     if options.data is not None:
-        given = Part(
+        given = Comparison(
             title="Objects as given",
             data=options.data,
             objects=options.objects,

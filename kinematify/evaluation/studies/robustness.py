@@ -20,7 +20,7 @@ from kinematify.evaluation.study import Options, Study, explained
 from kinematify.validation.checks import CHECKS
 
 if TYPE_CHECKING:
-    from kinematify.evaluation.pool import Failure
+    from kinematify.evaluation.pool import TaskFailure
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
 
@@ -52,7 +52,7 @@ def measure(options: RobustnessOptions, work: Work) -> Measured:
         for number in wanted
     }
 
-    def failed(name: str, failure: Failure) -> Record:
+    def failed(name: str, failure: TaskFailure) -> Record:
         facts = {"number": int(name), "kind": KINDS[int(name) % len(KINDS)], "base": "?", "outcome": failure.status}
         return {**facts, "message": failure.message, "seconds": failure.seconds}
 

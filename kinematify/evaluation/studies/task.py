@@ -61,7 +61,7 @@ class TaskOptions(Options):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Opening:
+class OpeningTask:
     """One object whose joints are to be opened."""
 
     item: BenchObject
@@ -86,7 +86,7 @@ def measure(options: TaskOptions, work: Work) -> Measured:
         if not options.only or any(word in item.name for word in options.only)
     ]
     urdfs = {item.name: item.urdf for item in objects}
-    asked = {item.name: Opening(item=item, execute=options.execute) for item in objects[: options.most]}
+    asked = {item.name: OpeningTask(item=item, execute=options.execute) for item in objects[: options.most]}
     opened = [joint for record in work.each(opened_joints, asked).values() for joint in record["joints"]]
     good = [joint for joint in opened if _counts(joint) and joint["failure"] is None]
     cases = [(joint, fault) for fault in _FAULTS for joint in good]
@@ -100,7 +100,7 @@ def measure(options: TaskOptions, work: Work) -> Measured:
     return opened, {"wrong": list(work.each(noticed, copies).values())}
 
 
-def opened_joints(asked: Opening) -> Record:
+def opened_joints(asked: OpeningTask) -> Record:
     """Plan, and if asked execute, the opening of every joint of one object."""
     settings = load_settings()
     with tempfile.TemporaryDirectory() as name:
