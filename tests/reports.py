@@ -29,6 +29,7 @@ def add_checks(monkeypatch: pytest.MonkeyPatch) -> None:
             verifies="Something with `some_threshold`.",
             matters="It jams.",
             remedy="Move it.",
+            function=lambda result, context: None,
         )
         monkeypatch.setitem(CHECKS, name, check)
 

@@ -96,11 +96,11 @@ class Check:
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     needs: tuple[Need, ...] = ()
     """Asked before it runs, with the context: each gives the reason why there is nothing to look at, or None."""
-    function: CheckFunction | None = None
+    function: CheckFunction
+    """Looks at the context of its stage and adds findings to the open check."""
 
     def run(self, result: OpenCheck, context: Any) -> None:
         """Look at a context and add what is found, or say why there is nothing to look at."""
-        assert self.function is not None, f"{self.id} has no function"
         reason = next((reason for need in self.needs if (reason := need(context)) is not None), None)
         if reason is not None:
             result.skip(reason)
@@ -130,19 +130,18 @@ def check(
     """
 
     def register(function: CheckFunction) -> CheckFunction:
-        _add(
-            Check(
-                id=id,
-                title=title,
-                severity=severity,
-                blame=blame,
-                engines=engines,
-                feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
-                doubts=doubts,
-                needs=needs,
-                function=function,
-                **_documentation(id, function),
-            )
+        assert id not in REGISTRY, f"{id} stands at two functions"
+        REGISTRY[id] = Check(
+            id=id,
+            title=title,
+            severity=severity,
+            blame=blame,
+            engines=engines,
+            feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
+            doubts=doubts,
+            needs=needs,
+            function=function,
+            **_documentation(id, function),
         )
         return function
 
@@ -163,24 +162,18 @@ def engine_check(
     In its docstring ``{engine}`` stands for the engine's name, and a paragraph such as ``PyBullet: ...`` is added to
     what that engine's check verifies.
     """
-    names = tuple(FAMILIES[family] for family in ENGINE_FAMILIES.values())
 
     def register(function: CheckFunction) -> CheckFunction:
         for engine, family in ENGINE_FAMILIES.items():
-            id = family + number
-            _add(
-                Check(
-                    id=id,
-                    title=title,
-                    severity=severity,
-                    blame=blame,
-                    engines=(engine,),
-                    feedback=feedback,
-                    needs=needs,
-                    function=function,
-                    **_documentation(id, function, names),
-                )
-            )
+            check(
+                family + number,
+                title=title,
+                severity=severity,
+                blame=blame,
+                engines=(engine,),
+                feedback=feedback,
+                needs=needs,
+            )(function)
         return function
 
     return register
@@ -192,23 +185,21 @@ class _Documentation(TypedDict):
     remedy: str
 
 
-def _add(entry: Check) -> None:
-    assert entry.id not in REGISTRY, f"{entry.id} stands at two functions"
-    REGISTRY[entry.id] = entry
-
-
-def _documentation(id: str, function: CheckFunction, engines: tuple[str, ...] = ()) -> _Documentation:
-    """Split a docstring into what `Check` holds; a paragraph for one of `engines` is kept for that one only."""
+def _documentation(id: str, function: CheckFunction) -> _Documentation:
+    """Split a docstring into what `Check` holds; of the paragraphs about single engines, the one of its own is kept."""
     paragraphs = [" ".join(part.split()) for part in inspect.cleandoc(function.__doc__ or "").split("\n\n")]
     verifies, named = paragraphs[0], dict(part.partition(": ")[::2] for part in paragraphs[1:])
-    own = FAMILIES[id[:3]]
+    family = id[:3]
+    of_engine = family in ENGINE_FAMILIES.values()
+    engines = {FAMILIES[other] for other in ENGINE_FAMILIES.values()} if of_engine else set[str]()
     assert verifies, f"{id}: its docstring must say what it verifies"
     assert {"Why it matters", "Remedy"} <= set(named) <= {"Why it matters", "Remedy", *engines}, (
         f"{id}: after what it verifies, its docstring must have the paragraphs `Why it matters: ...` and "
         f"`Remedy: ...`, not {', '.join(named) or 'nothing'}"
     )
-    if own in engines and own in named:
-        verifies = f"{verifies} {named[own]}"
+    if of_engine and FAMILIES[family] in named:
+        verifies = f"{verifies} {named[FAMILIES[family]]}"
     texts = (verifies, named["Why it matters"], named["Remedy"])
-    verifies, matters, remedy = (text.replace("{engine}", own) for text in texts) if engines else texts
+    own = FAMILIES[family] if of_engine else "{engine}"
+    verifies, matters, remedy = (text.replace("{engine}", own) for text in texts)
     return {"verifies": verifies, "matters": matters, "remedy": remedy}

@@ -268,9 +268,12 @@ def test_slides_longer_than_the_model_are_found(good: Path, upper: str, severity
     assert [(item.check, item.severity) for item in found] == ([] if severity is None else [("KV220", severity)])
 
 
-def test_an_empty_range_and_a_range_without_zero_are_told(good: Path) -> None:
+def test_an_empty_range_is_found(good: Path) -> None:
     finding = only(edited(good, "//joint[@name='drawer_joint']/limit", upper="0"), "KV221")
     assert finding.joint == "drawer_joint"
+
+
+def test_a_range_without_zero_is_noted(good: Path) -> None:
     edited(good, "//joint[@name='drawer_joint']/limit", lower="0.1", upper="0.3")
     assert [item.joint for item in checked(good)["KV222"].findings] == ["drawer_joint"]
     assert not counted(good), "it is a note"

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     feedback=FeedbackRow.NOT_REACHED,
     needs=(nothing_moves, late),
 )
-def reaches_both_ends(check: OpenCheck, context: EngineContext) -> None:
+def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     """One joint after the other is driven from rest to both ends by a position servo, the others held. Each must
     arrive within engines.reach of its range. A joint that its own base stops is an error if their collision geometry
     is what the file declares; where other neighbours or convex stand-ins are in the way it is a warning, and a note
@@ -42,14 +42,14 @@ def reaches_both_ends(check: OpenCheck, context: EngineContext) -> None:
     stand-ins meet, write convex pieces as collision geometry.
     """
     driven = context.drives.driven
-    check.measured["drives"] = float(len(driven))
-    check.measured["arrived"] = float(sum(context.arrived(item) for item in driven))
+    result.measured["drives"] = float(len(driven))
+    result.measured["arrived"] = float(sum(context.arrived(item) for item in driven))
     for item in driven:
         if not context.arrived(item):
-            _find_blocked(check, context, item)
+            _find_blocked(result, context, item)
         elif item.lag > context.settings.tracking * context.travel(item).range:
-            _find_lag(check, context, item)
-    _say_left(check, context)
+            _find_lag(result, context, item)
+    _say_left(result, context)
 
 
 @engine_check(
@@ -60,7 +60,7 @@ def reaches_both_ends(check: OpenCheck, context: EngineContext) -> None:
     feedback=FeedbackRow.COLLISION,
     needs=(not_driven,),
 )
-def little_penetration(check: OpenCheck, context: EngineContext) -> None:
+def little_penetration(result: OpenCheck, context: EngineContext) -> None:
     """While a joint is driven to an end that it reaches, no pair of links gets deeper into each other than at rest by
     more than twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their meshes by.
 
@@ -77,10 +77,10 @@ def little_penetration(check: OpenCheck, context: EngineContext) -> None:
             if item.excess[pair] > worst.get(pair, (0.0, item))[0]:
                 worst[pair] = (float(item.excess[pair]), item)
     deepest = max((float(item.excess.max(initial=0.0)) for item in arrived), default=0.0)
-    check.measured["deepest_beyond_rest"] = deepest + context.drives.sweep.tolerance if deepest > 0.0 else 0.0
+    result.measured["deepest_beyond_rest"] = deepest + context.drives.sweep.tolerance if deepest > 0.0 else 0.0
     for pair, (excess, item) in sorted(worst.items()):
-        _find_penetration(check, context, pair, excess, item)
-    _say_left(check, context)
+        _find_penetration(result, context, pair, excess, item)
+    _say_left(result, context)
 
 
 @engine_check(
@@ -91,7 +91,7 @@ def little_penetration(check: OpenCheck, context: EngineContext) -> None:
     feedback=FeedbackRow.UNSTABLE,
     needs=(not_driven,),
 )
-def limits_hold(check: OpenCheck, context: EngineContext) -> None:
+def limits_hold(result: OpenCheck, context: EngineContext) -> None:
     """At its end, a joint whose servo pulls on past the limit (by engines.push of the range) gets no farther beyond it
     than engines.escape of the range.
 
@@ -103,13 +103,13 @@ def limits_hold(check: OpenCheck, context: EngineContext) -> None:
     driven = context.drives.driven
     pushed = [item for item in driven if context.travel(item).limited and context.arrived(item)]
     if not pushed:
-        check.skip("no joint with limits got to one of them")
+        result.skip("no joint with limits got to one of them")
     for item in pushed:
         travel = context.travel(item)
         share = item.beyond / travel.range
-        check.measured["farthest_of_range"] = max(0.0, share, check.measured.get("farthest_of_range", 0.0))
+        result.measured["farthest_of_range"] = max(0.0, share, result.measured.get("farthest_of_range", 0.0))
         if share > context.settings.escape:
-            check.find(
+            result.find(
                 f"Pushed on at its limit {item.drive.end:.4g} {travel.unit}, joint {travel.joint} gets "
                 f"{item.beyond:.3g} {travel.unit} beyond it, {share:.1%} of its range.",
                 "Give the part a plausible inertia, and limits that fit its motion.",
@@ -118,15 +118,15 @@ def limits_hold(check: OpenCheck, context: EngineContext) -> None:
                 limit=context.settings.escape * travel.range,
                 unit=travel.unit,
             )
-    _say_left(check, context)
+    _say_left(result, context)
 
 
-def _say_left(check: OpenCheck, context: EngineContext) -> None:
+def _say_left(result: OpenCheck, context: EngineContext) -> None:
     if context.drives.left:
-        check.skip(f"time ran out before {context.drives.left} of the drives")
+        result.skip(f"time ran out before {context.drives.left} of the drives")
 
 
-def _find_blocked(check: OpenCheck, context: EngineContext, driven: Driven) -> None:
+def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> None:
     travel = context.travel(driven)
     where = f"Driven from {travel.rest:.4g} towards {driven.drive.end:.4g} {travel.unit}"
     stops = f"{where}, joint {travel.joint} stops at {driven.reached:.4g} {travel.unit}"
@@ -139,7 +139,7 @@ def _find_blocked(check: OpenCheck, context: EngineContext, driven: Driven) -> N
     }
     index = _blocking_pair(context, driven)
     if index is None:
-        check.find(
+        result.find(
             f"{stops} without contact, at a force of {driven.force:.3g} {_force_unit(travel)}.",
             "Check damping, friction and inertia of the joint, and the limits of joints that follow it.",
             severity=Severity.WARNING,
@@ -162,7 +162,7 @@ def _find_blocked(check: OpenCheck, context: EngineContext, driven: Driven) -> N
         reason = stand_in_reason(context.prepared, pair) if not beyond else "while their declared surfaces stay clear"
         why += f", {reason}"
         remedy = f"Write convex pieces as collision geometry of {first} and {second}."
-    check.find(
+    result.find(
         f"{stops}: {why}.",
         remedy,
         severity=_severity(context, index, real=real, limited=travel.limited),
@@ -213,9 +213,9 @@ def _blocking_pair(context: EngineContext, driven: Driven) -> int | None:
     return int(np.argmax(ahead)) if ahead.max() > 0.0 else None
 
 
-def _find_lag(check: OpenCheck, context: EngineContext, driven: Driven) -> None:
+def _find_lag(result: OpenCheck, context: EngineContext, driven: Driven) -> None:
     travel = context.travel(driven)
-    check.find(
+    result.find(
         f"On its way to {driven.drive.end:.4g} {travel.unit}, joint {travel.joint} lags {driven.lag:.3g} {travel.unit} "
         f"behind its command.",
         "Check damping, friction and inertia of the joint.",
@@ -228,11 +228,11 @@ def _find_lag(check: OpenCheck, context: EngineContext, driven: Driven) -> None:
     )
 
 
-def _find_penetration(check: OpenCheck, context: EngineContext, pair: int, excess: float, driven: Driven) -> None:
+def _find_penetration(result: OpenCheck, context: EngineContext, pair: int, excess: float, driven: Driven) -> None:
     first, second = names = context.drives.sweep.pair(pair, context.mechanism.links)
     travel = context.travel(driven)
     real = excess > stand_in_error(context.prepared, names)
-    check.find(
+    result.find(
         f"While {travel.joint} is driven to {driven.drive.end:.4g} {travel.unit}, {first} and {second} get "
         f"{(excess + context.drives.sweep.tolerance) * 1e3:.3g} mm deeper into each other than at rest.",
         f"Correct the joint, or the collision geometry of {first} and {second}.",

@@ -35,7 +35,7 @@ _LIMIT_SLACK = 1e-6
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,
 )
-def loads(check: OpenCheck, context: EngineContext) -> None:
+def loads(result: OpenCheck, context: EngineContext) -> None:
     """{engine} loads the model; every link and joint is there, with the type, axis, limits, mass and inertia of the
     file, within engines.same of each value.
 
@@ -46,7 +46,7 @@ def loads(check: OpenCheck, context: EngineContext) -> None:
 
     Remedy: Mend what the engine's message names; write limits, masses and inertias in full.
     """
-    _load(check, context, context.settings.same)
+    _load(result, context, context.settings.same)
 
 
 @check(
@@ -56,30 +56,30 @@ def loads(check: OpenCheck, context: EngineContext) -> None:
     blame=Blame.ENGINE,
     engines=("pinocchio",),
 )
-def pinocchio_loads(check: OpenCheck, context: EngineContext) -> None:
+def pinocchio_loads(result: OpenCheck, context: EngineContext) -> None:
     """Pinocchio reads the file and has the same moving joints with the same types and limits, and the same masses.
 
     Why it matters: It is the analytical reference for the engines, and what many planners and controllers use.
 
     Remedy: Write the joint or link that is named with plain decimal numbers and a unique name.
     """
-    _load(check, context, context.request.settings.agreement.mass_error)
+    _load(result, context, context.request.settings.agreement.mass_error)
 
 
-def _load(check: OpenCheck, context: EngineContext, same: float) -> None:
+def _load(result: OpenCheck, context: EngineContext, same: float) -> None:
     title = context.entry.title
     try:
         loaded = context.model.loaded
     except Refused as refusal:
-        check.find(
+        result.find(
             f"{title} refuses the model: {refusal}.",
             f"Mend what {title}'s message names, and the other findings of the file.",
         )
         return
-    compare_with_file(check, context.declared, context.prepared, loaded, same)
-    _compare_axes(check, context, loaded, same)
+    compare_with_file(result, context.declared, context.prepared, loaded, same)
+    _compare_axes(result, context, loaded, same)
     if loaded.balanced:
-        check.find(
+        result.find(
             f"{title} refuses an inertia tensor whose largest principal moment exceeds the sum of the others, even "
             "by a rounding error; all tensors were balanced for the other checks.",
             "Write the tensors with more digits, or make the largest moment a little smaller.",
@@ -88,11 +88,11 @@ def _load(check: OpenCheck, context: EngineContext, same: float) -> None:
         )
 
 
-def _compare_axes(check: OpenCheck, context: EngineContext, loaded: LoadedModel, same: float) -> None:
+def _compare_axes(result: OpenCheck, context: EngineContext, loaded: LoadedModel, same: float) -> None:
     for name, joint in loaded.joints.items():
         declared = context.declared.joint_by_name[name].axis
         if joint.axis is not None and np.abs(joint.axis - declared).max() > same:
-            check.find(
+            result.find(
                 f"The axis of the joint {name} is {_vector(declared)} in the file and {_vector(joint.axis)} in "
                 f"{context.entry.title}.",
                 "Write the axis as a unit vector with plain decimal numbers.",
@@ -107,25 +107,25 @@ def _vector(values: FloatArray) -> str:
 
 
 def compare_with_file(
-    check: OpenCheck, model: Robot, prepared: Prepared, loaded: LoadedModel, mass_error: float
+    result: OpenCheck, model: Robot, prepared: Prepared, loaded: LoadedModel, mass_error: float
 ) -> None:
     """Add a finding for every joint or mass that an engine has otherwise than it was given.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         model: The file, with or without geometry.
         prepared: What the engine was given.
         loaded: What it made of it.
         mass_error: Relative difference that is an error.
     """
-    engine = ENGINES[check.engine or ""].title
+    engine = ENGINES[result.engine or ""].title
     for described in model.joints:
         if described.kind != "fixed":
-            _compare_joint(check, engine, described, loaded.joints.get(described.name))
+            _compare_joint(result, engine, described, loaded.joints.get(described.name))
     for link in prepared.links:
         mass = loaded.masses.get(link.link, link.mass)
         if not link.mass_added and not np.isclose(mass, link.mass, rtol=mass_error, atol=1e-9):
-            check.find(
+            result.find(
                 f"{engine} gives the link {link.link} {mass:.6g} kg; the file says {link.mass:.6g} kg.",
                 "Write mass and inertia in an <inertial> element with plain decimal numbers.",
                 link=link.link,
@@ -134,10 +134,10 @@ def compare_with_file(
                 unit="kg",
                 line=model.link_by_name[link.link].line,
             )
-    check.measured["joints"] = float(len(loaded.joints))
-    check.measured["mass"] = loaded.total_mass
-    if not check.findings and not np.isclose(loaded.total_mass, prepared.total_mass, rtol=mass_error):
-        check.find(
+    result.measured["joints"] = float(len(loaded.joints))
+    result.measured["mass"] = loaded.total_mass
+    if not result.findings and not np.isclose(loaded.total_mass, prepared.total_mass, rtol=mass_error):
+        result.find(
             f"The model weighs {loaded.total_mass:.6g} kg in {engine}; its links weigh {prepared.total_mass:.6g} kg in "
             "the file.",
             "Give every link a mass of its own; an engine has dropped or made up one.",
@@ -147,10 +147,10 @@ def compare_with_file(
         )
 
 
-def _compare_joint(check: OpenCheck, engine: str, joint: Joint, loaded: LoadedJoint | None) -> None:
+def _compare_joint(result: OpenCheck, engine: str, joint: Joint, loaded: LoadedJoint | None) -> None:
     said = _difference(engine, joint, loaded)
     if said:
-        check.find(
+        result.find(
             said,
             f"Write the joint {joint.name} with a type, axis and limits that {engine} reads as they are meant.",
             # Importers take an empty range for none; that the range is empty is told where limits are checked.
@@ -194,7 +194,7 @@ def _same(declared: float, found: float) -> bool:
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,
 )
-def poses_agree(check: OpenCheck, context: EngineContext) -> None:
+def poses_agree(result: OpenCheck, context: EngineContext) -> None:
     """At zero, at rest, at both ends of every joint and in quasi-random configurations every link stands where the
     file's kinematics put it, within engines.pose_distance of the model's size and engines.pose_deg.
 
@@ -205,7 +205,7 @@ def poses_agree(check: OpenCheck, context: EngineContext) -> None:
     """
     seen = context.model.measure(context.rows.q, dynamic=context.rows.dynamic)
     find_misplaced(
-        check,
+        result,
         context.rows,
         ours=link_poses(context.declared, context.rows),
         theirs=seen.T_world_link,
@@ -216,7 +216,7 @@ def poses_agree(check: OpenCheck, context: EngineContext) -> None:
 
 
 def find_misplaced(
-    check: OpenCheck,
+    result: OpenCheck,
     rows: Configurations,
     *,
     ours: FloatArray,
@@ -227,7 +227,7 @@ def find_misplaced(
     """Add a finding for every link that an engine puts elsewhere.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         rows: The configurations.
         ours: From `link_poses`.
         theirs: The engine's, of the same shape.
@@ -238,13 +238,13 @@ def find_misplaced(
     # Frobenius norm of a difference of rotations: 2 sqrt(2) sin(angle / 2); exact for small angles, unlike the trace.
     chord = np.linalg.norm(ours[..., :3, :3] - theirs[..., :3, :3], axis=(-2, -1)) / np.sqrt(8.0)
     angle = np.degrees(2.0 * np.arcsin(np.clip(chord, 0.0, 1.0)))
-    check.measured |= {"rows": float(len(rows.q)), "distance": float(distance.max()), "angle_deg": float(angle.max())}
+    result.measured |= {"rows": float(len(rows.q)), "distance": float(distance.max()), "angle_deg": float(angle.max())}
     share = np.maximum(distance / (settings.pose_distance * size), angle / settings.pose_deg)
     worst = np.argmax(share, axis=0)
     for link in np.flatnonzero(share.max(axis=0) > 1.0).tolist():
         row = int(worst[link])
-        check.find(
-            f"{ENGINES[check.engine or ''].title} puts the link {rows.links[link]} {distance[row, link] * 1e3:.3g} mm "
+        result.find(
+            f"{ENGINES[result.engine or ''].title} puts the link {rows.links[link]} {distance[row, link] * 1e3:.3g} mm "
             f"and {angle[row, link]:.3g} deg from where the file's kinematics put it.",
             f"Write origins and axes on the way to {rows.links[link]} as plain numbers, axes as unit vectors.",
             link=rows.links[link],

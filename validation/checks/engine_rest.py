@@ -32,7 +32,7 @@ _TOLD_PAIRS = 8
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
 )
-def starts_without_contact(check: OpenCheck, context: EngineContext) -> None:
+def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
     """At rest, no two links overlap by more than engines.contact_depth as the engine sees them (convex pieces). Links
     that a joint connects may overlap by what they have at rest; a note names them.
 
@@ -43,15 +43,15 @@ def starts_without_contact(check: OpenCheck, context: EngineContext) -> None:
     Remedy: Move the parts apart or shrink their collision geometry by the depth that is named; where a convex stand-in
     overlaps although the mesh does not, write convex pieces as collision geometry.
     """
-    _find_overlaps(check, context)
+    _find_overlaps(result, context)
     silent, inflation = context.physics.silent, context.entry.inflation
     if silent:
         links = context.mechanism.links
         names = sorted(f"{links[a]} and {links[b]}" for a, b in silent)
         more = f" and {len(names) - _TOLD_PAIRS} more pairs" if len(names) > _TOLD_PAIRS else ""
         thicker = f"inflates every mesh by {inflation * 1e3:.3g} mm and " if inflation else ""
-        check.measured["switched_off_pairs"] = float(len(silent))
-        check.find(
+        result.measured["switched_off_pairs"] = float(len(silent))
+        result.find(
             f"{context.entry.title} {thicker}knows no overlap that is allowed. These pairs touch at rest that way and "
             f"would be pushed apart, so they do not act on each other while the model moves: "
             f"{', '.join(names[:_TOLD_PAIRS])}{more}. How deep they get is measured instead, and a joint stops where "
@@ -70,7 +70,7 @@ def starts_without_contact(check: OpenCheck, context: EngineContext) -> None:
     feedback=FeedbackRow.SINKS,
     needs=(nothing_moves, late),
 )
-def holds_under_gravity(check: OpenCheck, context: EngineContext) -> None:
+def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:
     """Joints held by position servos, none stronger than its declared effort, sag by no more than engines.sag of the
     range. Without servos joints may fall, but none moves beyond its limits by more than engines.escape of its range.
 
@@ -82,10 +82,10 @@ def holds_under_gravity(check: OpenCheck, context: EngineContext) -> None:
     """
     held, released = context.held.q, context.released.q
     if not len(held) or not len(released):
-        check.block(f"{context.entry.title} diverged in the first step")
+        result.block(f"{context.entry.title} diverged in the first step")
         return
-    _find_sag(check, context, held)
-    _find_passive_escape(check, context, _less_one_step(context, released) if context.entry.stops_late else released)
+    _find_sag(result, context, held)
+    _find_passive_escape(result, context, _less_one_step(context, released) if context.entry.stops_late else released)
 
 
 @engine_check(
@@ -96,7 +96,7 @@ def holds_under_gravity(check: OpenCheck, context: EngineContext) -> None:
     feedback=FeedbackRow.UNSTABLE,
     needs=(nothing_moves, late),
 )
-def energy_does_not_grow(check: OpenCheck, context: EngineContext) -> None:
+def energy_does_not_grow(result: OpenCheck, context: EngineContext) -> None:
     """Released without servos, damping and friction, the sum of kinetic and potential energy stays within
     engines.energy of the energy that moves.
 
@@ -109,7 +109,7 @@ def energy_does_not_grow(check: OpenCheck, context: EngineContext) -> None:
     """
     run = context.released if context.entry.keeps_energy else context.released_finely
     floor = _FLOOR_OF_ENERGY * context.prepared.total_mass * GRAVITY * context.physics.size
-    find_growth(check, run.energy, floor, context.settings)
+    find_growth(result, run.energy, floor, context.settings)
 
 
 @engine_check(
@@ -120,7 +120,7 @@ def energy_does_not_grow(check: OpenCheck, context: EngineContext) -> None:
     feedback=FeedbackRow.EXPORTER,
     needs=(nothing_moves, late),
 )
-def step_is_small_enough(check: OpenCheck, context: EngineContext) -> None:
+def step_is_small_enough(result: OpenCheck, context: EngineContext) -> None:
     """Falling freely from rest, joints move the same way with a quarter of the time step, within
     engines.step_difference of their motion.
 
@@ -130,7 +130,7 @@ def step_is_small_enough(check: OpenCheck, context: EngineContext) -> None:
     """
     coarse, fine = context.released.q, context.released_finely.q
     count = min(len(coarse), len(fine), round(context.settings.step_seconds / context.simulation.step))
-    _find_difference_of_steps(check, context, coarse[:count], fine[:count])
+    _find_difference_of_steps(result, context, coarse[:count], fine[:count])
 
 
 @engine_check(
@@ -141,7 +141,7 @@ def step_is_small_enough(check: OpenCheck, context: EngineContext) -> None:
     feedback=FeedbackRow.SINKS,
     needs=(no_geometry, late),
 )
-def settles_on_the_floor(check: OpenCheck, context: EngineContext) -> None:
+def settles_on_the_floor(result: OpenCheck, context: EngineContext) -> None:
     """Let go of engines.drop above a plane with its joints held, the model comes to rest within engines.drop_seconds
     and sinks in by less than engines.sink.
 
@@ -150,27 +150,27 @@ def settles_on_the_floor(check: OpenCheck, context: EngineContext) -> None:
     Remedy: Give the parts that touch the floor closed collision geometry, and plausible masses.
     """
     dropped = context.dropped
-    find_drop(check, depth=dropped.depth, speed=dropped.speed, settings=context.settings)
+    find_drop(result, depth=dropped.depth, speed=dropped.speed, settings=context.settings)
 
 
-def _find_overlaps(check: OpenCheck, context: EngineContext) -> None:
+def _find_overlaps(result: OpenCheck, context: EngineContext) -> None:
     """Add a finding for every overlap at rest, and a note about those of pairs that a joint connects."""
     sweep = context.sweep
     overlapping = np.flatnonzero(sweep.at_rest > sweep.tolerance).tolist()
     joined = [k for k in overlapping if tuple(sweep.bodies[k].tolist()) in context.mechanism.neighbours]
-    check.measured |= {
+    result.measured |= {
         "touching_pairs": float(np.count_nonzero(sweep.at_rest > 0.0)),
         "overlapping_pairs": float(len(overlapping)),
         "deepest": float(sweep.at_rest.max(initial=0.0)),
     }
     for index in overlapping:
         if index not in joined:
-            _find_overlap(check, context, index)
+            _find_overlap(result, context, index)
     if joined:
         names = ", ".join(
             f"{' and '.join(sweep.pair(k, context.mechanism.links))} {sweep.at_rest[k] * 1e3:.3g} mm" for k in joined
         )
-        check.find(
+        result.find(
             f"Links that a joint connects overlap at rest: {names}. As much is allowed to them in all other runs, and "
             "what their convex stand-ins can exceed the meshes by.",
             "Nothing needs to be done where a bearing is modelled as solid; else shrink the collision geometry.",
@@ -178,11 +178,11 @@ def _find_overlaps(check: OpenCheck, context: EngineContext) -> None:
         )
 
 
-def _find_overlap(check: OpenCheck, context: EngineContext, index: int) -> None:
+def _find_overlap(result: OpenCheck, context: EngineContext, index: int) -> None:
     first, second = pair = context.sweep.pair(index, context.mechanism.links)
     depth = float(context.sweep.at_rest[index])
     real = depth > stand_in_error(context.prepared, pair)
-    check.find(
+    result.find(
         f"At rest, {first} and {second} overlap by {depth * 1e3:.3g} mm"
         + ("." if real else f", {stand_in_reason(context.prepared, pair)}."),
         f"Move {first} and {second} apart, or shrink their collision geometry."
@@ -206,11 +206,11 @@ def _less_one_step(context: EngineContext, released: FloatArray) -> FloatArray:
     return taken_back
 
 
-def _find_sag(check: OpenCheck, context: EngineContext, held: FloatArray) -> None:
+def _find_sag(result: OpenCheck, context: EngineContext, held: FloatArray) -> None:
     """Add a finding for every joint that its servo does not hold.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         context: The model.
         held: Values of the leaders while they are held at rest, shape (steps, leaders).
     """
@@ -218,13 +218,13 @@ def _find_sag(check: OpenCheck, context: EngineContext, held: FloatArray) -> Non
     travels = context.mechanism.travels
     sag = np.abs(held - context.mechanism.rest).max(axis=0)
     ranges = np.array([travel.range for travel in travels])
-    check.measured["sag_of_range"] = float(np.max(sag[ranges > 0.0] / ranges[ranges > 0.0], initial=0.0))
+    result.measured["sag_of_range"] = float(np.max(sag[ranges > 0.0] / ranges[ranges > 0.0], initial=0.0))
     for leader in np.flatnonzero((sag > context.settings.sag * ranges) & (ranges > 0.0)).tolist():
         travel, need, effort = travels[leader], abs(float(holding[leader])), float(efforts[leader])
         unit = "N m" if travel.turns else "N"
         weak = need > 0.9 * effort
         why = f"it takes {need:.3g} {unit} to hold it, its effort is {effort:.3g} {unit}" if weak else "it is pushed"
-        check.find(
+        result.find(
             f"Held at {travel.rest:.4g} {travel.unit}, joint {travel.joint} moves by {sag[leader]:.3g} {travel.unit}: "
             f"{why}.",
             f"Raise its effort above {1.5 * need:.3g} {unit}, or reduce what it carries."
@@ -238,25 +238,25 @@ def _find_sag(check: OpenCheck, context: EngineContext, held: FloatArray) -> Non
         )
 
 
-def _find_passive_escape(check: OpenCheck, context: EngineContext, released: FloatArray) -> None:
+def _find_passive_escape(result: OpenCheck, context: EngineContext, released: FloatArray) -> None:
     """Add a finding for every joint that falls through its limit and stays there; stops may yield to a blow.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         context: The model.
         released: Values of the leaders without servos, shape (steps, leaders).
     """
     window = round(context.settings.push_seconds / context.simulation.step)
     drift = np.abs(released - context.mechanism.rest).max(axis=0)
     turning = np.array([travel.turns for travel in context.mechanism.travels])
-    check.measured["drift_rad"] = float(np.max(drift[turning], initial=0.0))
-    check.measured["drift_m"] = float(np.max(drift[~turning], initial=0.0))
+    result.measured["drift_rad"] = float(np.max(drift[turning], initial=0.0))
+    result.measured["drift_m"] = float(np.max(drift[~turning], initial=0.0))
     for leader, travel in enumerate(context.mechanism.travels):
         outside = np.maximum(travel.lower - released[:, leader], released[:, leader] - travel.upper)
         windows = np.lib.stride_tricks.sliding_window_view(outside, min(window, len(outside)))
         beyond = float(windows.min(axis=1).max())
         if travel.limited and travel.range > 0.0 and beyond > context.settings.escape * travel.range:
-            check.find(
+            result.find(
                 f"Released, joint {travel.joint} falls {beyond:.3g} {travel.unit} beyond its limit.",
                 "Give the part a plausible mass and inertia, and limits that fit its motion.",
                 joint=travel.joint,
@@ -266,20 +266,20 @@ def _find_passive_escape(check: OpenCheck, context: EngineContext, released: Flo
             )
 
 
-def find_growth(check: OpenCheck, energy: FloatArray, floor: float, settings: EngineSettings) -> None:
+def find_growth(result: OpenCheck, energy: FloatArray, floor: float, settings: EngineSettings) -> None:
     """Add a finding if energy grows.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         energy: Potential and kinetic energy of an undamped run [J], shape (steps, 2).
         floor: Growth that does not count [J].
         settings: Of the engines.
     """
     total, kinetic = energy.sum(axis=1), float(energy[:, 1].max())
     growth = float(np.max(total - total[0]))
-    check.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}
+    result.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}
     if growth > max(floor, settings.energy * kinetic):
-        check.find(
+        result.find(
             f"Released without damping, the model gains {growth:.3g} J, {growth / max(kinetic, 1e-12):.0%} of its "
             f"largest kinetic energy.",
             "Correct inertia tensors and overlaps at rest, or simulate with a smaller time step.",
@@ -289,11 +289,11 @@ def find_growth(check: OpenCheck, energy: FloatArray, floor: float, settings: En
         )
 
 
-def _find_difference_of_steps(check: OpenCheck, context: EngineContext, coarse: FloatArray, fine: FloatArray) -> None:
+def _find_difference_of_steps(result: OpenCheck, context: EngineContext, coarse: FloatArray, fine: FloatArray) -> None:
     """Add a finding for every joint that moves otherwise with a smaller time step.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         context: The model.
         coarse: Values of the leaders, shape (steps, leaders).
         fine: The same at the same times, from smaller steps.
@@ -304,9 +304,9 @@ def _find_difference_of_steps(check: OpenCheck, context: EngineContext, coarse: 
         if motion[leader] <= _HARDLY * travel.range:
             continue
         share = float(difference[leader] / motion[leader])
-        check.measured["difference"] = max(check.measured.get("difference", 0.0), share)
+        result.measured["difference"] = max(result.measured.get("difference", 0.0), share)
         if share > context.settings.step_difference:
-            check.find(
+            result.find(
                 f"With a quarter of the time step, joint {travel.joint} moves otherwise by {difference[leader]:.3g} "
                 f"{travel.unit}, {share:.0%} of its motion.",
                 "Correct masses and inertias of what it carries, or simulate with a smaller time step.",
@@ -317,18 +317,18 @@ def _find_difference_of_steps(check: OpenCheck, context: EngineContext, coarse: 
             )
 
 
-def find_drop(check: OpenCheck, *, depth: float, speed: float, settings: EngineSettings) -> None:
+def find_drop(result: OpenCheck, *, depth: float, speed: float, settings: EngineSettings) -> None:
     """Add findings for a model that does not settle on the floor.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         depth: Of its lowest point below the floor at the end [m].
         speed: Of its fastest link at the end [m/s].
         settings: Of the engines.
     """
-    check.measured |= {"depth": max(0.0, depth), "speed": speed}
+    result.measured |= {"depth": max(0.0, depth), "speed": speed}
     if depth > settings.sink:
-        check.find(
+        result.find(
             f"Dropped from {settings.drop * 100:.3g} cm, the model ends up {depth * 1e3:.3g} mm deep in the floor.",
             "Give the parts that touch the floor closed collision geometry, and plausible masses.",
             value=depth,
@@ -336,7 +336,7 @@ def find_drop(check: OpenCheck, *, depth: float, speed: float, settings: EngineS
             unit="m",
         )
     if speed > settings.rest_speed:
-        check.find(
+        result.find(
             f"Dropped from {settings.drop * 100:.3g} cm, the model still moves at {speed:.3g} m/s after "
             f"{settings.drop_seconds:.3g} s.",
             "Nothing to mend where it topples or rolls; else check masses, inertias and overlaps.",

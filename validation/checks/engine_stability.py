@@ -32,7 +32,7 @@ _TOLD = 10
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
 )
-def stable(check: OpenCheck, context: EngineContext) -> None:
+def stable(result: OpenCheck, context: EngineContext) -> None:
     """No value becomes infinite or not a number, and nothing moves faster than engines.explosion times the speed of a
     free fall from the model's height, neither passive nor held nor driven.
 
@@ -41,11 +41,11 @@ def stable(check: OpenCheck, context: EngineContext) -> None:
     Remedy: Correct masses and inertias (no link far lighter than what it carries), and overlaps at the start.
     """
     if context.ends:
-        find_unstable(check, context.ends, size=context.physics.size, explosion=context.settings.explosion)
+        find_unstable(result, context.ends, size=context.physics.size, explosion=context.settings.explosion)
     elif reason := nothing_moves(context) or late(context):
-        check.skip(reason)
+        result.skip(reason)
     else:
-        check.block("the runs that it looks at did not take place")
+        result.block("the runs that it looks at did not take place")
 
 
 @engine_check(
@@ -55,7 +55,7 @@ def stable(check: OpenCheck, context: EngineContext) -> None:
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,
 )
-def no_warnings(check: OpenCheck, context: EngineContext) -> None:
+def no_warnings(result: OpenCheck, context: EngineContext) -> None:
     """Loading and all runs give none of the engine's own warnings; those that tell nothing about the model are left
     out.
 
@@ -69,36 +69,36 @@ def no_warnings(check: OpenCheck, context: EngineContext) -> None:
     Remedy: Each message is given; begin with inertias and overlaps.
     """
     said = context.engine.messages()
-    check.measured["warnings"] = float(len(said))
+    result.measured["warnings"] = float(len(said))
     for text in said[:_TOLD]:
-        check.find(
+        result.find(
             f"{context.entry.title} says: {text[:300]}",
             "Begin with masses, inertias, overlaps and the names of links and joints.",
             blame=Blame.PHYSICS,
         )
 
 
-def find_unstable(check: OpenCheck, ends: Sequence[RunEnd], *, size: float, explosion: float) -> None:
+def find_unstable(result: OpenCheck, ends: Sequence[RunEnd], *, size: float, explosion: float) -> None:
     """Add a finding for every run that diverged or in which something flew.
 
     Args:
-        check: Open, of the engine.
+        result: Open, of the engine.
         ends: Of all runs.
         size: Of the model [m].
         explosion: Multiple of the speed of a fall by `size`, or of what was commanded, that is no motion any more.
     """
     fall = float(np.sqrt(2.0 * GRAVITY * size))
-    check.measured |= {"fastest": max((end.speed for end in ends), default=0.0), "limit": explosion * fall}
+    result.measured |= {"fastest": max((end.speed for end in ends), default=0.0), "limit": explosion * fall}
     for end in ends:
         limit = explosion * max(fall, end.told)
         if end.warnings:
-            check.find(
-                f"{ENGINES[check.engine or ''].title} diverged while {end.when}: {', '.join(end.warnings)}.",
+            result.find(
+                f"{ENGINES[result.engine or ''].title} diverged while {end.when}: {', '.join(end.warnings)}.",
                 "Correct masses and inertias, above all of links far lighter than what they carry, and overlaps.",
                 joint=end.joint,
             )
         elif end.speed > limit:
-            check.find(
+            result.find(
                 f"A link moves at {end.speed:.3g} m/s while {end.when}; a fall from the height of the model gives "
                 f"{fall:.3g} m/s.",
                 "Correct masses and inertias, and overlaps at rest.",
