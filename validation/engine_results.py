@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.read import read_without_geometry
+from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.simulation.configurations import agreement_configurations, read_poses
 from kinematify.simulation.engines import ENGINES
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import AgreementSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.declared import DeclaredModel
+    from kinematify.robot.robot import Robot
     from kinematify.simulation.configurations import Configurations, EnginePoses
     from kinematify.simulation.prepared import Prepared
     from kinematify.validation.stage import OpenCheck, StageRequest
@@ -47,9 +47,9 @@ class EngineResults:
         return self.request.settings.agreement
 
     @cached_property
-    def model(self) -> DeclaredModel:
+    def model(self) -> Robot:
         """The file without its geometry."""
-        return read_without_geometry(self.request.urdf)
+        return read_robot(self.request.urdf, geometry="none")
 
     @cached_property
     def prepared(self) -> Prepared:
@@ -59,12 +59,12 @@ class EngineResults:
     @cached_property
     def rows(self) -> Configurations:
         """Where everything was computed."""
-        return agreement_configurations(self.model.kinematics, self.settings, self.request.settings.seed)
+        return agreement_configurations(self.model, self.settings, self.request.settings.seed)
 
     @cached_property
     def own(self) -> FloatArray:
         """T_world_link as Kinematify has it, shape (n, L, 4, 4)."""
-        poses = [forward_kinematics(self.model.kinematics, self.rows.named(row)) for row in range(len(self.rows.q))]
+        poses = [forward_kinematics(self.model, self.rows.named(row)) for row in range(len(self.rows.q))]
         return np.array([[row[link] for link in self.rows.links] for row in poses])
 
     @cached_property
@@ -93,15 +93,15 @@ class EngineResults:
     @cached_property
     def body(self) -> IntArray:
         """Index of the rigid body of each link, shape (L,)."""
-        of = {link: k for k, group in enumerate(rigid_groups(self.model.kinematics)) for link in group.links}
+        of = {link: k for k, group in enumerate(rigid_groups(self.model)) for link in group.links}
         return np.array([of[link] for link in self.rows.links], dtype=np.int64)
 
     @cached_property
     def ancestors(self) -> dict[str, set[str]]:
         """Joints above each joint."""
         above: dict[str, set[str]] = {}
-        carrier = self.model.kinematics.joint_above
-        for joint in self.model.kinematics.joints_downward:
+        carrier = self.model.joint_above
+        for joint in self.model.joints_downward:
             parent = carrier.get(joint.parent)
             above[joint.name] = set() if parent is None else above[parent.name] | {parent.name}
         return above

@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity
@@ -21,20 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from kinematify.config import FeedbackConfig
+    from kinematify.robot.robot import Joint
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import JointSummary
-
-
-@dataclass(frozen=True, kw_only=True)
-class DeclaredJoint:
-    """What the mapping must know of a joint of the model that was judged."""
-
-    parent: str
-    child: str
-    kind: str
-    lower: float
-    """[rad or m]; -inf for continuous."""
-    upper: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +126,7 @@ class Feedback:
 def feedback_from(
     findings: Sequence[Finding],
     summaries: Iterable[JointSummary],
-    joints: Mapping[str, DeclaredJoint],
+    joints: Mapping[str, Joint],
     config: FeedbackConfig,
     *,
     placements: Mapping[str, float] | None = None,
@@ -171,7 +161,7 @@ class _Case:
 
     findings: Sequence[Finding]
     travel: Mapping[str, tuple[float, float]]
-    joints: Mapping[str, DeclaredJoint]
+    joints: Mapping[str, Joint]
     config: FeedbackConfig
     placements: Mapping[str, float]
     edges: list[EdgeSignal] = field(default_factory=list)
@@ -198,17 +188,17 @@ class _Case:
             LineSignal(child=child, weight=self.strength(finding) * weight, check=finding.check, reason=reason)
         )
 
-    def against_type(self, finding: Finding, joint: DeclaredJoint, weight: float, reason: str) -> None:
+    def against_type(self, finding: Finding, joint: Joint, weight: float, reason: str) -> None:
         """Add a signal against the type of a joint."""
         weight = self.strength(finding) * weight
         self.types.append(
-            TypeSignal(child=joint.child, kind=joint.kind, weight=weight, check=finding.check, reason=reason)
+            TypeSignal(child=joint.child, kind=joint.kind.value, weight=weight, check=finding.check, reason=reason)
         )
 
     def end(
         self,
         finding: Finding,
-        joint: DeclaredJoint,
+        joint: Joint,
         ends: tuple[float | None, float | None],
         reason: str,
         *,
@@ -266,11 +256,11 @@ def _at_rest(case: _Case, finding: Finding) -> None:
     )
 
 
-def _into_parent(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _into_parent(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV310: to both sides the line is wrong, to one side only the direction."""
     low, high = _free(case, finding)
     way = joint.upper - joint.lower
-    if joint.kind in _TURNING:
+    if joint.kind.turns:
         way = min(way, case.config.full_turn)
     if max(-low, high) >= case.config.open_share * way:
         ends = max(low, -way), min(high, way)
@@ -281,14 +271,14 @@ def _into_parent(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
     case.against_type(finding, joint, case.config.blocked_type, reason)
 
 
-def _end_there(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _end_there(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV312: to one side, the range ends where the way does."""
     low, high = _free(case, finding)
     ends = low if joint.lower < low else None, high if high < joint.upper else None
     case.end(finding, joint, ends, "its way is blocked there")
 
 
-def _into_others(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _into_others(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV311: what a part meets besides its parent may be what carries it."""
     other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
     if other is None or finding.pair is None or joint.child not in finding.pair:
@@ -308,7 +298,7 @@ def _into_others(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
     )
 
 
-def _not_carried(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _not_carried(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV303 and KV341: nothing is seen to carry the part there."""
     other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
     case.edges.append(
@@ -323,21 +313,21 @@ def _not_carried(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
     )
 
 
-def _derailed(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _derailed(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV320: what leaves its parent runs along the wrong line or moves in the wrong way, or too far."""
     if case.has("KV321", joint=finding.joint):
         return  # a slide with a guide goes too far along the right line
     reason = "it leaves its parent"
     case.against_line(finding, joint.child, case.config.derailed_line, reason)
     case.against_type(finding, joint, case.config.derailed_type, reason)
-    if joint.kind == "prismatic" and finding.value is not None and finding.limit is not None:
+    if joint.kind is JointType.PRISMATIC and finding.value is not None and finding.limit is not None:
         upwards, share = _upwards(finding), finding.limit / max(finding.value, finding.limit)
         end = share * (joint.upper if upwards else joint.lower)
         ends = (None, end) if upwards else (end, None)
         case.end(finding, joint, ends, "beyond it it has left its parent", lost=True)
 
 
-def _out_of_guide(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV321: the range ends at the stated share of the guide; where the way back is free, the part stands open."""
     end = finding.limit
     if end is None:
@@ -360,15 +350,15 @@ def _upwards(finding: Finding) -> bool:
     return (finding.q or {}).get(finding.joint or "", 0.0) >= 0.0
 
 
-def _line_doubted(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _line_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
     case.against_line(finding, joint.child, case.config.evidence_line, "the parts show another line")
 
 
-def _type_doubted(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _type_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
     case.against_type(finding, joint, case.config.evidence_type, "the parts look as if they moved otherwise")
 
 
-def _not_reached(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV405 and KV505: a drive that gets stuck, unless hulls or a known contact explain it."""
     if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.blame is not Blame.KINEMATICS:
         case.leave(finding, "only the hulls that engines collide are in the way", Blame.PHYSICS)
@@ -376,7 +366,7 @@ def _not_reached(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
         case.against_line(finding, joint.child, case.config.stuck_line, f"{finding.engine} cannot drive it to its end")
 
 
-def _unstable(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
     """Escaped limits, explosions and energy: masses and overlaps first."""
     if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
         case.leave(finding, "mend masses and overlaps at rest first", Blame.PHYSICS)
@@ -384,11 +374,11 @@ def _unstable(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
         case.against_line(finding, joint.child, case.config.unstable_line, "unstable though masses and rest are fine")
 
 
-def _sinks(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _sinks(case: _Case, finding: Finding, joint: Joint) -> None:
     case.against_line(finding, joint.child, case.config.sinking_line, "it does not stay where it was given")
 
 
-def _no_way(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
+def _no_way(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV703 to KV706: only what fails from several places of the robot speaks against the joint."""
     if finding.check != "KV706" and case.placements.get(finding.joint or "", 0.0) < case.config.placements:
         case.leave(finding, "too few places of the robot were tried to blame the joint", Blame.TASK)
@@ -396,8 +386,7 @@ def _no_way(case: _Case, finding: Finding, joint: DeclaredJoint) -> None:
         case.against_line(finding, joint.child, case.config.task_line, "no way leads through its range")
 
 
-_TURNING = ("revolute", "continuous")
-_ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, DeclaredJoint], None]] = {
+_ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
     FeedbackRow.INTO_PARENT: _into_parent,
     FeedbackRow.END: _end_there,
     FeedbackRow.OTHER_PARENT: _into_others,

@@ -115,7 +115,9 @@ class Chooser:
         child = plan.assembly.names[joint.child]
         name = tried.joint_of[child]
         verdict = self.simulator.judge_joint(tried.model, name)
-        feedback = feedback_from(verdict.findings, verdict.joints, tried.declared, self.config.feedback)
+        feedback = feedback_from(
+            verdict.findings, verdict.joints, tried.model.robot.joint_by_name, self.config.feedback
+        )
         blocked = any(signal.check == "KV310" for signal in feedback.lines)
         return Trial(joint=joint, score=score, against=feedback.against(child), blocked=blocked)
 

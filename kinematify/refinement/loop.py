@@ -208,7 +208,11 @@ class _Loop:
         if self.tier != GEOMETRY:
             verdict = dear_verdict(plan, verdict, tier=self.tier, settings=self.request.settings)
         feedback = feedback_from(
-            verdict.findings, verdict.joints, plan.declared, self.config.feedback, placements=verdict.placements
+            verdict.findings,
+            verdict.joints,
+            plan.model.robot.joint_by_name,
+            self.config.feedback,
+            placements=verdict.placements,
         )
         self.memory.add(plan.assembly, feedback.edges)
         errors, warnings = _severities(verdict)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.model.build import build_model
-from kinematify.validation.feedback import DeclaredJoint
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,16 +39,6 @@ class Plan:
     def joint_of(self) -> Mapping[str, str]:
         """Name of the joint above each part, by the part's name."""
         return {joint.child: joint.name for joint in self.model.joints}
-
-    @cached_property
-    def declared(self) -> dict[str, DeclaredJoint]:
-        """The joints as the mapping of feedback knows them, by name."""
-        return {
-            joint.name: DeclaredJoint(
-                parent=joint.parent, child=joint.child, kind=joint.kind.value, lower=joint.lower, upper=joint.upper
-            )
-            for joint in self.model.joints
-        }
 
     @cached_property
     def signature(self) -> tuple[object, ...]:

@@ -286,18 +286,3 @@ def _check_free_joints(robot: Robot, free: Sequence[Joint]) -> None:
                 f"The joint {joint.name} lets {joint.child} move freely (floating or planar) below the link {solid}. "
                 "Only joints with one axis are supported there: describe it as several joints, or as two robots."
             )
-
-
-def read_model(path: Path, *, package_dirs: Sequence[Path] = ()) -> Robot:
-    """Temporary: `read_robot`."""
-    return read_robot(path, package_dirs=package_dirs)
-
-
-def read_without_geometry(path: Path) -> Robot:
-    """Temporary: `read_robot` with ``geometry="none"``."""
-    return read_robot(path, geometry="none")
-
-
-def read_parsed(robot: _Element, path: Path, source: GeometrySource) -> Robot:
-    """Temporary: `parse_robot`."""
-    return parse_robot(robot, path, source)

@@ -155,11 +155,6 @@ class Joint:
         object.__setattr__(self, "axis", read_only(self.axis, np.float64))
 
     @property
-    def joint(self) -> Joint:
-        """Itself; temporary."""
-        return self
-
-    @property
     def leads(self) -> bool:
         """True if it moves by itself: neither fixed nor mimic."""
         return self.kind is not JointType.FIXED and self.mimic is None
@@ -209,16 +204,6 @@ class Robot:
     def root(self) -> str:
         """Name of the link that no joint carries."""
         return next(link.name for link in self.links if link.name not in self.joint_above)
-
-    @property
-    def kinematics(self) -> Robot:
-        """Itself; temporary."""
-        return self
-
-    @property
-    def moving(self) -> tuple[Joint, ...]:
-        """Temporary: `leaders`."""
-        return self.leaders
 
     @cached_property
     def leaders(self) -> tuple[Joint, ...]:
@@ -325,8 +310,3 @@ def joint_ends(joints: Sequence[Joint]) -> tuple[FloatArray, FloatArray]:
     lower = np.array([joint.lower if np.isfinite(joint.lower) else -_UNLIMITED_TURN for joint in joints])
     upper = np.array([joint.upper if np.isfinite(joint.upper) else _UNLIMITED_TURN for joint in joints])
     return np.clip(lower, -widest, widest), np.clip(upper, -widest, widest)
-
-
-DescribedJoint = Joint
-DescribedLink = Link
-RobotDescription = Robot

@@ -287,10 +287,10 @@ def test_urdf_keeps_the_model_and_cuts_what_collides_into_convex_pieces(urdf: Pa
         moved = forward_kinematics(after, q)
         assert all(np.allclose(moved[name], T, atol=1e-12) for name, T in poses.items())
     for joint, copy in zip(before.joints, after.joints, strict=True):
-        assert (joint.joint.name, joint.joint.kind) == (copy.joint.name, copy.joint.kind)
-        assert (joint.joint.lower, joint.joint.upper) == (copy.joint.lower, copy.joint.upper)
+        assert (joint.name, joint.kind) == (copy.name, copy.kind)
+        assert (joint.lower, joint.upper) == (copy.lower, copy.upper)
         assert joint.damping == copy.damping
-    assert after.joint_by_name["follow"].joint.mimic == before.joint_by_name["follow"].joint.mimic
+    assert after.joint_by_name["follow"].mimic == before.joint_by_name["follow"].mimic
     tray = after.link_by_name["slider"].collisions
     assert len(tray) >= 5  # a floor and four walls
     for shape in tray:

@@ -95,8 +95,8 @@ def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
         for link in here:
             assert there[link][:3, 3] == pytest.approx(0.25 * here[link][:3, 3])
             assert there[link][:3, :3] == pytest.approx(here[link][:3, :3])
-    assert second.joint_by_name["slide"].joint.upper == pytest.approx(0.1)
-    assert second.joint_by_name["turn"].joint.upper == pytest.approx(1.0)
+    assert second.joint_by_name["slide"].upper == pytest.approx(0.1)
+    assert second.joint_by_name["turn"].upper == pytest.approx(1.0)
     inertial = second.link_by_name["a"].inertial
     assert inertial is not None
     assert inertial.mass == pytest.approx(2.0 / 64.0)
@@ -109,7 +109,7 @@ def test_a_scaled_copy_moves_like_the_original(tmp_path: Path) -> None:
 def test_factor_one_changes_no_number(tmp_path: Path) -> None:
     urdf = furniture.write_door_cabinet(tmp_path / "c.urdf")
     write_scaled(urdf, 1.0, tmp_path / "s.urdf")
-    assert read_robot(tmp_path / "s.urdf").joint_by_name["hinge"].joint.lower == -1.4
+    assert read_robot(tmp_path / "s.urdf").joint_by_name["hinge"].lower == -1.4
 
 
 @pytest.mark.skipif(not BENCH.is_dir(), reason="the benchmark folder is not here")

@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.validation.feedback import DeclaredJoint, Feedback, feedback_from
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Joint
+from kinematify.validation.feedback import Feedback, feedback_from
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity
 from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import Recorder
@@ -22,11 +25,17 @@ if TYPE_CHECKING:
 CONFIG = load_config().refine.feedback
 
 
-def declared(model: Model) -> dict[str, DeclaredJoint]:
+def declared(model: Model) -> dict[str, Joint]:
     """The joints of a model as the mapping knows them."""
     return {
-        f"{part.name}_joint": DeclaredJoint(
-            parent=part.parent, child=part.name, kind=part.kind, lower=part.limits[0], upper=part.limits[1]
+        f"{part.name}_joint": Joint(
+            name=f"{part.name}_joint",
+            kind=JointType(part.kind),
+            parent=part.parent,
+            child=part.name,
+            T_parent_child=np.eye(4),
+            lower=part.limits[0],
+            upper=part.limits[1],
         )
         for part in model.parts
         if part.parent is not None

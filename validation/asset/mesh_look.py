@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.read import read_parsed
+from kinematify.robot.read import parse_robot
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_text import parse_description
 from kinematify.validation.asset.extents import extents_of, gaps_between
@@ -49,7 +49,7 @@ class MeshLook:
             return None
         try:
             with np.errstate(all="ignore"):  # what is not finite is told by a check
-                return read_parsed(self._robot, self._request.urdf, self._source)
+                return parse_robot(self._robot, self._request.urdf, self._source)
         except DescriptionError as error:
             return str(error)
 

@@ -14,7 +14,7 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import DescribedJoint
+    from kinematify.robot.robot import Joint
     from kinematify.simulation.configurations import EnginePoses
     from kinematify.validation.engine_results import EngineResults
     from kinematify.validation.stage import OpenCheck
@@ -46,7 +46,7 @@ def poses_differ(result: OpenCheck, left: EngineResults) -> None:
                 link=link,
                 engine=engine,
             )
-    joints = left.model.kinematics.joints
+    joints = left.model.joints
     own = _relative(left, left.own)
     theirs = {engine: _relative(left, poses.T_world_link) for engine, poses in left.engines.items()}
     errors = {engine: _pose_errors(own, relative) for engine, relative in theirs.items()}
@@ -72,7 +72,7 @@ def _lost(poses: EnginePoses, links: tuple[str, ...]) -> list[str]:
 def _relative(left: EngineResults, T_world_link: FloatArray) -> FloatArray:
     """Pose of each joint's child in its parent, shape (n, joints, 4, 4): an error is seen where it begins."""
     place = {link: index for index, link in enumerate(left.rows.links)}
-    joints = left.model.kinematics.joints
+    joints = left.model.joints
     parent = T_world_link[:, [place[joint.parent] for joint in joints]]
     child = T_world_link[:, [place[joint.child] for joint in joints]]
     turned_back = np.swapaxes(parent[..., :3, :3], -1, -2)
@@ -97,7 +97,7 @@ def _agree(poses: list[FloatArray], limits: FloatArray) -> bool:
 def _tell_pose(
     result: OpenCheck,
     left: EngineResults,
-    joint: DescribedJoint,
+    joint: Joint,
     error: FloatArray,
     limits: FloatArray,
     *,
@@ -167,7 +167,7 @@ def gravity_differs(result: OpenCheck, left: EngineResults) -> None:
     if not _has_reference(result, left) or reference is None or reference.gravity is None:
         return
     # A joint that gravity hardly loads is held against the weight of the model.
-    turns = np.array([left.model.kinematics.joint_by_name[name].kind.turns for name in left.rows.joints], dtype=bool)
+    turns = np.array([left.model.joint_by_name[name].kind.turns for name in left.rows.joints], dtype=bool)
     weight = 1e-6 * GRAVITY * (reference.total_mass or 0.0) * np.where(turns, left.size, 1.0)
     scale = np.maximum(np.nan_to_num(np.abs(reference.gravity)).max(axis=0, initial=0.0), weight) + _TINY
     for engine, poses in left.engines.items():
@@ -219,7 +219,7 @@ def _tell_dynamics(
             continue
         column = error[:, left.rows.joints.index(name)]
         row = int(np.argmax(column))
-        child = left.model.kinematics.joint_by_name[name].child
+        child = left.model.joint_by_name[name].child
         result.find(
             f"{ENGINES[engine].title} and {ENGINES[REFERENCE].title} differ in {what.format(joint=name)} by "
             f"{column[row]:.2%} of it.",
