@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,23 +14,20 @@ from kinematify.envs.mujoco_object import (
     HOLD,
     WORLD,
     MujocoObject,
+    MujocoWorld,
     ObjectSource,
     add_object,
     deepest_contact,
+    env_spec,
     object_source,
-    reported_warnings,
-    world_spec,
 )
 from kinematify.envs.settings import load_settings
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.dynamics import Draw, JointDynamics
-    from kinematify.envs.reading import Reading
+    from kinematify.envs.dynamics import JointDynamics
     from kinematify.envs.settings import EnvSettings
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray
 
 FORCE, POSITION = "force", "position"
 _DAMPING_RATIO = 2.0  # of the hand's spring, times mass and frequency: neither swings nor creeps
@@ -61,7 +57,7 @@ def hand_facts(articulated_object: ArticulatedObject, target: Target, control: s
     """Compile the world of a hand, once per process."""
     settings = load_settings()
     source = object_source(articulated_object, settings)
-    spec = world_spec(settings)
+    spec = env_spec(settings)
     add_object(spec, articulated_object, target, source, articulated_object.T_world_root)
     for axis, letter in enumerate("xyz"):
         hand = spec.add_actuator(name=f"kinematify hand {letter}", trntype=mujoco.mjtTrn.mjTRN_SITE, target=HOLD)
@@ -95,8 +91,8 @@ def _set_hand(model: mujoco.MjModel, control: str, force: float, stiffness: floa
     model.actuator_forcerange[:] = force * np.array([-1.0, 1.0])
 
 
-class MujocoHand:
-    """One world; see `kinematify.envs.worlds.World`."""
+class MujocoHand(MujocoWorld):
+    """One world; see `kinematify.envs.worlds.HandWorld`."""
 
     def __init__(
         self, articulated_object: ArticulatedObject, target: Target, control: str, settings: EnvSettings
@@ -111,10 +107,6 @@ class MujocoHand:
         self._substeps = settings.time.substeps
         self._stride = self.facts.speed * settings.time.control_step
         self._lead = self.facts.force / self.facts.stiffness
-
-    def draw(self, drawn: Draw) -> None:
-        """Redraw the object."""
-        self.object.apply(drawn, self.data)
 
     def place(self, leaders: FloatArray) -> float:
         """Set the object's joints and stop them; the hand's spring is slack."""
@@ -145,37 +137,6 @@ class MujocoHand:
         self.data.qacc_warmstart[:] = 0.0
         mujoco.mj_step(self.model, self.data, nstep=self._substeps)
 
-    def reading(self) -> Reading:
-        """Return the state of the object."""
-        return self.object.reading(self.data)
-
     def command(self) -> FloatArray:
         """From the hold to where the hand wants it [m], zero in force control, shape (3,)."""
         return np.asarray(self.data.ctrl - self.data.sensordata[:3]) if self._control == POSITION else np.zeros(3)
-
-    def depth(self) -> float:
-        """How much deeper than allowed two shapes are in each other at most [m]."""
-        return deepest_contact(self.data)
-
-    def stable(self) -> bool:
-        """True if all numbers are finite and the solver has not failed."""
-        # What is wrong with a place was wrong with a speed before.
-        return math.isfinite(self.data.qvel.sum())
-
-    def warnings(self) -> dict[str, int]:
-        """MuJoCo's warnings since `place`, with counts."""
-        return reported_warnings(self.data)
-
-    def link_poses(self) -> Mapping[str, FloatArray]:
-        """World poses of the object's links."""
-        return link_poses(self.data, self.object.body, self._articulated_object.scene.mechanism.links, "")
-
-    def close(self) -> None:
-        """Nothing is held that Python does not free."""
-
-
-def link_poses(data: mujoco.MjData, bodies: IntArray, names: tuple[str, ...], prefix: str) -> dict[str, FloatArray]:
-    """World poses of bodies under their names, shape (4, 4) each."""
-    found = np.tile(np.eye(4), (len(names), 1, 1))
-    found[:, :3, :3], found[:, :3, 3] = data.xmat[bodies].reshape(-1, 3, 3), data.xpos[bodies]
-    return {prefix + name: T for name, T in zip(names, found, strict=True)}

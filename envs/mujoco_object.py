@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -11,11 +12,13 @@ import numpy as np
 from kinematify.config.validation import load_settings
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
 from kinematify.envs.reading import Reading
-from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import touching
 from kinematify.simulation.mujoco_model import compiled, measure, parse, with_allowances
+from kinematify.simulation.mujoco_world import world_spec
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
@@ -77,15 +80,9 @@ def settled_source(prepared: Prepared, mechanism: Mechanism, size: float, settin
     return ObjectSource(source=with_allowances(source, measured, settled, only=False), touching=settled)
 
 
-def world_spec(settings: EnvSettings) -> mujoco.MjSpec:
+def env_spec(settings: EnvSettings) -> mujoco.MjSpec:
     """An empty world with the options of all environments."""
-    spec = mujoco.MjSpec()
-    spec.compiler.balanceinertia = True
-    spec.option.timestep = settings.time.step
-    spec.option.gravity = [0.0, 0.0, -GRAVITY]
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
-    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    spec = world_spec(settings.time.step)
     # What blows up is told, not silently set back to the start.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET.value
@@ -250,3 +247,47 @@ def reported_warnings(data: mujoco.MjData) -> dict[str, int]:
     if not numbers.any():
         return {}
     return {_WARNINGS[k]: int(number) for k, number in enumerate(numbers) if number}
+
+
+class MujocoWorld:
+    """What every world of an object tells; see `kinematify.envs.worlds.World`."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    object: MujocoObject
+
+    def draw(self, drawn: Draw) -> None:
+        """Redraw the object."""
+        self.object.apply(drawn, self.data)
+
+    def reading(self) -> Reading:
+        """Return the state of the object."""
+        return self.object.reading(self.data)
+
+    def depth(self) -> float:
+        """How much deeper than allowed two shapes are in each other at most [m]."""
+        return deepest_contact(self.data)
+
+    def stable(self) -> bool:
+        """True if all numbers are finite and the solver has not failed."""
+        # What is wrong with a place was wrong with a speed before.
+        return math.isfinite(self.data.qvel.sum())
+
+    def warnings(self) -> dict[str, int]:
+        """MuJoCo's warnings since `place`, with counts."""
+        return reported_warnings(self.data)
+
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the object's links."""
+        links = self.object.articulated_object.scene.mechanism.links
+        return poses_of(self.data, self.object.body, links, "")
+
+    def close(self) -> None:
+        """Nothing is held that Python does not free."""
+
+
+def poses_of(data: mujoco.MjData, bodies: IntArray, names: tuple[str, ...], prefix: str) -> dict[str, FloatArray]:
+    """World poses of bodies under their names, shape (4, 4) each."""
+    found = np.tile(np.eye(4), (len(names), 1, 1))
+    found[:, :3, :3], found[:, :3, 3] = data.xmat[bodies].reshape(-1, 3, 3), data.xpos[bodies]
+    return {prefix + name: T for name, T in zip(names, found, strict=True)}

@@ -9,16 +9,14 @@ import pybullet as bullet
 
 from kinematify.envs.articulated_object import held_links
 from kinematify.envs.mujoco_arm import ROBOT, arm_facts
-from kinematify.envs.pybullet_object import PybulletObject, pose_of
+from kinematify.envs.pybullet_object import PybulletObject, PybulletWorld
 from kinematify.robot.robot import rest_configuration
-from kinematify.robot.transforms import quaternion_of
+from kinematify.simulation.pybullet_world import load_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.dynamics import Draw
-    from kinematify.envs.reading import Reading
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
@@ -29,7 +27,7 @@ _STRONG = 1e4  # holds joints that are neither of the arm nor of the fingers [N 
 _GAIN = 0.3  # share of an error of position that a motor makes good in a step
 
 
-class PybulletArm:
+class PybulletArm(PybulletWorld):
     """One world; see `kinematify.envs.worlds.ArmWorld`."""
 
     def __init__(
@@ -52,19 +50,13 @@ class PybulletArm:
         self._wanted = np.zeros(len(self._forces))
 
     def _load(self, plan: RobotPlan, settings: EnvSettings) -> None:
-        T, client, names = plan.T_world_base, self.client, self._robot.robot
-        self.body = bullet.loadURDF(
-            str(self._robot.prepared.urdf), basePosition=T[:3, 3].tolist(),
-            baseOrientation=quaternion_of(T[:3, :3], real_last=True),
-            useFixedBase=True, flags=bullet.URDF_USE_INERTIA_FROM_FILE | bullet.URDF_USE_SELF_COLLISION,
-            physicsClientId=client,
-        )  # fmt: skip
-        infos = [bullet.getJointInfo(self.body, k, client) for k in range(bullet.getNumJoints(self.body, client))]
-        joints = {info[1].decode(): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
-        self._links = {self._robot.mechanism.robot.root: _BASE, **{info[12].decode(): info[0] for info in infos}}
+        client, names = self.client, self._robot.robot
+        loaded = load_at(client, self._robot.mechanism, self._robot.prepared, plan.T_world_base, itself=True)
+        self._loaded, self.body = loaded, loaded.body
+        joints = dict(zip(loaded.mechanism.joints, loaded.indices, strict=True))
         driven = (*names.arm_joints, *names.finger_joints)
         self._joints = [joints[name] for name in driven]
-        for index in self._links.values():
+        for index in loaded.link.tolist():
             bullet.changeDynamics(self.body, index, lateralFriction=settings.robot.friction, physicsClientId=client)
         rest = rest_configuration(self._robot.mechanism.robot)
         for name, index in joints.items():
@@ -84,10 +76,6 @@ class PybulletArm:
             bullet.setCollisionFilterPair(
                 floor, self.object.body, _BASE, self.object.link_index(name), 0, physicsClientId=self.client
             )
-
-    def draw(self, drawn: Draw) -> None:
-        """Redraw the object."""
-        self.object.apply(drawn)
 
     def place(self, leaders: FloatArray, arm: FloatArray) -> float:
         """Set the object's joints and those of the arm, fingers apart, and stop all."""
@@ -116,10 +104,6 @@ class PybulletArm:
             positionGains=[_GAIN] * count, velocityGains=[1.0] * count, physicsClientId=self.client,
         )  # fmt: skip
 
-    def reading(self) -> Reading:
-        """Return the state of the object."""
-        return self.object.reading()
-
     def joints(self) -> tuple[FloatArray, FloatArray]:
         """Values and speeds of the arm's joints and then of the fingers'."""
         states = bullet.getJointStates(self.body, self._joints, physicsClientId=self.client)
@@ -127,12 +111,12 @@ class PybulletArm:
 
     def tool(self) -> FloatArray:
         """Pose of the tool, shape (4, 4)."""
-        return self._pose(self._robot.robot.tool)
+        return self._loaded.frame(self._robot.robot.tool)
 
     def touch(self) -> FloatArray:
         """Force of each finger on the part [N], shape (fingers,)."""
         forces = np.zeros((len(self._robot.finger_links), 3))
-        rows = {self._links[link]: row for row, link in enumerate(self._robot.finger_links)}
+        rows = {self._loaded.index_of(link): row for row, link in enumerate(self._robot.finger_links)}
         for point in bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client) or ():
             if point[3] in rows and point[4] in self._held:
                 forces[rows[point[3]]] += point[9] * np.array(point[7])
@@ -141,31 +125,15 @@ class PybulletArm:
     def depth(self) -> float:
         """Deepest contact of the object with itself or the robot [m]."""
         points = bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client)
-        return max([self.object.depth(), *(float(-point[8]) - _MARGIN for point in points or ())])
+        return max([super().depth(), *(float(-point[8]) - _MARGIN for point in points or ())])
 
     def stable(self) -> bool:
         """True if all numbers are finite."""
-        values, speeds = self.joints()
-        seen = self.object.reading()
-        return all(bool(np.isfinite(item).all()) for item in (values, speeds, seen.values, seen.speeds))
-
-    def warnings(self) -> dict[str, int]:
-        """PyBullet has none."""
-        return {}
+        return super().stable() and bool(np.isfinite(self.joints()).all())
 
     def link_poses(self) -> Mapping[str, FloatArray]:
         """World poses of the links of object and robot."""
-        return {**self.object.link_poses(), **{ROBOT + name: self._pose(name) for name in self._links}}
-
-    def _pose(self, link: str) -> FloatArray:
-        index = self._links[link]
-        if index == _BASE:
-            T = pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
-            local = bullet.getDynamicsInfo(self.body, _BASE, physicsClientId=self.client)
-            return np.asarray(T @ np.linalg.inv(pose_of(local[3], local[4])))
-        state = bullet.getLinkState(self.body, index, computeForwardKinematics=1, physicsClientId=self.client)
-        return pose_of(state[4], state[5])
-
-    def close(self) -> None:
-        """Free the world."""
-        self.object.close()
+        return {
+            **super().link_poses(),
+            **{ROBOT + name: self._loaded.frame(name) for name in self._loaded.mechanism.links},
+        }

@@ -8,20 +8,16 @@ import numpy as np
 import pybullet as bullet
 
 from kinematify.envs.mujoco_hand import POSITION, hand_facts
-from kinematify.envs.pybullet_object import PybulletObject
+from kinematify.envs.pybullet_object import PybulletObject, PybulletWorld
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.dynamics import Draw
-    from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
 
 
-class PybulletHand:
-    """One world; see `kinematify.envs.worlds.World`."""
+class PybulletHand(PybulletWorld):
+    """One world; see `kinematify.envs.worlds.HandWorld`."""
 
     def __init__(
         self, articulated_object: ArticulatedObject, target: Target, control: str, settings: EnvSettings
@@ -36,10 +32,6 @@ class PybulletHand:
         self._stride = self.facts.speed * settings.time.control_step
         self._lead = self.facts.force / self.facts.stiffness
         self._wanted = np.zeros(3)
-
-    def draw(self, drawn: Draw) -> None:
-        """Redraw the object."""
-        self.object.apply(drawn)
 
     def place(self, leaders: FloatArray) -> float:
         """Set the object's joints and stop them; the hand's spring is slack."""
@@ -69,31 +61,6 @@ class PybulletHand:
         spring = facts.stiffness * (self._wanted - hold) - facts.spring_damping * velocity
         return np.asarray(np.clip(spring, -facts.force, facts.force))
 
-    def reading(self) -> Reading:
-        """Return the state of the object."""
-        return self.object.reading()
-
     def command(self) -> FloatArray:
         """From the hold to where the hand wants it [m], zero in force control, shape (3,)."""
         return self._wanted - self.object.hold() if self._control == POSITION else np.zeros(3)
-
-    def depth(self) -> float:
-        """Deepest contact of shapes that do not touch at rest [m]."""
-        return self.object.depth()
-
-    def stable(self) -> bool:
-        """True if all numbers are finite."""
-        reading = self.object.reading()
-        return bool(np.isfinite(reading.values).all() and np.isfinite(reading.speeds).all())
-
-    def warnings(self) -> dict[str, int]:
-        """PyBullet has none."""
-        return {}
-
-    def link_poses(self) -> Mapping[str, FloatArray]:
-        """World poses of the object's links."""
-        return self.object.link_poses()
-
-    def close(self) -> None:
-        """Free the world."""
-        self.object.close()

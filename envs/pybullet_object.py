@@ -16,7 +16,7 @@ from kinematify.envs.reading import Reading
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.contacts import deepest, touching
-from kinematify.simulation.pybullet_world import load
+from kinematify.simulation.pybullet_world import load, pose_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,9 +44,7 @@ class PybulletObject:
         """Load the prepared file; pairs that always touch do not collide, as in MuJoCo."""
         self.articulated_object, self.target, self._dynamics = articulated_object, target, dynamics
         mechanism = articulated_object.scene.mechanism
-        self._loaded = load(
-            articulated_object.prepared.urdf, mechanism, articulated_object.prepared, step=settings.time.step
-        )
+        self._loaded = load(mechanism, articulated_object.prepared, step=settings.time.step)
         self.client, self.body = self._loaded.client, self._loaded.body
         bullet.setPhysicsEngineParameter(
             numSolverIterations=settings.time.solver_iterations, deterministicOverlappingPairs=1,
@@ -214,9 +212,36 @@ class PybulletObject:
         return {name: self._T_root @ T for name, T in poses.items()}
 
 
-def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
-    """Pose from a place [m] and a quaternion x, y, z, w, shape (4, 4)."""
-    T = np.eye(4)
-    T[:3, :3] = np.array(bullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
-    T[:3, 3] = place
-    return T
+class PybulletWorld:
+    """What every world of an object tells; see `kinematify.envs.worlds.World`."""
+
+    object: PybulletObject
+
+    def draw(self, drawn: Draw) -> None:
+        """Redraw the object."""
+        self.object.apply(drawn)
+
+    def reading(self) -> Reading:
+        """Return the state of the object."""
+        return self.object.reading()
+
+    def depth(self) -> float:
+        """Deepest contact of shapes that do not touch at rest [m]."""
+        return self.object.depth()
+
+    def stable(self) -> bool:
+        """True if all numbers are finite."""
+        reading = self.object.reading()
+        return bool(np.isfinite(reading.values).all() and np.isfinite(reading.speeds).all())
+
+    def warnings(self) -> dict[str, int]:
+        """PyBullet has none."""
+        return {}
+
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the object's links."""
+        return self.object.link_poses()
+
+    def close(self) -> None:
+        """Free the world."""
+        self.object.close()

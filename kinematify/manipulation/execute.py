@@ -7,11 +7,14 @@ part but, with contact, for the piece between the pads (`grip_piece`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+import importlib
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
+from kinematify.manipulation.motion import timed
+from kinematify.manipulation.outcome import Hold
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rigid_groups
 from kinematify.simulation.prepare import prepare
@@ -22,7 +25,6 @@ if TYPE_CHECKING:
     from kinematify.config.task import ExecutionSettings
     from kinematify.config.validation import PrepareSettings
     from kinematify.manipulation.motion import Motion, Reference
-    from kinematify.manipulation.outcome import Hold
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Robot
     from kinematify.simulation.prepared import Prepared
@@ -134,23 +136,109 @@ def load(motion: Motion, work: Path, settings: PrepareSettings) -> Loaded:
     )
 
 
-@dataclass(kw_only=True)
-class Log:
-    """What an engine notes down on the way."""
+class ExecutionWorld(Protocol):
+    """Robot and object in an engine, at the start of a motion."""
 
-    frames: list[Frame]
+    def step(self, arm: FloatArray, speed: FloatArray) -> bool:
+        """Simulate one time step.
+
+        Args:
+            arm: What the servos of the arm are told [rad or m], shape (dof,).
+            speed: Its derivative, shape (dof,).
+
+        Returns:
+            False: the simulation blew up.
+        """
+
+    def squeeze(self) -> None:
+        """Let the fingers close with their full force."""
+
+    def take_hold(self) -> None:
+        """Let the joint go; with a weld, fix the hand to the part where it now is."""
+
+    def opened(self) -> float:
+        """Value of the joint that is opened [rad or m]."""
+
+    def arm(self) -> FloatArray:
+        """Values of the arm's joints [rad or m], shape (dof,)."""
+
+    def joints(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Values of all joints of robot and object [rad or m]."""
+
+    def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
+        """Deepest contact of the robot, but for the hand in what it holds, if it is deeper than so much.
+
+        Args:
+            than: [m].
+
+        Returns:
+            Its depth [m], and the link of the robot with what it is in.
+        """
+
+    def close(self) -> None:
+        """Free what the engine holds."""
+
+
+def execute(loaded: Loaded, settings: ExecutionSettings, *, engine: str, hold: Hold) -> Execution:
+    """Run a planned motion.
+
+    Args:
+        loaded: Both models and the motion.
+        settings: Servos, forces and tolerances.
+        engine: One of those that execute: ``mujoco``, or ``pybullet``, which welds only.
+        hold: What connects the hand with the part.
+
+    Returns:
+        What became of it; a world that blows up is no success.
+
+    Raises:
+        Refused: The engine cannot load a model.
+    """
+    module = importlib.import_module(f"kinematify.manipulation.execute_{engine}")
+    world = cast("ExecutionWorld", module.open_world(loaded, settings, hold))
+    reference = timed(loaded.motion, loaded.fastest(settings), settings, settings.time_step)
+    try:
+        values, log = _tracked(world, reference, settings, hold)
+    finally:
+        world.close()
+    return _judged(loaded, log, values, reference, settings, engine=engine, hold=hold)
+
+
+@dataclass(kw_only=True)
+class _Log:
+    """What is noted down on the way."""
+
+    frames: list[Frame] = field(default_factory=list)
     depth: float = 0.0
     deepest: tuple[str, str] | None = None
     tracking: float = 0.0
 
-    def touch(self, link: str, other: str, depth: float) -> None:
-        """Note how deep a link of the robot is in a link of the object [m]."""
-        if depth > self.depth:
-            self.depth, self.deepest = depth, (link, other)
+
+def _tracked(
+    world: ExecutionWorld, reference: Reference, settings: ExecutionSettings, hold: Hold
+) -> tuple[FloatArray, _Log]:
+    """Track the reference; returns the value of the object's joint after every step, shape (steps,), and the log."""
+    every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
+    values, log = np.full(reference.steps, np.nan), _Log()
+    for step in range(reference.steps):
+        if step == reference.grasped and hold is Hold.CONTACT:
+            world.squeeze()
+        if step == reference.pulls:
+            world.take_hold()
+        if not world.step(reference.arm[step], reference.speed[step]):
+            break
+        values[step] = world.opened()
+        log.tracking = max(log.tracking, float(np.abs(world.arm() - reference.arm[step]).max()))
+        if (contact := world.deeper(log.depth)) is not None:
+            log.depth, log.deepest = contact
+        if step % every == 0 or step == reference.steps - 1:
+            robot, articulated = world.joints()
+            log.frames.append(Frame(time=step * settings.time_step, robot=robot, object=articulated))
+    return values, log
 
 
-def judged(
-    loaded: Loaded, log: Log, values: FloatArray, reference: Reference, settings: ExecutionSettings, *, engine: str,
+def _judged(
+    loaded: Loaded, log: _Log, values: FloatArray, reference: Reference, settings: ExecutionSettings, *, engine: str,
     hold: Hold,
 ) -> Execution:  # fmt: skip
     """Judge a run.

@@ -9,16 +9,24 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.manipulation.execute import Execution, Frame, Log, judged
 from kinematify.manipulation.grip import grip_piece
-from kinematify.manipulation.motion import timed
 from kinematify.manipulation.outcome import Hold
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.mujoco_model import parse
+from kinematify.simulation.mujoco_world import (
+    add_latch,
+    add_servos,
+    attach,
+    hold_by_friction,
+    joint_ids,
+    largest_inertia,
+    make_rubber,
+    set_robot_servos,
+    world_spec,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,9 +35,8 @@ if TYPE_CHECKING:
 
     from kinematify.config.task import ExecutionSettings
     from kinematify.manipulation.execute import Loaded
-    from kinematify.manipulation.motion import Reference
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import Robot
+    from kinematify.robot.robot import Joint, Robot
     from kinematify.simulation.prepared import Prepared
 
     BoolArray = NDArray[np.bool_]
@@ -39,27 +46,14 @@ _HELD, _OTHERS, _GRIP = 1, 2, 4  # bits: the held part, all that is not held, an
 _WELD, _LATCH = "kinematify weld", "kinematify latch"
 
 
-def execute(loaded: Loaded, settings: ExecutionSettings, *, hold: Hold) -> Execution:
-    """Run a planned motion.
-
-    Args:
-        loaded: Both models and the motion.
-        settings: Servos, forces and tolerances.
-        hold: What connects the hand with the part.
-
-    Returns:
-        What became of it; a world that MuJoCo refuses or that blows up is no success.
-    """
-    world = _World(loaded, settings, hold)
-    reference = timed(loaded.motion, loaded.fastest(settings), settings, settings.time_step)
-    log = Log(frames=[])
-    values = world.run(reference, log)
-    return judged(loaded, log, values, reference, settings, engine="mujoco", hold=hold)
+def open_world(loaded: Loaded, settings: ExecutionSettings, hold: Hold) -> MujocoExecution:
+    """Compile robot and object into one world, at the start of the motion."""
+    return MujocoExecution(loaded, settings, hold)
 
 
 @dataclass(frozen=True, eq=False)
-class _World:
-    """One compiled world."""
+class MujocoExecution:
+    """See `kinematify.manipulation.execute.ExecutionWorld`."""
 
     loaded: Loaded
     settings: ExecutionSettings
@@ -67,67 +61,68 @@ class _World:
 
     @cached_property
     def model(self) -> mujoco.MjModel:
-        spec = self._spec()
-        model = spec.compile()
+        """The compiled world."""
+        model = self._spec().compile()
         self._set_servos(model)
         return model
 
     @cached_property
     def data(self) -> mujoco.MjData:
+        """Its state."""
         data = mujoco.MjData(self.model)
         data.qpos[:] = self._start(self.model)
         mujoco.mj_forward(self.model, data)
+        data.ctrl[self._dof :] = self.loaded.fingers(self.loaded.motion.grasp.spread)
         return data
 
-    def run(self, reference: Reference, log: Log) -> FloatArray:
-        """Track the reference; returns the value of the object's joint after every step, shape (steps,)."""
-        model, data, settings = self.model, self.data, self.settings
-        every = max(1, round(1.0 / (settings.frame_rate * settings.time_step)))
-        joint = model.joint(_OBJECT + self.loaded.motion.joint).qposadr[0]
-        lead = 1.0 / (np.pi * settings.servo_frequency)  # damping over stiffness: commands run ahead of the lag
-        told = reference.arm + lead * reference.speed
-        values = np.full(reference.steps, np.nan)
-        dof = told.shape[1]
-        data.ctrl[dof:] = self.loaded.fingers(self.loaded.motion.grasp.spread)
-        for step in range(reference.steps):
-            if step == reference.grasped and self.hold is Hold.CONTACT:
-                data.ctrl[dof:] = self._squeezed()
-            if step == reference.pulls:
-                self._take_hold()
-            data.ctrl[:dof] = told[step]
-            mujoco.mj_step(model, data)
-            if not np.isfinite(data.qpos).all() or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
-                return values
-            values[step] = data.qpos[joint]
-            log.tracking = max(log.tracking, float(np.abs(data.qpos[self._arm_qpos] - reference.arm[step]).max()))
-            self._note_contacts(log)
-            if step % every == 0 or step == reference.steps - 1:
-                log.frames.append(self._frame(step * settings.time_step))
-        return values
+    @property
+    def _dof(self) -> int:
+        """Number of servos of the arm; those of the fingers come after."""
+        return len(self.loaded.motion.robot.arm_joints)
+
+    def step(self, arm: FloatArray, speed: FloatArray) -> bool:
+        """Simulate one time step; commands run ahead of the lag by damping over stiffness."""
+        data = self.data
+        data.ctrl[: self._dof] = arm + speed / (np.pi * self.settings.servo_frequency)
+        mujoco.mj_step(self.model, data)
+        return bool(np.isfinite(data.qpos).all()) and not data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
+
+    def squeeze(self) -> None:
+        """Tell the fingers to close a centimetre inside of what they hold, so that they press with their full force."""
+        grasp = self.loaded.motion.grasp
+        closed, opened = self.loaded.fingers(0.0), self.loaded.fingers(grasp.spread)
+        gap = max(grasp.spread, 1e-6)
+        self.data.ctrl[self._dof :] = opened + (closed - opened) * (gap - grasp.width + 0.02) / gap
+
+    def opened(self) -> float:
+        """Value of the joint that is opened [rad or m]."""
+        return float(self.data.qpos[self._opened_qpos])
+
+    @cached_property
+    def _opened_qpos(self) -> int:
+        return int(self.model.joint(_OBJECT + self.loaded.motion.joint).qposadr[0])
+
+    def arm(self) -> FloatArray:
+        """Values of the arm's joints."""
+        return np.asarray(self.data.qpos[self._arm_qpos])
+
+    def close(self) -> None:
+        """Nothing is held that Python does not free."""
 
     def _spec(self) -> mujoco.MjSpec:
         motion, settings = self.loaded.motion, self.settings
-        spec = mujoco.MjSpec()
-        spec.option.timestep = settings.time_step
-        spec.option.gravity = [0.0, 0.0, -GRAVITY]
-        spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-        spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-        spec.option.impratio = 10.0
-        # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
-        spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+        spec = world_spec(settings.time_step)
+        hold_by_friction(spec)
         robot, object_spec = (
             self._parsed(self.loaded.robot, self.loaded.robot_prepared),
             self._parsed(self.loaded.object, self.loaded.object_prepared),
         )
         self._set_contacts(robot, object_spec)
-        for body in robot.bodies:
-            body.gravcomp = 1.0
-        for part, prefix, T in ((robot, _ROBOT, motion.T_world_base), (object_spec, _OBJECT, motion.T_world_object)):
-            frame = spec.worldbody.add_frame(pos=T[:3, 3], quat=quaternion_of(T[:3, :3]))
-            spec.attach(part, prefix=prefix, frame=frame)
+        attach(spec, robot, _ROBOT, motion.T_world_base)
+        attach(spec, object_spec, _OBJECT, motion.T_world_object)
         floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE)
         floor.size, floor.contype, floor.conaffinity = [0.0, 0.0, 1.0], _OTHERS, 0
-        self._add_drives(spec)
+        add_servos(spec, [_ROBOT + name for name in self._driven])
         self._add_bonds(spec)
         return spec
 
@@ -138,10 +133,9 @@ class _World:
 
     def _set_contacts(self, robot: mujoco.MjSpec, object_spec: mujoco.MjSpec) -> None:
         """The robot meets the object and the floor; neither meets itself, which the planner has looked at."""
+        make_rubber(robot, self.settings.friction, self.settings.time_step)
         for geom in robot.geoms:
             geom.contype, geom.conaffinity = 0, _HELD | _OTHERS
-            geom.condim, geom.friction = 4, [self.settings.friction, 0.02, 0.0001]
-            geom.solref[:2], geom.solimp[:2], geom.priority = [2.0 * self.settings.time_step, 1.0], [0.95, 0.99], 1
             if geom.parent.name in self.loaded.hand_links:
                 geom.conaffinity = _OTHERS | _GRIP
         for geom in object_spec.geoms:
@@ -163,30 +157,21 @@ class _World:
         start = {**self.loaded.motion.start, self.loaded.motion.joint: float(self.loaded.motion.opened[0])}
         return {joint.name: start.get(joint.name, rest[joint.name]) for joint in self.loaded.object.leaders}
 
-    def _add_drives(self, spec: mujoco.MjSpec) -> None:
-        robot = self.loaded.motion.robot
-        for name in (*robot.arm_joints, *robot.finger_joints):
-            servo = spec.add_actuator(
-                name=f"kinematify servo {name}", target=_ROBOT + name, trntype=mujoco.mjtTrn.mjTRN_JOINT
-            )
-            servo.set_to_position(kp=1.0)
+    @property
+    def _driven(self) -> tuple[str, ...]:
+        """Joints of the robot that have servos."""
+        return (*self.loaded.motion.robot.arm_joints, *self.loaded.motion.robot.finger_joints)
 
     def _add_bonds(self, spec: mujoco.MjSpec) -> None:
         """Weld the hand to the part, and hold every joint that is not driven where it starts."""
         weld = spec.add_equality(name=_WELD, type=mujoco.mjtEq.mjEQ_WELD, objtype=mujoco.mjtObj.mjOBJ_BODY)
         weld.name1, weld.name2, weld.active = _ROBOT + self.loaded.motion.robot.tool, _OBJECT + self.loaded.held, False
-        driven = {*self.loaded.motion.robot.arm_joints, *self.loaded.motion.robot.finger_joints}
         for prefix, model, values in self._sides():
-            for joint in model.joints:
-                if joint.kind is JointType.FIXED or joint.mimic is not None:
-                    continue
-                if prefix == _ROBOT and joint.name in driven:
-                    continue
-                latch = spec.add_equality(type=mujoco.mjtEq.mjEQ_JOINT, objtype=mujoco.mjtObj.mjOBJ_JOINT)
-                latch.name1 = prefix + joint.name
-                latch.data[0] = values[joint.name]
-                if prefix == _OBJECT and joint.name in self._freed:
-                    latch.name = f"{_LATCH} {joint.name}"
+            for joint in model.leaders:
+                if prefix == _OBJECT or joint.name not in self._driven:
+                    freed = prefix == _OBJECT and joint.name in self._freed
+                    name = f"{_LATCH} {joint.name}" if freed else ""
+                    add_latch(spec, prefix + joint.name, values[joint.name], name)
 
     def _sides(self) -> Sequence[tuple[str, Robot, dict[str, float]]]:
         """Prefix, model and values of all joints at the start, of robot and object."""
@@ -211,51 +196,15 @@ class _World:
         return qpos
 
     def _set_servos(self, model: mujoco.MjModel) -> None:
-        """Servos of one frequency for the arm, as strong as the arm; fingers as strong as the grip."""
-        settings, arm = self.settings, self.loaded.motion.robot.arm_joints
-        inertia = self._inertia(model)
-        model.dof_armature[self._dofs(model, _ROBOT)] += settings.armature * inertia[self._dofs(model, _ROBOT)]
-        for name in self.loaded.motion.robot.finger_joints:
-            finger = int(model.joint(_ROBOT + name).dofadr[0])
-            model.dof_armature[finger] = settings.finger_inertia
-            inertia[finger] = settings.finger_inertia
-        joint = model.joint(_OBJECT + self.loaded.motion.joint)
-        dof = int(joint.dofadr[0])
-        model.dof_damping[dof] = max(model.dof_damping[dof], settings.joint_damping * inertia[dof])
-        rate = 2.0 * np.pi * settings.servo_frequency
-        force = np.full(model.nu, settings.grip_force)
-        force[: len(arm)] = self.loaded.strongest(settings)
-        for servo in range(model.nu):
-            moved = (1.0 + settings.armature) * inertia[model.jnt_dofadr[model.actuator_trnid[servo, 0]]]
-            stiffness = moved * rate**2
-            if servo >= len(arm):  # fingers squeeze with their full force where the part keeps them a millimetre off
-                stiffness = max(stiffness, 1e3 * settings.grip_force)
-            damping = 2.0 * stiffness / rate
-            model.actuator_gainprm[servo, 0] = stiffness
-            model.actuator_biasprm[servo, 1:3] = -stiffness, -damping
-        model.actuator_forcelimited[:] = 1
-        model.actuator_forcerange[:] = force[:, None] * [-1.0, 1.0]
-        model.jnt_actfrclimited[:] = 0
-
-    def _inertia(self, model: mujoco.MjModel) -> FloatArray:
-        """Inertia that each degree of freedom moves, the largest along the motion, shape (nv,)."""
-        data = mujoco.MjData(model)
-        data.qpos[:] = self._start(model)
-        largest = np.zeros(model.nv)
-        matrix = np.zeros((model.nv, model.nv))
-        motion = self.loaded.motion
-        for row in (motion.reach[0], motion.pull[0], motion.pull[-1]):
-            data.qpos[[int(model.joint(_ROBOT + name).qposadr[0]) for name in motion.robot.arm_joints]] = row
-            mujoco.mj_forward(model, data)
-            mujoco.mj_fullM(model, data, matrix)
-            largest = np.maximum(largest, np.diag(matrix))
-        return largest
-
-    def _dofs(self, model: mujoco.MjModel, prefix: str) -> IntArray:
-        names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, k) or "" for k in range(model.njnt)]
-        return np.array(
-            [model.jnt_dofadr[k] for k, name in enumerate(names) if name.startswith(prefix)], dtype=np.int64
-        )
+        """Servos for the robot, and damping for the joint that is opened."""
+        motion, settings = self.loaded.motion, self.settings
+        arm, fingers = (joint_ids(model, _ROBOT, n) for n in (motion.robot.arm_joints, motion.robot.finger_joints))
+        rows = (motion.reach[0], motion.pull[0], motion.pull[-1])
+        inertia = largest_inertia(model, self._start(model), model.jnt_qposadr[arm], rows)
+        opened = int(model.joint(_OBJECT + motion.joint).dofadr[0])
+        model.dof_damping[opened] = max(model.dof_damping[opened], settings.joint_damping * inertia[opened])
+        dof, strongest = model.jnt_dofadr, self.loaded.strongest(settings)
+        set_robot_servos(model, dof[arm], dof[fingers], inertia=inertia, strongest=strongest, settings=settings)
 
     @property
     def _freed(self) -> tuple[str, ...]:
@@ -266,14 +215,7 @@ class _World:
         names = self.loaded.motion.robot.arm_joints
         return np.array([int(self.model.joint(_ROBOT + name).qposadr[0]) for name in names], dtype=np.int64)
 
-    def _squeezed(self) -> FloatArray:
-        """Commands of the fingers a centimetre inside of what they hold, so that they press with their full force."""
-        grasp = self.loaded.motion.grasp
-        closed, opened = self.loaded.fingers(0.0), self.loaded.fingers(grasp.spread)
-        gap = max(grasp.spread, 1e-6)
-        return np.asarray(opened + (closed - opened) * (gap - grasp.width + 0.02) / gap)
-
-    def _take_hold(self) -> None:
+    def take_hold(self) -> None:
         """Let the joint go, and weld the hand to the part where it now is."""
         model, data = self.model, self.data
         for name in self._freed:
@@ -290,18 +232,20 @@ class _World:
         model.eq_data[weld, 10] = 1.0
         data.eq_active[weld] = 1
 
-    def _note_contacts(self, log: Log) -> None:
+    def deeper(self, than: float) -> tuple[float, tuple[str, str]] | None:
+        """Deepest contact of the robot, if it is deeper than that."""
         count = self.data.ncon
         if not count:
-            return
+            return None
         geoms = self.data.contact.geom[:count]
         depths = np.where(self._gripped[geoms].all(axis=1), 0.0, -self.data.contact.dist[:count])
         deepest = int(depths.argmax())
-        if depths[deepest] > log.depth:
-            bodies = (self.model.body(self.model.geom_bodyid[geom]).name for geom in geoms[deepest])
-            link, other = sorted(bodies, key=lambda name: not name.startswith(_ROBOT))
-            other = "the floor" if other == "world" else other.removeprefix(_OBJECT)
-            log.touch(link.removeprefix(_ROBOT), other, float(depths[deepest]))
+        if depths[deepest] <= than:
+            return None
+        bodies = (self.model.body(self.model.geom_bodyid[geom]).name for geom in geoms[deepest])
+        link, other = sorted(bodies, key=lambda name: not name.startswith(_ROBOT))
+        other = "the floor" if other == "world" else other.removeprefix(_OBJECT)
+        return float(depths[deepest]), (link.removeprefix(_ROBOT), other)
 
     @cached_property
     def _gripped(self) -> BoolArray:
@@ -309,9 +253,14 @@ class _World:
         names = {_ROBOT + link for link in self.loaded.hand_links} | {_OBJECT + link for link in self.loaded.held_links}
         return np.array([self.model.body(body).name in names for body in self.model.geom_bodyid])
 
-    def _frame(self, time: float) -> Frame:
-        states: list[dict[str, float]] = []
-        for prefix, model, _ in self._sides():
-            names = [joint.name for joint in model.joints if joint.kind is not JointType.FIXED]
-            states.append({name: float(self.data.joint(prefix + name).qpos[0]) for name in names})
-        return Frame(time=time, robot=states[0], object=states[1])
+    def joints(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Values of all joints of robot and object."""
+        robot, articulated = (
+            {joint.name: float(self.data.joint(prefix + joint.name).qpos[0]) for joint in model.joints if _moves(joint)}
+            for prefix, model, _ in self._sides()
+        )
+        return robot, articulated
+
+
+def _moves(joint: Joint) -> bool:
+    return joint.kind is not JointType.FIXED

@@ -93,17 +93,22 @@ def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> ParsedModel:
     except ValueError as error:
         raise Refused(_sentence(error)) from error
     spec.compiler.fusestatic = False
-    spec.option.timestep = step
-    spec.option.gravity = [0.0, 0.0, -GRAVITY]
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
-    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    set_options(spec, step)
     # Contacts between a body and its parent count; what is there from the start is allowed pair by pair.
     spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_FILTERPARENT.value
     for number, geom in enumerate(spec.geoms):
         geom.name = f"kinematify geom {number}"
     names = tuple(stand_in if name == _RESERVED else name for name in mechanism.links)
     return ParsedModel(spec=spec, names=names, mechanism=mechanism, step=step)
+
+
+def set_options(spec: mujoco.MjSpec, step: float) -> None:
+    """Set a time step [s], and the options that everything shares."""
+    spec.option.timestep = step
+    spec.option.gravity = [0.0, 0.0, -GRAVITY]
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    # MuJoCo 4.0.0 factorises sparse systems wrongly in rare cases; 4.0.1 does not.
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
 
 
 def compiled(source: ParsedModel) -> CompiledModel:

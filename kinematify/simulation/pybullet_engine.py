@@ -24,7 +24,7 @@ from kinematify.simulation.engine import (
     Measured,
     Refused,
 )
-from kinematify.simulation.pybullet_world import PybulletWorld, load, text_of
+from kinematify.simulation.pybullet_world import PybulletBody, load, text_of
 from kinematify.simulation.servos import acting_pairs
 
 if TYPE_CHECKING:
@@ -66,8 +66,8 @@ class PybulletEngine:
         """Load a prepared file; a second time with a free base, because a fixed one has no mass."""
         step = self.settings.pybullet_time_step
         try:
-            fixed = load(prepared.urdf, mechanism, prepared, step=step, looking=True)
-            free = load(prepared.urdf, mechanism, prepared, step=step, fixed=False)
+            fixed = load(mechanism, prepared, step=step, looking=True)
+            free = load(mechanism, prepared, step=step, fixed=False)
         except Refused as refusal:
             said = self._printed() or [str(refusal)]
             raise Refused(" ".join(said[-3:])[:400].rstrip(".")) from refusal
@@ -94,7 +94,7 @@ class PybulletModel:
 
     engine: PybulletEngine
     prepared: Prepared
-    looking: PybulletWorld
+    looking: PybulletBody
     """Everything collides in it."""
     masses: dict[str, float]
     """[kg], keyed by link."""
@@ -182,10 +182,10 @@ class PybulletModel:
         unbalanced = np.abs(own - servos.holding).max(axis=0, initial=0.0)
         return PybulletSimulation(model=self, sweep=sweep, force=servos.force + margin * unbalanced)
 
-    def world(self, *, fixed: bool = True) -> PybulletWorld:
+    def world(self, *, fixed: bool = True) -> PybulletBody:
         """Load into a new world, see `load`."""
         step = self.engine.settings.pybullet_time_step
-        return load(self.prepared.urdf, self.looking.mechanism, self.prepared, step=step, fixed=fixed)
+        return load(self.looking.mechanism, self.prepared, step=step, fixed=fixed)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -205,14 +205,14 @@ class PybulletSimulation:
         return self.model.engine.settings.pybullet_time_step
 
     @cached_property
-    def _free_world(self) -> PybulletWorld:
+    def _free_world(self) -> PybulletBody:
         """Where nothing is driven."""
         world = self.model.world()
         world.act(self.model.silent, on=False)
         return world
 
     @cached_property
-    def _drive_world(self) -> PybulletWorld:
+    def _drive_world(self) -> PybulletBody:
         """Pairs act on each other in it only in drives in which they get too deep."""
         world = self.model.world()
         world.silence()
@@ -338,7 +338,7 @@ class PybulletSimulation:
 class _Motors:
     """Position motors on all joints; followers follow what their leaders do, which PyBullet does not care for."""
 
-    def __init__(self, world: PybulletWorld, rest: FloatArray) -> None:
+    def __init__(self, world: PybulletBody, rest: FloatArray) -> None:
         """Place the model at rest, values of all joints, shape (J,)."""
         self._world, self._rest = world, rest
         mechanism = world.mechanism
@@ -379,7 +379,7 @@ def _steps(seconds: float, step: float) -> int:
     return max(2, round(seconds / step))
 
 
-def _link_transforms(loaded: PybulletWorld, states: list[list[tuple[tuple[float, ...], ...]]]) -> FloatArray:
+def _link_transforms(loaded: PybulletBody, states: list[list[tuple[tuple[float, ...], ...]]]) -> FloatArray:
     """Return the pose of every link's frame in every row, the fixed root at the origin, shape (n, L, 4, 4)."""
     transforms = np.tile(np.eye(4), (len(states), len(loaded.link), 1, 1))
     moving = np.flatnonzero(loaded.link >= 0)
@@ -393,7 +393,7 @@ def _link_transforms(loaded: PybulletWorld, states: list[list[tuple[tuple[float,
     return transforms
 
 
-def _lowest(world: PybulletWorld) -> float:
+def _lowest(world: PybulletBody) -> float:
     """Height of the lowest point of all collision shapes [m]; the boxes around them are a little too large."""
     heights: list[float] = [
         bullet.getAABB(world.body, index, physicsClientId=world.client)[0][2]
@@ -403,7 +403,7 @@ def _lowest(world: PybulletWorld) -> float:
     return min(heights)
 
 
-def _centres(world: PybulletWorld) -> FloatArray:
+def _centres(world: PybulletBody) -> FloatArray:
     """Centres of mass of all links, shape (L, 3)."""
     base, _ = bullet.getBasePositionAndOrientation(world.body, physicsClientId=world.client)
     return np.array([base, *(state[0] for state in world.link_states())])

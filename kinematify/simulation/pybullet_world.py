@@ -1,4 +1,4 @@
-"""A prepared file in a world of PyBullet of its own, and what it says of single configurations.
+"""Prepared files in worlds of PyBullet, and what it says of single configurations.
 
 PyBullet speaks in indices of its own and in tuples; nothing of either leaves this package.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import weakref
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
@@ -16,13 +16,13 @@ import numpy as np
 import pybullet as bullet
 
 from kinematify.model.collision_pieces import Method
+from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts, deepest
 from kinematify.simulation.engine import Refused
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
-    from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
@@ -41,8 +41,8 @@ _BASE = -1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PybulletWorld:
-    """A body in a world of its own, and where the links and joints of the document stand in it."""
+class PybulletBody:
+    """A model in a world, and where the links and joints of the document stand in it."""
 
     client: int
     body: int
@@ -53,7 +53,7 @@ class PybulletWorld:
     """PyBullet's index of each of `Mechanism.joints`, -2 for lost ones, shape (J,)."""
     margin: FloatArray
     """By which each link's shapes are inflated [m], shape (L,)."""
-    mass_scale: float
+    mass_scale: float = 1.0
     """Of all masses in this world over those of the file, see `load`."""
 
     @property
@@ -171,6 +171,27 @@ class PybulletWorld:
         ordered: FloatArray = np.array(matrix).reshape(len(values), len(values))[np.ix_(self.order, self.order)]
         return ordered / self.mass_scale
 
+    def index_of(self, link: str) -> int:
+        """PyBullet's index of a link."""
+        return int(self.link[self.mechanism.links.index(link)])
+
+    def frame(self, link: str) -> FloatArray:
+        """World pose of a link's frame, shape (4, 4)."""
+        index = self.index_of(link)
+        if index == _BASE:
+            inertial = bullet.getDynamicsInfo(self.body, _BASE, physicsClientId=self.client)
+            return np.asarray(self.centre(link) @ np.linalg.inv(pose_of(inertial[3], inertial[4])))
+        state = bullet.getLinkState(self.body, index, computeForwardKinematics=1, physicsClientId=self.client)
+        return pose_of(state[4], state[5])
+
+    def centre(self, link: str) -> FloatArray:
+        """World pose of a link's centre of mass, in which constraints are stated, shape (4, 4)."""
+        index = self.index_of(link)
+        if index == _BASE:
+            return pose_of(*bullet.getBasePositionAndOrientation(self.body, physicsClientId=self.client))
+        state = bullet.getLinkState(self.body, index, computeForwardKinematics=1, physicsClientId=self.client)
+        return pose_of(state[0], state[1])
+
     def release(self, *, ideal: bool = False) -> None:
         """Switch all motors off, which are on from the start; `ideal`: damping and friction too."""
         for index in self.indices:
@@ -217,15 +238,28 @@ class PybulletWorld:
         self.freeing()
 
 
+def connect(step: float, *, iterations: int | None = None) -> int:
+    """Return the number of a new world.
+
+    Args:
+        step: Time step [s].
+        iterations: Of its solver; as many as it likes if None.
+    """
+    client: int = bullet.connect(bullet.DIRECT)
+    solver = {} if iterations is None else {"numSolverIterations": iterations}
+    bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client, **solver)
+    bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
+    return client
+
+
 def load(
-    urdf: Path, mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True, looking: bool = False
-) -> PybulletWorld:
+    mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True, looking: bool = False
+) -> PybulletBody:
     """Load a prepared file into a new world; links that fixed joints join do not collide with each other.
 
     Args:
-        urdf: The file.
         mechanism: Its tree.
-        prepared: Its record.
+        prepared: The file and its record.
         step: Time step [s].
         fixed: False: the base is free.
         looking: The model is set to configurations and never simulated. Large inertias are then scaled down, because
@@ -234,37 +268,64 @@ def load(
     Raises:
         Refused: PyBullet cannot.
     """
-    client = bullet.connect(bullet.DIRECT)
-    bullet.setPhysicsEngineParameter(enableFileCaching=0, fixedTimeStep=step, physicsClientId=client)
-    bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=client)
+    client = connect(step)
     try:
-        body = bullet.loadURDF(str(urdf), useFixedBase=fixed, flags=_FLAGS, physicsClientId=client)
-    except bullet.error as error:
+        loaded = _loaded(client, mechanism, prepared, useFixedBase=fixed, flags=_FLAGS)
+    except Refused:
         bullet.disconnect(physicsClientId=client)
+        raise
+    if looking:
+        loaded = replace(loaded, mass_scale=_scaled_down(loaded))
+    if loaded.complete:
+        loaded.act(_welded_pairs(mechanism), on=False)
+    assert loaded.freeing.alive
+    return loaded
+
+
+def load_at(
+    client: int, mechanism: Mechanism, prepared: Prepared, T_world_root: FloatArray, *, itself: bool
+) -> PybulletBody:
+    """Load a prepared file into a world, its root fixed at a pose.
+
+    Args:
+        client: Number of the world.
+        mechanism: Its tree.
+        prepared: The file and its record.
+        T_world_root: Shape (4, 4).
+        itself: Links that no joint connects collide with each other.
+
+    Raises:
+        Refused: PyBullet cannot.
+    """
+    flags = bullet.URDF_USE_INERTIA_FROM_FILE | (bullet.URDF_USE_SELF_COLLISION if itself else 0)
+    place, turn = T_world_root[:3, 3].tolist(), quaternion_of(T_world_root[:3, :3], real_last=True).tolist()
+    options = {"basePosition": place, "baseOrientation": turn, "useFixedBase": True, "flags": flags}
+    return _loaded(client, mechanism, prepared, **options)
+
+
+def _loaded(client: int, mechanism: Mechanism, prepared: Prepared, **options: Any) -> PybulletBody:
+    try:
+        body = bullet.loadURDF(str(prepared.urdf), physicsClientId=client, **options)
+    except bullet.error as error:
         raise Refused(str(error)) from error
     infos = [bullet.getJointInfo(body, k, physicsClientId=client) for k in range(bullet.getNumJoints(body, client))]
     links = {text_of(info[12]): info[0] for info in infos}
     links.setdefault(mechanism.robot.root, _BASE)
     joints = {text_of(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
     methods = [prepared.link_by_name[name].method for name in mechanism.links]
-    scale = _scaled_down(client, body, len(infos)) if looking else 1.0
-    loaded = PybulletWorld(
+    return PybulletBody(
         client=client,
         body=body,
         mechanism=mechanism,
         link=np.array([links.get(name, -2) for name in mechanism.links], dtype=np.int64),
         joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
         margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
-        mass_scale=scale,
     )
-    assert loaded.freeing.alive
-    if loaded.complete:
-        loaded.act(_welded_pairs(mechanism), on=False)
-    return loaded
 
 
-def _scaled_down(client: int, body: int, count: int) -> float:
+def _scaled_down(loaded: PybulletBody) -> float:
     """Scale masses and inertias by a power of two, which changes no digit, so that all moments are small."""
+    client, body, count = loaded.client, loaded.body, len(loaded.joint_infos)
     infos = {index: bullet.getDynamicsInfo(body, index, physicsClientId=client) for index in range(-1, count)}
     largest = max(max(info[2]) for info in infos.values())
     scale = 2.0 ** min(0.0, np.floor(np.log2(_LARGE_INERTIA / max(largest, _LARGE_INERTIA))))
@@ -283,6 +344,14 @@ def _welded_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:
     for link, body in enumerate(mechanism.body_of_link.tolist()):
         members[body].append(link)
     return [pair for group in members.values() for pair in combinations(group, 2)]
+
+
+def pose_of(place: tuple[float, ...], turn: tuple[float, ...]) -> FloatArray:
+    """Pose from a place [m] and a quaternion x, y, z, w, shape (4, 4)."""
+    T = np.eye(4)
+    T[:3, :3] = np.array(bullet.getMatrixFromQuaternion(turn)).reshape(3, 3)
+    T[:3, 3] = place
+    return T
 
 
 def text_of(name: bytes) -> str:

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.execute import Execution, Loaded, load
+from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.motion import Motion, timed
@@ -37,7 +36,7 @@ def door(tmp_path_factory: pytest.TempPathFactory) -> Loaded:
 
 @pytest.fixture(scope="module")
 def pulled(drawer: tuple[Loaded, Path]) -> Execution:
-    return execute_mujoco.execute(drawer[0], EXECUTION, hold=Hold.CONTACT)
+    return execute(drawer[0], EXECUTION, engine="mujoco", hold=Hold.CONTACT)
 
 
 def changed(loaded: Loaded, **changes: object) -> Loaded:
@@ -70,7 +69,7 @@ def test_a_reach_that_is_already_there_takes_no_time(drawer: tuple[Loaded, Path]
 
 @pytest.mark.parametrize("hold", list(Hold))
 def test_mujoco_opens_the_drawer(drawer: tuple[Loaded, Path], hold: Hold) -> None:
-    result = execute_mujoco.execute(drawer[0], EXECUTION, hold=hold)
+    result = execute(drawer[0], EXECUTION, engine="mujoco", hold=hold)
     assert result.success, result.reason
     assert result.share == pytest.approx(1.0, abs=0.03)
     assert result.depth < EXECUTION.depth
@@ -78,14 +77,14 @@ def test_mujoco_opens_the_drawer(drawer: tuple[Loaded, Path], hold: Hold) -> Non
 
 @pytest.mark.parametrize("hold", list(Hold))
 def test_mujoco_opens_the_door(door: Loaded, hold: Hold) -> None:
-    result = execute_mujoco.execute(door, EXECUTION, hold=hold)
+    result = execute(door, EXECUTION, engine="mujoco", hold=hold)
     assert result.success, result.reason
     assert result.share == pytest.approx(1.0, abs=0.03)
 
 
 def test_pybullet_agrees(drawer: tuple[Loaded, Path], door: Loaded) -> None:
     for loaded in (drawer[0], door):
-        result = execute_pybullet.execute(loaded, EXECUTION)
+        result = execute(loaded, EXECUTION, engine="pybullet", hold=Hold.WELD)
         assert result.success, result.reason
         assert result.share == pytest.approx(1.0, abs=0.03)
 
@@ -93,7 +92,7 @@ def test_pybullet_agrees(drawer: tuple[Loaded, Path], door: Loaded) -> None:
 def test_where_the_world_has_its_origin_plays_no_part(door: Loaded) -> None:
     T = np.eye(4)
     T[:2, :2], T[:2, 3] = [[0.0, -1.0], [1.0, 0.0]], [3.0, -2.0]
-    result = execute_mujoco.execute(changed(door, **elsewhere(door.motion, T)), EXECUTION, hold=Hold.WELD)
+    result = execute(changed(door, **elsewhere(door.motion, T)), EXECUTION, engine="mujoco", hold=Hold.WELD)
     assert result.success, result.reason
 
 
@@ -105,8 +104,8 @@ def test_a_joint_that_is_locked_does_not_open(drawer: tuple[Loaded, Path]) -> No
     urdf = furniture.write_drawer_cabinet(work / "c.urdf", axis="0 1 0")
     wrong = load(replace(loaded.motion, object_urdf=urdf), work, SETTINGS.prepare)
     for result in (
-        execute_mujoco.execute(wrong, EXECUTION, hold=Hold.WELD),
-        execute_pybullet.execute(wrong, EXECUTION),
+        execute(wrong, EXECUTION, engine="mujoco", hold=Hold.WELD),
+        execute(wrong, EXECUTION, engine="pybullet", hold=Hold.WELD),
     ):
         assert not result.success
         assert "stops" in (result.reason or "")
@@ -119,7 +118,7 @@ def test_a_weak_grip_slips(drawer: tuple[Loaded, Path]) -> None:
     text = loaded.motion.object_urdf.read_text().replace("<limit", '<dynamics damping="0" friction="400"/><limit')
     (heavy / "c.urdf").write_text(text)
     stuck = load(replace(loaded.motion, object_urdf=heavy / "c.urdf"), heavy, SETTINGS.prepare)
-    assert not execute_mujoco.execute(stuck, EXECUTION, hold=Hold.CONTACT).success
+    assert not execute(stuck, EXECUTION, engine="mujoco", hold=Hold.CONTACT).success
 
 
 def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Path]) -> None:
@@ -127,7 +126,7 @@ def test_an_arm_that_goes_through_the_object_is_noticed(drawer: tuple[Loaded, Pa
     loaded = drawer[0]
     T = loaded.motion.T_world_object.copy()
     T[:3, 3] += [-0.3, 0.0, 0.0]
-    result = execute_mujoco.execute(changed(loaded, T_world_object=T), EXECUTION, hold=Hold.WELD)
+    result = execute(changed(loaded, T_world_object=T), EXECUTION, engine="mujoco", hold=Hold.WELD)
     assert not result.success
     assert result.depth > 0.0
     assert result.deepest is not None
@@ -145,7 +144,7 @@ def test_pads_press_on_what_lies_between_them(drawer: tuple[Loaded, Path]) -> No
 
 
 def test_runs_repeat(drawer: tuple[Loaded, Path], pulled: Execution) -> None:
-    again = execute_mujoco.execute(drawer[0], EXECUTION, hold=Hold.CONTACT)
+    again = execute(drawer[0], EXECUTION, engine="mujoco", hold=Hold.CONTACT)
     assert again.share == pulled.share
     assert again.frames[-1].robot == pulled.frames[-1].robot
 

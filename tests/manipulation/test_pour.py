@@ -10,8 +10,7 @@ import pytest
 from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
-from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.execute import load
+from kinematify.manipulation.execute import execute, load
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.outcome import Failure, Hold
 from kinematify.manipulation.pour import PourPlan, plan_pour
@@ -93,8 +92,8 @@ def test_engines_pour(plan: PourPlan, vessels: tuple[Vessel, Vessel, Path]) -> N
     assert plan.motion is not None
     loaded = load(plan.motion, vessels[2], SETTINGS.prepare)
     for result in (
-        execute_mujoco.execute(loaded, SETTINGS.task.execution, hold=Hold.WELD),
-        execute_pybullet.execute(loaded, SETTINGS.task.execution),
+        execute(loaded, SETTINGS.task.execution, engine="mujoco", hold=Hold.WELD),
+        execute(loaded, SETTINGS.task.execution, engine="pybullet", hold=Hold.WELD),
     ):
         assert result.success, result.reason
 

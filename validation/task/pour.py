@@ -6,8 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.manipulation import execute_mujoco, execute_pybullet
-from kinematify.manipulation.execute import Execution, Loaded, load
+from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.outcome import Failure, Hold
@@ -125,11 +124,7 @@ class PourTask:
     def _execute(self, world: Loaded, engine: str, hold: Hold) -> Execution:
         if (engine, hold) not in self._runs:
             settings = self.settings.execution
-            self._runs[engine, hold] = (
-                execute_mujoco.execute(world, settings, hold=hold)
-                if engine == "mujoco"
-                else execute_pybullet.execute(world, settings)
-            )
+            self._runs[engine, hold] = execute(world, settings, engine=engine, hold=hold)
         return self._runs[engine, hold]
 
     def tell_films(self, result: OpenCheck) -> None:

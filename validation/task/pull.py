@@ -14,9 +14,8 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, visible_shapes
-from kinematify.manipulation import execute_mujoco, execute_pybullet
 from kinematify.manipulation.copies import write_scaled
-from kinematify.manipulation.execute import Execution, Loaded, load
+from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grasp import joint_at
 from kinematify.manipulation.kinematics import Arm
@@ -126,10 +125,7 @@ class PullTask:
             if self.remaining < longest:
                 return
             start = time.monotonic()
-            if engine == "mujoco":
-                execution = execute_mujoco.execute(world, self.settings.execution, hold=hold)
-            else:
-                execution = execute_pybullet.execute(world, self.settings.execution)
+            execution = execute(world, self.settings.execution, engine=engine, hold=hold)
             self.runs.setdefault(world.motion.joint, execution)
             longest = max(longest, time.monotonic() - start)
             yield world.motion.joint, execution

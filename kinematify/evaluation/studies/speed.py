@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.mujoco_model import CompiledModel
-    from kinematify.simulation.pybullet_world import PybulletWorld
+    from kinematify.simulation.pybullet_world import PybulletBody
 
 GOALS = {"panda": 6.0, "cabinet_41083": 3.0, "h1": 20.0}
 """Seconds on two cores for all checks."""
@@ -131,7 +131,7 @@ def _bare_mujoco(loaded: CompiledModel, values: FloatArray) -> None:
         mujoco.mj_fwdPosition(loaded.model, data)
 
 
-def _bare_pybullet(loaded: PybulletWorld, values: FloatArray) -> None:
+def _bare_pybullet(loaded: PybulletBody, values: FloatArray) -> None:
     joints = loaded.joint.tolist()
     links = [index for index in loaded.link.tolist() if index >= 0]
     for row in values:

@@ -22,9 +22,8 @@ from kinematify.evaluation.datasets import BenchObject, find_objects
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study
 from kinematify.geometry.scene import read_scene
-from kinematify.manipulation import execute_mujoco, execute_pybullet
 from kinematify.manipulation.copies import write_scaled
-from kinematify.manipulation.execute import load
+from kinematify.manipulation.execute import execute, load
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.outcome import Failure, Hold
 from kinematify.manipulation.place import object_box
@@ -142,8 +141,8 @@ def _executed(plan: PullPlan, arm: Arm, folder: Path, settings: ValidationSettin
     if motion is None or plan.failure is not None:
         return {}
     loaded = load(motion, folder, settings.prepare)
-    runs = [execute_mujoco.execute(loaded, settings.task.execution, hold=hold) for hold in Hold]
-    runs.append(execute_pybullet.execute(loaded, settings.task.execution))
+    ways = [*(("mujoco", hold) for hold in Hold), ("pybullet", Hold.WELD)]
+    runs = [execute(loaded, settings.task.execution, engine=engine, hold=hold) for engine, hold in ways]
     return {f"{run.engine} {run.hold.value}": run.reason or f"{run.share:.2f}" for run in runs}
 
 
