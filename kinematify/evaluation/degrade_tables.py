@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kinematify.evaluation.perturb import CLEAN
-from kinematify.evaluation.record import number, table
+from kinematify.evaluation.record import grouped, number, table
 from kinematify.evaluation.summary import CLOSE_ANGLE, summarise
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.metrics import JointScore
@@ -57,21 +56,17 @@ def degraded(results: Iterable[JobResult]) -> bool:
 def degradation_sections(results: Sequence[JobResult]) -> list[list[str]]:
     """One table of all faults per kind of object, then one per fault with every object, and the wrong joints."""
     sections = []
-    for kind in dict.fromkeys(result.kind for result in results):
-        own = [result for result in results if result.kind == kind]
-        sections.append(_overview(kind, own))
-        for given in dict.fromkeys(result.input for result in own):
-            group = [result for result in own if result.input == given]
-            sections.append(_objects(kind, given, group))
+    for kind, own in grouped(results, by=lambda result: result.kind).items():
+        groups = grouped(own, by=lambda result: result.input)
+        sections.append(_overview(kind, groups))
+        sections += [_objects(kind, given, group) for given, group in groups.items()]
     return sections
 
 
-def _overview(kind: str, results: Sequence[JobResult]) -> list[str]:
-    inputs = list(dict.fromkeys(result.input for result in results))
-    groups = {given: [result for result in results if result.input == given] for given in inputs}
+def _overview(kind: str, groups: Mapping[str, Sequence[JobResult]]) -> list[str]:
     titles = ["input", "what was done", *_TITLES, f"within {CLOSE_ANGLE:.0f} deg [%]", "cuts fixed", "no answer"]
     rows = [[given, KINDS.get(given, ""), *_numbers(group), *_counts(group)] for given, group in groups.items()]
-    meant = [given for given in inputs if given not in NOT_MEANT]
+    meant = [given for given in groups if given not in NOT_MEANT]
     if len(meant) > 1:
         means = [_mean_of_groups([groups[given] for given in meant], metric) for _, metric, *_ in _COLUMNS]
         cells = [number(value, digits, scale) for value, (_, _, scale, digits) in zip(means, _COLUMNS, strict=True)]
@@ -81,9 +76,7 @@ def _overview(kind: str, results: Sequence[JobResult]) -> list[str]:
 
 
 def _objects(kind: str, given: str, results: Sequence[JobResult]) -> list[str]:
-    groups: dict[str, list[JobResult]] = defaultdict(list)
-    for result in results:
-        groups[result.object].append(result)
+    groups = grouped(results, by=lambda result: result.object)
     rows = [
         [name, *_numbers(group), _cuts(group), "; ".join(sorted({fault for run in group for fault in _faults(run)}))]
         for name, group in groups.items()

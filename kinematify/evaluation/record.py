@@ -19,7 +19,7 @@ from kinematify.evaluation.sources import code_version, git_commit
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 
     from matplotlib.figure import Figure
 
@@ -27,6 +27,8 @@ SCHEMA = 2
 _PACKAGES = ("kinematify", "numpy", "scipy", "torch", "trimesh", "libigl", "python-fcl", "mujoco", "pybullet", "pin")
 
 _Record = TypeVar("_Record")
+_Item = TypeVar("_Item")
+_Key = TypeVar("_Key", bound="Hashable")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,6 +209,14 @@ def table(titles: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     cells = [list(titles), ["---"] * len(titles)]
     cells += [[cell.replace("|", "\\|").replace("\n", " ") for cell in row] for row in rows]
     return "\n".join(f"| {' | '.join(row)} |" for row in cells)
+
+
+def grouped(items: Iterable[_Item], *, by: Callable[[_Item], _Key]) -> dict[_Key, list[_Item]]:
+    """Return items by key, in order of appearance."""
+    groups: dict[_Key, list[_Item]] = {}
+    for item in items:
+        groups.setdefault(by(item), []).append(item)
+    return groups
 
 
 def number(value: float | None, digits: int, scale: float = 1.0) -> str:

@@ -23,7 +23,7 @@ from kinematify.evaluation.record import Report, load_report, new_header, write_
 from kinematify.evaluation.sources import code_version
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping
 
     from matplotlib.figure import Figure
 
@@ -237,12 +237,3 @@ def among(known: Iterable[str]) -> AfterValidator:
 def explained(doc: str | None) -> str:
     """Return what the docstring of a study's module says below its question."""
     return (doc or "").partition("\n\n")[2].strip()
-
-
-def by(records: Sequence[Record], *names: str) -> dict[Any, list[Record]]:
-    """Group records by one of their values, or by several, in order of appearance."""
-    groups: dict[Any, list[Record]] = {}
-    for record in records:
-        key = record[names[0]] if len(names) == 1 else tuple(record[name] for name in names)
-        groups.setdefault(key, []).append(record)
-    return groups

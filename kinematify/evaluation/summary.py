@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from statistics import fmean, median
 from typing import TYPE_CHECKING, Any
 
+from kinematify.evaluation.record import grouped
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -123,9 +124,7 @@ def _type_summary(kind: str, joints: Sequence[JointScore]) -> TypeSummary:
 
 def summaries(results: Iterable[JobResult]) -> list[dict[str, Any]]:
     """Return plain values of every configuration, kind of object and input, with gripper fingers and without."""
-    groups: dict[tuple[str, str, str], list[JobResult]] = defaultdict(list)
-    for result in results:
-        groups[result.variant, result.kind, result.input].append(result)
+    groups = grouped(results, by=lambda result: (result.variant, result.kind, result.input))
     return [
         {
             "variant": variant,
@@ -141,10 +140,8 @@ def summaries(results: Iterable[JobResult]) -> list[dict[str, Any]]:
 
 def median_seconds(results: Iterable[JobResult]) -> float | None:
     """Return the median over objects of the mean inference time [s], None without results."""
-    by_object: dict[str, list[float]] = defaultdict(list)
-    for result in results:
-        by_object[result.object].append(result.seconds)
-    return median(fmean(group) for group in by_object.values()) if by_object else None
+    objects = grouped(results, by=lambda result: result.object).values()
+    return median(fmean(run.seconds for run in runs) for runs in objects) if objects else None
 
 
 def condition_group(name: str) -> str:

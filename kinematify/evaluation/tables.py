@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.evaluation.degrade_tables import degradation_sections, degraded
 from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
-from kinematify.evaluation.record import number, table
+from kinematify.evaluation.record import grouped, number, table
 from kinematify.evaluation.summary import (
     CLOSE_ANGLE,
     Summary,
@@ -79,13 +79,12 @@ def benchmark_blocks(report: Report[JobResult], baseline: Report[JobResult] | No
         baseline: An earlier report to compare with.
     """
     sections = [[READING]]
-    variants = list(dict.fromkeys(result.variant for result in report.records))
-    for variant in variants:
-        results = [result for result in report.records if result.variant == variant]
+    variants = grouped(report.records, by=lambda result: result.variant)
+    for variant, results in variants.items():
         sections.append([f"## Configuration: {variant}"])
         sections += degradation_sections(results) if degraded(results) else _variant_sections(results)
     if len(variants) > 1:
-        sections.append(_ablation(report.records, variants))
+        sections.append(_ablation(variants))
     if baseline is not None:
         sections.append(comparison(report, baseline))
     sections.append(_failures(report.records))
@@ -93,22 +92,19 @@ def benchmark_blocks(report: Report[JobResult], baseline: Report[JobResult] | No
 
 
 def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
-    robots = [result for result in results if result.kind == "robot"]
-    everyday = [result for result in results if result.kind == "everyday"]
-    generated = [result for result in results if result.kind == "procedural"]
-    other = [result for result in results if result.kind not in ("robot", "everyday", "procedural")]
+    kinds = _by_kind(results)
     sections = []
-    if robots:
+    if robots := kinds.get("robot"):
         sections += [_robot_table(robots), _without_gripper(robots)]
-    if everyday:
+    if everyday := kinds.get("everyday"):
         sections += [
             _everyday_summary(everyday),
             _category_table(everyday),
             _object_table("Everyday objects, each", everyday),
         ]
-    if generated:
+    if generated := kinds.get("procedural"):
         sections.append(_family_table(generated))
-    if other:
+    if other := [result for result in results if result.kind not in ("robot", "everyday", "procedural")]:
         sections.append(_object_table("Other objects, each", other))
     return [*sections, _condition_table(results), _type_table(results), _stage_table(results), _joint_errors(results)]
 
@@ -153,18 +149,14 @@ def _everyday_summary(results: Sequence[JobResult]) -> list[str]:
 
 
 def _category_table(results: Sequence[JobResult]) -> list[str]:
-    groups: dict[str, list[JobResult]] = defaultdict(list)
-    for result in results:
-        groups[result.category].append(result)
+    groups = grouped(results, by=lambda result: result.category)
     rows = [_row(category, group) for category, group in sorted(groups.items())]
     return ["### Everyday objects by category", table(["category", "joints", *_plain_titles()], rows)]
 
 
 def _family_table(results: Sequence[JobResult]) -> list[str]:
     """Generated objects by family: first those with the most wrong types, among them the largest axis angles."""
-    groups: dict[str, list[JobResult]] = defaultdict(list)
-    for result in results:
-        groups[result.category].append(result)
+    groups = grouped(results, by=lambda result: result.category)
 
     def goodness(family: str) -> tuple[float, float, str]:
         values = summarise(groups[family]).values
@@ -188,17 +180,16 @@ def _plain_titles() -> list[str]:
 
 def _condition_table(results: Sequence[JobResult]) -> list[str]:
     """Angle, TED, types and line per condition; random is the mean of its seeds."""
-    conditions = list(dict.fromkeys(condition_group(result.condition) for result in results))
+    conditions = list(grouped(results, by=lambda result: condition_group(result.condition)))
     metrics = (("angle [deg]", "angle_deg", 2, 1.0), ("line [mm]", "line_m", 2, 1000.0), ("TED", "ted", 2, 1.0))
     titles = ["object", *(f"{title} {condition}" for title, *_ in metrics for condition in conditions)]
     singly = [result for result in results if result.kind != "procedural"]  # of those there are hundreds
-    groups = {**_by_object(singly), **_means_by_kind(results)}
+    means = {f"**mean, {kind}**": group for kind, group in _by_kind(results).items()}
+    groups = {**_by_object(singly), **means}
     rows = []
     for name, group in groups.items():
-        cells = {
-            condition: summarise([result for result in group if condition_group(result.condition) == condition])
-            for condition in conditions
-        }
+        runs = grouped(group, by=lambda result: condition_group(result.condition))
+        cells = {condition: summarise(runs.get(condition, [])) for condition in conditions}
         numbers = (
             number(cells[condition].values.get(metric), digits, scale)
             for _, metric, digits, scale in metrics
@@ -206,11 +197,6 @@ def _condition_table(results: Sequence[JobResult]) -> list[str]:
         )
         rows.append([name, *numbers])
     return ["### By condition", table(titles, rows)]
-
-
-def _means_by_kind(results: Sequence[JobResult]) -> dict[str, list[JobResult]]:
-    kinds = dict.fromkeys(result.kind for result in results)
-    return {f"**mean, {kind}**": [result for result in results if result.kind == kind] for kind in kinds}
 
 
 def _type_table(results: Sequence[JobResult]) -> list[str]:
@@ -225,8 +211,8 @@ def _type_table(results: Sequence[JobResult]) -> list[str]:
             number(summary.angle_given_type_deg, 2),
             number(summary.close_given_type, 1, 100.0),
         ]
-        for kind in dict.fromkeys(result.kind for result in results)
-        for summary in summarise_types(result for result in results if result.kind == kind)
+        for kind, group in _by_kind(results).items()
+        for summary in summarise_types(group)
     ]
     close = f"within {CLOSE_ANGLE:.0f} deg [%]"
     titles = ["true type", "joints x runs", "types [%]", "angle [deg]", close]
@@ -246,8 +232,7 @@ def _stage_table(results: Sequence[JobResult]) -> list[str]:
             number(max(run.seconds for run in runs), 2),
             number(max(run.peak_mb or 0.0 for run in runs), 0),
         ]
-        for kind in dict.fromkeys(result.kind for result in answered)
-        if (runs := [result for result in answered if result.kind == kind])
+        for kind, runs in _by_kind(answered).items()
     ]
     titles = ["objects", *stages, "whole, median", "whole, longest", "peak [MB]"]
     return ["### Time by stage [s]", table(titles, rows)]
@@ -281,11 +266,10 @@ def _fault(joint: JointScore) -> str:
     return ", ".join(faults)
 
 
-def _ablation(runs: Sequence[JobResult], variants: Sequence[str]) -> list[str]:
+def _ablation(variants: Mapping[str, Sequence[JobResult]]) -> list[str]:
     """All configurations side by side on what the paper's ablation shows."""
     rows = []
-    for variant in variants:
-        results = [result for result in runs if result.variant == variant]
+    for variant, results in variants.items():
         groups = {
             "everyday": [result for result in results if result.kind == "everyday"],
             "robots": [result for result in results if result.kind == "robot"],
@@ -392,7 +376,8 @@ def _beside(paper: float | None, ours: str) -> str:
 
 
 def _by_object(results: Iterable[JobResult]) -> dict[str, list[JobResult]]:
-    groups: dict[str, list[JobResult]] = defaultdict(list)
-    for result in results:
-        groups[result.object].append(result)
-    return groups
+    return grouped(results, by=lambda result: result.object)
+
+
+def _by_kind(results: Iterable[JobResult]) -> dict[str, list[JobResult]]:
+    return grouped(results, by=lambda result: result.kind)

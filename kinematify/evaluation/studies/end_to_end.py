@@ -12,6 +12,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from itertools import islice
+from operator import itemgetter
 from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING
@@ -23,8 +24,8 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.job import JobResult
-from kinematify.evaluation.record import number, table
-from kinematify.evaluation.study import Options, Study, by, explained
+from kinematify.evaluation.record import grouped, number, table
+from kinematify.evaluation.study import Options, Study, explained
 from kinematify.evaluation.summary import median_seconds, summarise
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.generate.procedural.request import from_text
@@ -78,7 +79,9 @@ def measure(options: EndToEndOptions, work: Work) -> Measured:
             raise InputError(
                 f"The sentences {file} cannot be read ({error.strerror}). Give --sentences a file."
             ) from error
-    chosen = [item for group in by(asked, "family").values() for item in islice(group, options.each)]
+    chosen = [
+        item for group in grouped(asked, by=itemgetter("family")).values() for item in islice(group, options.each)
+    ]
     sentences = {
         item["text"]: Sentence(text=item["text"], family=item["family"], quick=options.quick) for item in chosen
     }
@@ -152,7 +155,7 @@ def report(found: Report[Record]) -> list[str]:
         "category", "sentences", "read right", "joints", "types", "axis [deg]", "line [mm]", "TED", "limits (IoU)",
         "moves without error" if quick else "validated without error", "inference [s]", "all in all [s]",
     )  # fmt: skip
-    groups = sorted(by(found.records, "expected").items())
+    groups = sorted(grouped(found.records, by=itemgetter("expected")).items())
     return [
         explained(__doc__),
         f"All in all: sentence, parts, inference, model folder and {judged}.",

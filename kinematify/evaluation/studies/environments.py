@@ -10,6 +10,7 @@ import os
 import time
 from dataclasses import dataclass
 from functools import partial
+from operator import itemgetter
 from typing import TYPE_CHECKING, Annotated, Any
 
 import gymnasium
@@ -20,8 +21,8 @@ from pydantic import Field
 from kinematify.envs import DRAWER_PULL, OPEN_PART
 from kinematify.envs.bundled import BUNDLED, DRAWERS
 from kinematify.envs.expert import ArmExpert, HandExpert
-from kinematify.evaluation.record import table
-from kinematify.evaluation.study import Options, Study, among, by, explained
+from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.study import Options, Study, among, explained
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -228,7 +229,7 @@ def pushed_at_random(asked: Amount) -> Record:
 def report(found: Report[Record]) -> list[str]:
     """A table for each part."""
     blocks = [explained(__doc__)]
-    for part, records in by(found.records, "part").items():
+    for part, records in grouped(found.records, by=itemgetter("part")).items():
         rows = [[_text(record[column]) for column in _COLUMNS[part]] for record in records]
         blocks += [f"## {_PARTS[part]}", table(_COLUMNS[part], rows)]
         if part == "speed":

@@ -13,6 +13,7 @@ import time
 from collections import Counter
 from dataclasses import dataclass
 from functools import cache
+from operator import itemgetter
 from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING, Annotated
@@ -21,8 +22,8 @@ from pydantic import Field
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.evaluation.record import table
-from kinematify.evaluation.study import Options, Study, among, by, explained
+from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
@@ -132,7 +133,7 @@ def _accuracy(blueprint: Blueprint, inference: Inference | None) -> dict[str, fl
 
 def report(found: Report[Record]) -> list[str]:
     """The families, the worst first, and every kind of error with an example."""
-    groups = by(found.records, "family")
+    groups = grouped(found.records, by=itemgetter("family"))
     numbers = {name: _numbers(group) for name, group in groups.items()}
     worst = sorted(groups, key=lambda name: (sum(numbers[name][w] for w in _WHOSE), -numbers[name]["angle_deg"], name))
     rows = [_row(name, numbers[name]) for name in worst]

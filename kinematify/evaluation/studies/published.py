@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,8 +18,8 @@ import pybullet_data
 from pydantic import Field
 
 from kinematify.evaluation.datasets import find_objects
-from kinematify.evaluation.record import table
-from kinematify.evaluation.study import Options, Study, by, explained
+from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.study import Options, Study, explained
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.run import validate
 
@@ -78,7 +79,7 @@ def verdict_on(model: Published) -> Record:
 def report(found: Report[Record]) -> list[str]:
     """One line per model."""
     blocks = [explained(__doc__)]
-    for source, records in by(found.records, "source").items():
+    for source, records in grouped(found.records, by=itemgetter("source")).items():
         wrong = sum(bool(record["errors"]) for record in records)
         blocks += [
             f"## {source}: {wrong} of {len(records)} models with errors",

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from operator import itemgetter
 from statistics import fmean, median
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,8 +25,8 @@ from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
 from kinematify.evaluation.job import erased_item, predicted, score_erased, shown_parts
 from kinematify.evaluation.metrics import ObjectScore
 from kinematify.evaluation.perturb import CLEAN, PERTURBATIONS, perturbed
-from kinematify.evaluation.record import table
-from kinematify.evaluation.study import Options, Study, among, by, explained
+from kinematify.evaluation.record import grouped, table
+from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.pipeline import infer
 from kinematify.refinement import refine
 from kinematify.refinement.tiers import TIERS
@@ -242,7 +243,7 @@ def part_tables(found: Report[Record]) -> dict[str, str]:
     """Title and table of every part."""
     return {
         found.summary["titles"][part]: _part_table(results_of(records))
-        for part, records in by(found.records, "part").items()
+        for part, records in grouped(found.records, by=itemgetter("part")).items()
     }
 
 
