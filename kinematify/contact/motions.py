@@ -18,7 +18,7 @@ _SAME = np.cos(np.radians(5.0))  # nearly equal motions are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Motion:
+class RigidMotion:
     """x -> turn x + shift, in the world frame."""
 
     turn: FloatArray
@@ -35,12 +35,12 @@ class Motion:
         return np.asarray(directions @ self.turn.T)
 
     @property
-    def inverse(self) -> Motion:
+    def inverse(self) -> RigidMotion:
         """The way back."""
-        return Motion(turn=self.turn.T, shift=-self.turn.T @ self.shift)
+        return RigidMotion(turn=self.turn.T, shift=-self.turn.T @ self.shift)
 
 
-def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) -> list[Motion]:
+def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) -> list[RigidMotion]:
     """Every motion that lays one cloud upon another one, the closest first.
 
     The principal axes are laid upon each other in all orders and signs; matching nearest points finishes each that is
@@ -52,32 +52,32 @@ def motions_between(first: FloatArray, second: FloatArray, *, tolerance: float) 
         tolerance: Largest mean distance of the moved points from the nearest others [m].
     """
     tree = cKDTree(second)
-    found: list[tuple[float, Motion]] = []
+    found: list[tuple[float, RigidMotion]] = []
     for start in _starts(first, second):
         if tree.query(start.points(first))[0].mean() > _START * tolerance:
             continue
         motion, distance = _matched(first, second, tree, start)
         if distance <= tolerance:
             found.append((distance, motion))
-    kept: list[Motion] = []
+    kept: list[RigidMotion] = []
     for _, motion in sorted(found, key=lambda item: item[0]):
         if all(_agreement(motion, other) < _SAME for other in kept):
             kept.append(motion)
     return kept
 
 
-def _starts(first: FloatArray, second: FloatArray) -> list[Motion]:
+def _starts(first: FloatArray, second: FloatArray) -> list[RigidMotion]:
     middles = first.mean(axis=0), second.mean(axis=0)
     axes = [np.linalg.eigh((cloud - m).T @ (cloud - m))[1] for cloud, m in zip((first, second), middles, strict=True)]
     starts = []
     for order in permutations(range(3)):
         for signs in product((1.0, -1.0), repeat=3):
             turn = (axes[1][:, order] * signs) @ axes[0].T
-            starts.append(Motion(turn=turn, shift=middles[1] - turn @ middles[0]))
+            starts.append(RigidMotion(turn=turn, shift=middles[1] - turn @ middles[0]))
     return starts
 
 
-def _matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: Motion) -> tuple[Motion, float]:
+def _matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: RigidMotion) -> tuple[RigidMotion, float]:
     """Match nearest points until they stay, mirrored or not as at the start; and their mean distance [m]."""
     sign = np.sign(np.linalg.det(motion.turn))
     for _ in range(_ROUNDS):
@@ -86,11 +86,11 @@ def _matched(first: FloatArray, second: FloatArray, tree: cKDTree, motion: Motio
         left, _, right = np.linalg.svd((nearest - other).T @ (first - one))
         flip = np.array([1.0, 1.0, sign * np.sign(np.linalg.det(left @ right))])
         turn = (left * flip) @ right
-        motion = Motion(turn=turn, shift=other - turn @ one)
+        motion = RigidMotion(turn=turn, shift=other - turn @ one)
     return motion, float(tree.query(motion.points(first))[0].mean())
 
 
-def _agreement(one: Motion, other: Motion) -> float:
+def _agreement(one: RigidMotion, other: RigidMotion) -> float:
     """Cosine of the angle between two motions; -1 where only one of them mirrors."""
     if np.linalg.det(one.turn) * np.linalg.det(other.turn) < 0:
         return -1.0

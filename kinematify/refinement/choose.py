@@ -13,7 +13,7 @@ import numpy as np
 
 from kinematify.joints.candidate import JointType
 from kinematify.refinement.candidates import is_same, score_of
-from kinematify.refinement.history import Change
+from kinematify.refinement.history import PlanChange
 from kinematify.refinement.words import described, ranged
 from kinematify.validation.feedback import feedback_from
 
@@ -61,14 +61,14 @@ class Chooser:
     refused: list[str] = field(default_factory=list)
     """Choices that would have hidden a failure, with the reason."""
 
-    def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[Change]]:
+    def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[PlanChange]]:
         """Take the blamed decisions about joints again, one part after the other.
 
         Args:
             plan: What was simulated.
             feedback: What its failures blame.
         """
-        changes: list[Change] = []
+        changes: list[PlanChange] = []
         doubted = sorted({item.child for item in feedback.lines} | {item.child for item in feedback.types})
         doubted.sort(key=feedback.against)
         for child in reversed(doubted):
@@ -121,7 +121,7 @@ class Chooser:
         blocked = any(signal.check == "KV310" for signal in feedback.lines)
         return Trial(joint=joint, score=score, against=feedback.against(child), blocked=blocked)
 
-    def _again(self, plan: Plan, child: str, against: float) -> tuple[Plan, Change | None]:
+    def _again(self, plan: Plan, child: str, against: float) -> tuple[Plan, PlanChange | None]:
         """The joint of one part, chosen again."""
         old = plan.joints[plan.index(child)]
         trials = self.trials(plan, old, against)
@@ -136,7 +136,7 @@ class Chooser:
             f"evidence {best.score:+.1f} of the geometry and {-best.against:+.1f} of the simulation, against "
             f"{first.score:+.1f} and {-first.against:+.1f}"
         )
-        change = Change(part=child, what=what, before=described(old), after=described(best.joint), why=why)
+        change = PlanChange(part=child, what=what, before=described(old), after=described(best.joint), why=why)
         return plan.with_joint(best.joint), change
 
     def _lead_of(self, trial: Trial, old: JointEstimate) -> float:
@@ -149,13 +149,13 @@ class Chooser:
         kinds = {trial.joint.kind.turns for trial in trials}
         return len(kinds) > 1 and self.in_time() and all(trial.blocked for trial in trials)
 
-    def _fixed(self, plan: Plan, child: str, old: JointEstimate, trials: list[Trial]) -> tuple[Plan, Change]:
+    def _fixed(self, plan: Plan, child: str, old: JointEstimate, trials: list[Trial]) -> tuple[Plan, PlanChange]:
         joint = replace(old, kind=JointType.FIXED, lower=0.0, upper=0.0)
         why = f"all {len(trials)} near-best joints, turning and sliding, are blocked to both sides at once"
-        change = Change(part=child, what="fixed", before=described(old), after="fixed", why=why)
+        change = PlanChange(part=child, what="fixed", before=described(old), after="fixed", why=why)
         return plan.with_joint(joint), change
 
-    def _cut(self, plan: Plan, signal: RangeSignal) -> tuple[Plan, Change | None]:
+    def _cut(self, plan: Plan, signal: RangeSignal) -> tuple[Plan, PlanChange | None]:
         """End a range where the way ends, unless that leaves less than the stated share of it."""
         old = plan.joints[plan.index(signal.child)]
         new = shortened(old, signal)
@@ -168,7 +168,7 @@ class Chooser:
                 "little of it to be told from hiding the failure"
             )
             return plan, None
-        change = Change(
+        change = PlanChange(
             part=signal.child,
             what="range",
             before=ranged(old),

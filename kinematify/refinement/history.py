@@ -7,7 +7,7 @@ from typing import Any
 
 
 @dataclass(frozen=True, kw_only=True)
-class Change:
+class PlanChange:
     """One decision that was taken again."""
 
     part: str
@@ -28,7 +28,7 @@ class Round:
     """0 is the inference as it was."""
     tier: str
     """``geometry``, ``engines`` or ``task``: how far it was simulated."""
-    changes: tuple[Change, ...]
+    changes: tuple[PlanChange, ...]
     """What was chosen anew before it was simulated."""
     errors: int
     """About motion or the task, by all that it was simulated by."""
@@ -61,7 +61,7 @@ class History:
     """Joints that were simulated beside the chosen ones."""
 
     @property
-    def changed(self) -> tuple[Change, ...]:
+    def changed(self) -> tuple[PlanChange, ...]:
         """Everything that differs between the inference and the round that was kept."""
         return tuple(change for item in self.rounds[: self.kept + 1] for change in item.changes)
 

@@ -18,12 +18,12 @@ from kinematify.geometry.surface import part_surfaces
 from kinematify.refinement.candidates import CandidateJoints, score_of
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.contacts import audit_contacts, rebuilt
-from kinematify.refinement.history import Change, History, Round
+from kinematify.refinement.history import History, PlanChange, Round
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.split import infer_joined
 from kinematify.refinement.tiers import GEOMETRY, TIERS, dear_verdict
-from kinematify.refinement.topology import Contacts, EdgeMemory, replanned, search_again
+from kinematify.refinement.topology import EdgeMemory, SearchedContacts, replanned, search_again
 from kinematify.refinement.twins import TWINS, vote
 from kinematify.validation.feedback import feedback_from
 from kinematify.validation.finding import Blame, Severity
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.pipeline.clock import Progress
     from kinematify.pipeline.inference import Inference
-    from kinematify.refinement.simulate import Verdict
+    from kinematify.refinement.simulate import MotionVerdict
     from kinematify.validation.feedback import Feedback
 
 
@@ -103,8 +103,8 @@ class _Done:
     """A round that was simulated."""
 
     plan: Plan
-    contacts: Contacts
-    verdict: Verdict
+    contacts: SearchedContacts
+    verdict: MotionVerdict
     feedback: Feedback
     round: Round
 
@@ -151,11 +151,11 @@ class _Loop:
     def run(self) -> None:
         """All rounds."""
         assembly = self.given.assembly
-        contacts = Contacts(graph=self.given.graph, bearings=self.given.bearings)
+        contacts = SearchedContacts(graph=self.given.graph, bearings=self.given.bearings)
         plan = Plan(assembly=assembly, config=self.given.config, tree=self.given.trees[0], joints=self.given.joints)
         self.simulator = Simulator(plan.model, self.request.settings.geometry)
         seen = set()
-        changes: list[Change] = []
+        changes: list[PlanChange] = []
         refused: list[str] = []
         for number in range(self.rounds + 1):
             seen.add(plan.signature)
@@ -198,7 +198,7 @@ class _Loop:
         )
 
     def _simulate(
-        self, number: int, plan: Plan, contacts: Contacts, changes: list[Change], refused: list[str]
+        self, number: int, plan: Plan, contacts: SearchedContacts, changes: list[PlanChange], refused: list[str]
     ) -> _Done:
         """One round: the plan by geometry, and by the dear tiers where they were asked for."""
         self.request.progress(f"round {number}: simulating", number / (self.rounds + 1))
@@ -236,7 +236,7 @@ class _Loop:
             ),
         )
 
-    def _choose(self, done: _Done) -> tuple[Plan, Contacts, list[Change], list[str]]:
+    def _choose(self, done: _Done) -> tuple[Plan, SearchedContacts, list[PlanChange], list[str]]:
         """The next plan: first what the parts are and what they hang on, then how they move."""
         self.request.progress(
             f"round {done.round.number}: choosing again", (done.round.number + 0.5) / (self.rounds + 1)
@@ -247,7 +247,7 @@ class _Loop:
                 self.mended = 1
                 return (*rebuilt_plan, [])
         plan = done.plan
-        changes: list[Change] = []
+        changes: list[PlanChange] = []
         if done.feedback.edges:
             plan, changes = self._repaired(done)
         if changes:
@@ -259,7 +259,7 @@ class _Loop:
         self.simulated += chooser.simulated
         return plan, done.contacts, [*changes, *votes], chooser.refused
 
-    def _rebuilt(self, done: _Done) -> tuple[Plan, Contacts, list[Change]] | None:
+    def _rebuilt(self, done: _Done) -> tuple[Plan, SearchedContacts, list[PlanChange]] | None:
         """Parts that were one, and contacts that the graph has wrong; None where both are right."""
         assembly, config = self.given.assembly, self.given.config
         surfaces = part_surfaces(assembly, config=config.surface)
@@ -272,17 +272,17 @@ class _Loop:
         if not audit:
             return None
         graph, bearings = rebuilt(assembly, surfaces, audit, self.given.bearings, config)
-        contacts = Contacts(graph=graph, bearings=bearings)
+        contacts = SearchedContacts(graph=graph, bearings=bearings)
         trees = search_again(assembly, contacts, self.memory, self.given.trees, config, base=self.base)
         plan, changes = replanned(done.plan, contacts, trees[0])
         why = f"{len(audit.missing)} contacts were missing and {len(audit.spurious)} are none"
-        told = Change(
+        told = PlanChange(
             part=assembly.names[trees[0].root], what="contacts", before=f"{len(self.given.graph.edges)}",
             after=f"{len(graph.edges)}", why=why,
         )  # fmt: skip
         return plan, contacts, [told, *changes]
 
-    def _repaired(self, done: _Done) -> tuple[Plan, list[Change]]:
+    def _repaired(self, done: _Done) -> tuple[Plan, list[PlanChange]]:
         """Another tree, if the search finds a better one with what the simulation had against edges."""
         trees = search_again(
             done.plan.assembly, done.contacts, self.memory, self.given.trees, self.given.config, base=self.base
@@ -310,13 +310,13 @@ class _Loop:
 _BLAMED = (Blame.KINEMATICS, Blame.TASK)
 
 
-def _severities(verdict: Verdict) -> tuple[int, int]:
+def _severities(verdict: MotionVerdict) -> tuple[int, int]:
     """Errors and warnings that blame the kinematics or that a task failed on."""
     found = [finding.severity for finding in verdict.findings if finding.blame in _BLAMED]
     return found.count(Severity.ERROR), found.count(Severity.WARNING)
 
 
-def _failed(verdict: Verdict) -> list[str]:
+def _failed(verdict: MotionVerdict) -> list[str]:
     return [
         f"{finding.check} {finding.joint or ''}".strip()
         for finding in verdict.findings

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kinematify.refinement.world import World
+from kinematify.refinement.world import PartsWorld
 from kinematify.validation.checks import checks_of
 from kinematify.validation.geometry.look import GeometryLook, JointMotion
 from kinematify.validation.report import JointSummary
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict:
+class MotionVerdict:
     """What a tier says of one plan."""
 
     findings: tuple[Finding, ...]
@@ -47,10 +47,10 @@ class Simulator:
             model: Any plan of the assembly.
             settings: Of the checks by geometry.
         """
-        self._world = World(model, settings)
+        self._world = PartsWorld(model, settings)
         self._sweeps: dict[tuple[object, ...], JointSweep] = {}
 
-    def judge(self, model: KinematicModel) -> Verdict:
+    def judge(self, model: KinematicModel) -> MotionVerdict:
         """Judge a whole plan."""
         look = GeometryLook(self._world.scene(model), compare_visible=False)
         found = _findings([check for check in checks_of("KV30") if check.id != "KV304"], look)  # a table, no failure
@@ -59,16 +59,16 @@ class Simulator:
             told, summary = self._joint(look, model, leader, travel.joint)
             found += told
             summaries.append(summary)
-        return Verdict(findings=tuple(found), joints=tuple(summaries))
+        return MotionVerdict(findings=tuple(found), joints=tuple(summaries))
 
-    def judge_joint(self, model: KinematicModel, joint: str) -> Verdict:
+    def judge_joint(self, model: KinematicModel, joint: str) -> MotionVerdict:
         """Judge one joint of a plan by its motion alone; a fixed joint has nothing to say."""
         look = GeometryLook(self._world.scene(model), compare_visible=False)
         names = [travel.joint for travel in look.scene.travels]
         if joint not in names:
-            return Verdict(findings=(), joints=())
+            return MotionVerdict(findings=(), joints=())
         found, summary = self._joint(look, model, names.index(joint), joint)
-        return Verdict(findings=tuple(found), joints=(summary,))
+        return MotionVerdict(findings=tuple(found), joints=(summary,))
 
     def _joint(
         self, look: GeometryLook, model: KinematicModel, leader: int, name: str

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from kinematify.contact.seams import joined, largest_piece, rigid_pieces
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.pieces import joints_of_pieces, tree_of_pieces
-from kinematify.refinement.history import Change
+from kinematify.refinement.history import PlanChange
 from kinematify.refinement.plan import Plan
-from kinematify.refinement.topology import Contacts
+from kinematify.refinement.topology import SearchedContacts
 
 if TYPE_CHECKING:
     from kinematify.contact.graph import Pair
 
 
 def infer_joined(
-    plan: Plan, contacts: Contacts, seams: dict[Pair, float], *, base: int | None
-) -> tuple[Plan, Contacts, list[Change]]:
+    plan: Plan, contacts: SearchedContacts, seams: dict[Pair, float], *, base: int | None
+) -> tuple[Plan, SearchedContacts, list[PlanChange]]:
     """The plan that results when pieces with a common seam are one part.
 
     Args:
@@ -39,7 +39,7 @@ def infer_joined(
     joints = joints_of_pieces(assembly, tree, whole.joints, groups, mains)
     new = Plan(assembly=assembly, config=plan.config, tree=tree, joints=joints)
     changes = [
-        Change(
+        PlanChange(
             part=assembly.names[piece],
             what="fixed",
             before=f"a part of its own on {_parent_name(plan, piece)}",

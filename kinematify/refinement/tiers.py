@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.model.urdf import write_urdf
-from kinematify.refinement.simulate import Verdict
+from kinematify.refinement.simulate import MotionVerdict
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _OWN = ("KV30", "KV31", "KV32")
 """Checks that the cheap tier has told already."""
 
 
-def dear_verdict(plan: Plan, cheap: Verdict, *, tier: str, settings: ValidationSettings) -> Verdict:
+def dear_verdict(plan: Plan, cheap: MotionVerdict, *, tier: str, settings: ValidationSettings) -> MotionVerdict:
     """Validate a plan in engines, and with a task if the tier asks for it.
 
     Args:
@@ -41,7 +41,7 @@ def dear_verdict(plan: Plan, cheap: Verdict, *, tier: str, settings: ValidationS
     told = tuple(finding for finding in report.counted if not finding.check.startswith(_OWN))
     if report.environment.get("interrupted"):
         raise KeyboardInterrupt
-    return Verdict(
+    return MotionVerdict(
         findings=(*cheap.findings, *told),
         joints=cheap.joints,
         placements=_placements(report),

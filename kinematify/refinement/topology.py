@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.pipeline.stages import choose_joints, find_trees
-from kinematify.refinement.history import Change
+from kinematify.refinement.history import PlanChange
 from kinematify.refinement.plan import Plan
 from kinematify.topology.reward import SimulatedEdges
 
@@ -31,7 +31,7 @@ Edge = tuple[int, int]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Contacts:
+class SearchedContacts:
     """The graph that trees are searched on, with its bearings."""
 
     graph: ContactGraph
@@ -57,7 +57,7 @@ class EdgeMemory:
 
 def search_again(
     assembly: Assembly,
-    contacts: Contacts,
+    contacts: SearchedContacts,
     memory: EdgeMemory,
     warm: tuple[KinematicTree, ...],
     config: Config,
@@ -71,7 +71,7 @@ def search_again(
     return find_trees(assembly, contacts.graph, contacts.bearings, config, base=base, simulated=simulated, warm=warm)
 
 
-def replanned(plan: Plan, contacts: Contacts, tree: KinematicTree) -> tuple[Plan, list[Change]]:
+def replanned(plan: Plan, contacts: SearchedContacts, tree: KinematicTree) -> tuple[Plan, list[PlanChange]]:
     """The plan on another tree: joints of edges that stay are kept where nothing about them changed.
 
     A joint depends on what hangs on both of its parts, so that all joints are chosen as the inference would, and those
@@ -81,7 +81,7 @@ def replanned(plan: Plan, contacts: Contacts, tree: KinematicTree) -> tuple[Plan
     names = plan.assembly.names
     new = Plan(assembly=plan.assembly, config=plan.config, tree=tree, joints=joints)
     changes = [
-        Change(
+        PlanChange(
             part=names[child],
             what="parent",
             before=names[before] if before >= 0 else "(base)",

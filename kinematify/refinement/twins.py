@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.joints.candidate import JointType
-from kinematify.refinement.history import Change
+from kinematify.refinement.history import PlanChange
 from kinematify.refinement.words import described
 
 TWINS = "twins"
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.refinement.plan import Plan
 
 
-def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[Change]]:
+def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[PlanChange]]:
     """Let siblings that are congruent vote about their type.
 
     Args:
@@ -31,7 +31,7 @@ def vote(plan: Plan, graph: ContactGraph, chooser: Chooser) -> tuple[Plan, list[
         graph: With the clusters of congruent parts.
         chooser: Simulates what a part would change to.
     """
-    changes: list[Change] = []
+    changes: list[PlanChange] = []
     for group in _siblings(plan, graph):
         members = [plan.joints[plan.index(plan.assembly.names[part])] for part in group]
         kinds = {joint.kind.turns for joint in members}
@@ -70,7 +70,7 @@ def _lean(joint: JointEstimate) -> float:
 
 def _follow(
     plan: Plan, joint: JointEstimate, *, turns: bool, chooser: Chooser, votes: int, others: float
-) -> tuple[Plan, Change | None]:
+) -> tuple[Plan, PlanChange | None]:
     """The best candidate of the type that the twins agree on, unless the simulation is against it."""
     if joint.kind.turns == turns:
         return plan, None
@@ -79,7 +79,7 @@ def _follow(
     if trial.against > 0.0:
         return plan, None
     name = plan.assembly.names[joint.child]
-    change = Change(
+    change = PlanChange(
         part=name,
         what="type",
         before=described(joint),

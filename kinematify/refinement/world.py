@@ -46,7 +46,7 @@ class WorldScene(Scene):
         return np.ascontiguousarray(poses[:, [body.group for body in self.bodies]])
 
 
-class World:
+class PartsWorld:
     """The parts of one assembly, from which scenes are made; solids are built when first asked for."""
 
     def __init__(self, model: KinematicModel, settings: GeometrySettings) -> None:

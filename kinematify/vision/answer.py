@@ -22,7 +22,7 @@ class Direction(StrEnum):
     DEPTH = "depth"
 
 
-class Side(StrEnum):
+class HingeSide(StrEnum):
     """Of a part on which it is hinged, as somebody in front of the object sees it."""
 
     LEFT = "left"
@@ -95,7 +95,7 @@ def schema() -> dict[str, Any]:
         "name": {"type": "string"},
         "type": question(TYPES),
         "axis_direction": question([item.value for item in Direction]),
-        "hinge_side": question([item.value for item in Side]),
+        "hinge_side": question([item.value for item in HingeSide]),
     }
     return {
         "type": "object", "properties": properties, "required": list(properties), "additionalProperties": False,
@@ -114,7 +114,7 @@ def read_answer(answer: Any, least: float) -> JointVotes:
     found = JointVotes(
         kind=_vote(answer.get("type"), TYPES, least),
         direction=_vote(answer.get("axis_direction"), [item.value for item in Direction], least),
-        side=_vote(answer.get("hinge_side"), [item.value for item in Side], least),
+        side=_vote(answer.get("hinge_side"), [item.value for item in HingeSide], least),
         name=str(answer.get("name", ""))[:80],
     )
     if found.kind is found.direction is found.side is None:

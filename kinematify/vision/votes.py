@@ -16,7 +16,7 @@ import numpy as np
 
 from kinematify.joints.candidate import JointType
 from kinematify.refinement.candidates import CandidateJoints, is_same
-from kinematify.vision.answer import TYPES, Direction, Side
+from kinematify.vision.answer import TYPES, Direction, HingeSide
 from kinematify.vision.question import joint_question
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _DIRECTIONS = (Direction.SIDEWAYS, Direction.DEPTH, Direction.VERTICAL)
 """Of the world's x, y and z axes: the front looks along -y."""
 _ALIKE = 0.01  # boxes that differ less, as a share of their diagonal, stand the same way
-_SIDES = ((Side.LEFT, Side.RIGHT), (Side.FRONT, Side.BACK), (Side.BOTTOM, Side.TOP))
+_SIDES = ((HingeSide.LEFT, HingeSide.RIGHT), (HingeSide.FRONT, HingeSide.BACK), (HingeSide.BOTTOM, HingeSide.TOP))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +138,7 @@ def vote_gain(
         *((twin.kind, kind, len(TYPES), shared) for twin in twins),
         (own.direction, direction, len(Direction), 1.0),
         *((twin.direction, direction, len(Direction), shared) for twin in twins),
-        (own.side, side, len(Side), 1.0),
+        (own.side, side, len(HingeSide), 1.0),
     ]
     weights = [weight * _strength(vote, choices, config) for vote, _, choices, weight in opinions]
     agreed = [
@@ -179,5 +179,5 @@ def side_of(candidate: JointCandidate, part: Part, off_center: float) -> str:
     # Along a thin side every axis is far out: sides are told in lengths, the middle in shares.
     index = int(np.argmax(np.abs(offset)))
     if abs(float(shares[index])) < off_center:
-        return Side.MIDDLE.value
+        return HingeSide.MIDDLE.value
     return _SIDES[index][int(offset[index] > 0.0)].value

@@ -181,7 +181,7 @@ def test_the_best_round_is_kept_even_if_later_ones_are_worse(monkeypatch: pytest
 
     def choose_badly(self: loop._Loop, done: loop._Done) -> object:
         plan = Plan(assembly=good.assembly, config=good.config, tree=good.trees[0], joints=worse.joints)
-        change = loop.Change(part="drawer", what="axis", before="a", after="b", why="planted")
+        change = loop.PlanChange(part="drawer", what="axis", before="a", after="b", why="planted")
         return plan, done.contacts, [change], []
 
     monkeypatch.setattr(loop._Loop, "_choose", choose_badly)

@@ -22,7 +22,7 @@ from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
 from kinematify.joints.candidate import JointCandidate
 from kinematify.pipeline import infer
-from kinematify.vision.answer import TYPES, Direction, JointVotes, Side, Vote
+from kinematify.vision.answer import TYPES, Direction, HingeSide, JointVotes, Vote
 from kinematify.vision.votes import chosen_anew, direction_of, side_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ _VOTERS = ((1.0, 1.0), (0.9, 0.9), (0.8, 0.8), (0.8, 0.95))
 """How often a voter is right, and how often it says it is."""
 _DRAWS = 5
 _QUESTIONS = ("type", "direction", "side")
-_CHOICES = {"type": TYPES, "direction": tuple(Direction), "side": tuple(Side)}
+_CHOICES = {"type": TYPES, "direction": tuple(Direction), "side": tuple(HingeSide)}
 
 
 class VotersOptions(Options):

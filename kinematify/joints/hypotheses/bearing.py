@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactEdge, ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
     from kinematify.joints.hypotheses.line import Lines
     from kinematify.robot.arrays import FloatArray
 
@@ -214,7 +214,7 @@ def _turned_lines(
     return lines
 
 
-def _own_axis(side: Side, config: BearingConfig, rng: np.random.Generator) -> Line | None:
+def _own_axis(side: BearingSide, config: BearingConfig, rng: np.random.Generator) -> Line | None:
     """The line about which a whole part is most nearly a surface of revolution."""
     lines = normal_pair_lines(side, config.turned_samples, rng)
     if len(lines) == 0:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Side:
+class BearingSide:
     """Evidence of one part near a contact, world frame. Weights fade with the distance to the other part."""
 
     points: FloatArray
@@ -45,7 +45,7 @@ class Side:
     """Length of the chain times its fading [m], shape (C,)."""
 
 
-Sides = tuple[Side, Side]
+Sides = tuple[BearingSide, BearingSide]
 
 
 def contact_sides(
@@ -68,11 +68,11 @@ def contact_sides(
     return _side(a, edge.samples_a, b, fade, config), _side(b, edge.samples_b, a, fade, config)
 
 
-def whole_side(surface: PartSurface, count: int) -> Side:
+def whole_side(surface: PartSurface, count: int) -> BearingSide:
     """Evidence of a whole part: `count` samples of its surface, no edges."""
     samples = surface.sample(count)
     nothing, none = np.empty((0, 3)), np.empty(0)
-    return Side(
+    return BearingSide(
         points=samples.points,
         normals=samples.normals,
         weights=samples.areas,
@@ -86,7 +86,7 @@ def whole_side(surface: PartSurface, count: int) -> Side:
     )
 
 
-def thin(side: Side, count: int) -> Side:
+def thin(side: BearingSide, count: int) -> BearingSide:
     """Keep about `count` surface samples, evenly spread over the list, and all edges."""
     if len(side.weights) <= count:
         return side
@@ -127,14 +127,14 @@ def _contact_scale(surfaces: Sequence[PartSurface], edge: ContactEdge, diagonal:
 
 def _side(
     surface: PartSurface, samples: ContactSamples, other: PartSurface, fade: _Fade, config: BearingConfig
-) -> Side:
+) -> BearingSide:
     weights = samples.areas * fade.weight(samples.distances)
     keep = weights > config.negligible * weights.max(initial=0.0)
     edges, circles = surface.feature_pieces, surface.feature_circles
     edge_distance = _distance_near(edges.middles, other, fade.reach)
     circle_distance = _distance_near(circles.on_circle, other, fade.reach)
     near, round_near = np.isfinite(edge_distance), np.isfinite(circle_distance)
-    return Side(
+    return BearingSide(
         points=samples.points[keep],
         normals=samples.normals[keep],
         weights=weights[keep],

@@ -13,7 +13,7 @@ from kinematify.robot.vectors import dots
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig
-    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 _LONGEST_STEP = 0.1  # in rad and in spreads: farther, the linear model means nothing
@@ -85,7 +85,7 @@ def moved_line(line: Line, basis: FloatArray, step: FloatArray, *, spread: float
     return Line(axis=axis, point=line.point + spread * (step[2] * basis[0] + step[3] * basis[1]))
 
 
-def surface_rows(side: Side, line: Line, basis: FloatArray, *, spread: float, tolerance: float) -> Rows:
+def surface_rows(side: BearingSide, line: Line, basis: FloatArray, *, spread: float, tolerance: float) -> Rows:
     """Rows of n . (u x (x - p)) / radius = 0: the normal line meets the axis.
 
     Args:
@@ -108,7 +108,9 @@ def surface_rows(side: Side, line: Line, basis: FloatArray, *, spread: float, to
     return Rows(design=np.stack([*tilt, *shift], axis=1), rest=rest, weight=weight)
 
 
-def circle_rows(side: Side, line: Line, basis: FloatArray, *, spread: float, tolerance: float, share: float) -> Rows:
+def circle_rows(
+    side: BearingSide, line: Line, basis: FloatArray, *, spread: float, tolerance: float, share: float
+) -> Rows:
     """Rows of t . u = 0 and t . (m - p) / radius = 0: a piece of edge runs around the axis.
 
     Args:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config import BearingConfig
-    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 _LEAST_SINE = 0.17  # below 10 deg between two normals their intersection is ill-conditioned
@@ -78,7 +78,7 @@ def _running_along(lines: Lines, directions: FloatArray) -> NDArray[np.bool_]:
     return np.asarray(np.abs(directions @ lines.axes.T) > _ALONG)
 
 
-def normal_pair_lines(side: Side, count: int, rng: np.random.Generator) -> Lines:
+def normal_pair_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Lines:
     """Axes of the cylinders through `count` random pairs of samples.
 
     Each runs along n1 x n2, through the point where the normals meet. Nearly parallel pairs are left out.
@@ -98,7 +98,7 @@ def normal_pair_lines(side: Side, count: int, rng: np.random.Generator) -> Lines
     return Lines(axes=axes, points=side.points[first][good] + along[:, None] * n1[good])
 
 
-def directed_lines(side: Side, directions: FloatArray, count: int, rng: np.random.Generator) -> Lines:
+def directed_lines(side: BearingSide, directions: FloatArray, count: int, rng: np.random.Generator) -> Lines:
     """Lines along given directions, each through the place where the normals of a random pair of samples meet.
 
     Rough normals are several degrees off, and so is the direction that two of them give; seen along a given direction,
@@ -123,7 +123,7 @@ def directed_lines(side: Side, directions: FloatArray, count: int, rng: np.rando
     return Lines(axes=axes[good], points=side.points[first][good] + along[:, None] * n1[good])
 
 
-def _circle_lines(side: Side, count: int, rng: np.random.Generator) -> Lines:
+def _circle_lines(side: BearingSide, count: int, rng: np.random.Generator) -> Lines:
     """Axes of at most `count` circles, drawn by weight."""
     weights = side.circle_weights
     if len(weights) == 0 or weights.sum() <= 0:

@@ -11,7 +11,7 @@ from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig
-    from kinematify.joints.hypotheses.bearing_evidence import Side
+    from kinematify.joints.hypotheses.bearing_evidence import BearingSide
     from kinematify.joints.hypotheses.line import Line
     from kinematify.robot.arrays import FloatArray
 
@@ -20,7 +20,7 @@ OCTAGON = 0.8
 _BLOCK = 256  # lines at a time: samples x lines fit the cache
 
 
-def surface_support(side: Side, lines: Lines, config: BearingConfig) -> FloatArray:
+def surface_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
     """Share of near area that turns into itself about each line, weighted by how well it locates the line.
 
     Consistent area counts through the smaller eigenvalue of the 2x2 matrix of its normals across the axis: a flat
@@ -42,12 +42,12 @@ def surface_support(side: Side, lines: Lines, config: BearingConfig) -> FloatArr
     return np.asarray(np.clip(np.concatenate([*blocks, np.empty(0)]), 0.0, 1.0))
 
 
-def line_support(side: Side, line: Line, config: BearingConfig) -> float:
+def line_support(side: BearingSide, line: Line, config: BearingConfig) -> float:
     """`surface_support` of a single line."""
     return float(surface_support(side, Lines(axes=line.axis[None], points=line.point[None]), config)[0])
 
 
-def _block_support(side: Side, lines: Lines, config: BearingConfig) -> FloatArray:
+def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
     u, p = lines.axes, lines.points
     e1, e2 = _across(u)
     along = side.normals @ u.T  # (S, L)
@@ -73,7 +73,7 @@ def _across(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, crossed(axes, first)
 
 
-def circle_support(side: Side, line: Line, *, diagonal: float, config: BearingConfig) -> float:
+def circle_support(side: BearingSide, line: Line, *, diagonal: float, config: BearingConfig) -> float:
     """Arc of feature edges that run around the line, in full turns near the contact, saturated to [0, 1].
 
     Args:

@@ -16,7 +16,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from kinematify.contact.motions import Motion, motions_between
+from kinematify.contact.motions import RigidMotion, motions_between
 from kinematify.geometry.surface import FACETED
 from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, thin
 from kinematify.joints.hypotheses.bearing_fit import refine_line
@@ -127,7 +127,7 @@ class _Shapes:
         self._surfaces = surfaces
         self._config = config.twins
         self._clouds: dict[int, FloatArray] = {}
-        self._motions: dict[Pair, list[Motion]] = {}
+        self._motions: dict[Pair, list[RigidMotion]] = {}
         self.most = config.twins.most
         self.reach = config.twins.reach
 
@@ -147,7 +147,7 @@ class _Shapes:
     def size(self, part: int) -> float:
         return self._surfaces[part].part.diagonal
 
-    def motions(self, first: int, second: int) -> list[Motion]:
+    def motions(self, first: int, second: int) -> list[RigidMotion]:
         """Motions from one part onto a congruent one, the closest first; none from a part onto itself."""
         if first == second:
             return []
@@ -171,7 +171,7 @@ class _Twin:
     """Another contact and how lines get there."""
 
     voter: _Voter
-    motion: Motion
+    motion: RigidMotion
     swapped: bool
     """The first part of one contact is congruent to the second of the other one."""
 
@@ -192,9 +192,9 @@ def _twins_of(
 
 def _best_motion(
     pair: Pair, other: Pair, voters: Mapping[Pair, _Voter], labels: IntArray, shapes: _Shapes
-) -> tuple[Motion, bool] | None:
+) -> tuple[RigidMotion, bool] | None:
     """The motion that takes contact to contact and brings both parts closest to their twins, and whether it swaps."""
-    best: tuple[float, Motion, bool] | None = None
+    best: tuple[float, RigidMotion, bool] | None = None
     for swapped in (False, True):
         there = other[::-1] if swapped else other
         if any(labels[a] != labels[b] for a, b in zip(pair, there, strict=True)):
@@ -266,7 +266,7 @@ def _voted(voter: _Voter, twins: Sequence[_Twin], diagonal: float, config: Beari
     return replace(own, lines=tuple(ranked), follows=follows)
 
 
-def _carried(line: BearingLine, motion: Motion, centroid: FloatArray) -> BearingLine:
+def _carried(line: BearingLine, motion: RigidMotion, centroid: FloatArray) -> BearingLine:
     moved = Line(axis=motion.directions(line.axis), point=motion.points(line.pivot))
     return replace(line, axis=moved.axis, pivot=moved.foot(centroid))
 

@@ -32,7 +32,7 @@ GIVEN = "given"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Lines:
+class CandidateLines:
     """Candidate axes of one joint."""
 
     axes: FloatArray
@@ -49,7 +49,7 @@ class Lines:
 class RankedTurns:
     """Candidate lines with their scores, best first."""
 
-    lines: Lines
+    lines: CandidateLines
     scores: FloatArray
     """Shape (c,), higher is better."""
     cues: Mapping[str, FloatArray]
@@ -123,8 +123,8 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
     return ranked.subset(np.argsort(-scores, kind="stable"))
 
 
-def _reorder(lines: Lines, order: IntArray) -> Lines:
-    return Lines(
+def _reorder(lines: CandidateLines, order: IntArray) -> CandidateLines:
+    return CandidateLines(
         axes=lines.axes[order],
         pivots=lines.pivots[order],
         places=tuple(lines.places[i] for i in order),
@@ -135,7 +135,7 @@ def _reorder(lines: Lines, order: IntArray) -> Lines:
 # ---- candidates ----------------------------------------------------------------------------------------------------
 
 
-def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> Lines:
+def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line] = ()) -> CandidateLines:
     """Bearing lines, lines through the contact, nine lines per direction of the slab's box, and those given."""
     found: list[tuple[FloatArray, FloatArray, int, str]] = []
     if scene.bearing is not None:
@@ -153,7 +153,7 @@ def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line]
     axes = np.array([axis for axis, _, _, _ in found])
     pivots = np.array([pivot for _, pivot, _, _ in found])
     pivots = pivots + np.einsum("cd,cd->c", anchor - pivots, axes)[:, None] * axes
-    return Lines(
+    return CandidateLines(
         axes=axes,
         pivots=pivots,
         places=tuple(place for _, _, place, _ in found),
@@ -221,26 +221,26 @@ def contact_clusters(scene: JointScene, config: JointsConfig) -> FloatArray | No
 # ---- cues ----------------------------------------------------------------------------------------------------------
 
 
-def _radii(points: FloatArray, lines: Lines) -> FloatArray:
+def _radii(points: FloatArray, lines: CandidateLines) -> FloatArray:
     """Distance of points (n, 3) from each line [m], shape (c, n)."""
     offset = points[None] - lines.pivots[:, None]
     along = np.einsum("cnk,ck->cn", offset, lines.axes)
     return np.asarray(np.sqrt(np.maximum(np.einsum("cnk,cnk->cn", offset, offset) - along**2, 0.0)))
 
 
-def _arms(point: FloatArray, lines: Lines) -> FloatArray:
+def _arms(point: FloatArray, lines: CandidateLines) -> FloatArray:
     """Vector from each line to a point, across the line [m], shape (c, 3)."""
     offset = point - lines.pivots
     return np.asarray(offset - np.einsum("ck,ck->c", offset, lines.axes)[:, None] * lines.axes)
 
 
-def _reach(scene: JointScene, lines: Lines) -> FloatArray:
+def _reach(scene: JointScene, lines: CandidateLines) -> FloatArray:
     """Largest distance of the child from each line [m], shape (c,)."""
     points = scene.cache.samples(scene.child).points
     return np.asarray(np.maximum(_radii(points, lines).max(axis=1), 1e-12))
 
 
-def _outwardness(scene: JointScene, lines: Lines) -> FloatArray:
+def _outwardness(scene: JointScene, lines: CandidateLines) -> FloatArray:
     """Cosine between the first motion of the centre (turning about +) and the way out of the body, shape (c,)."""
     velocity = crossed(lines.axes, _arms(scene.centre, lines))
     speed = lengths_of(velocity)
@@ -254,7 +254,7 @@ def _outwardness(scene: JointScene, lines: Lines) -> FloatArray:
 
 def _motion_cues(
     scene: JointScene,
-    lines: Lines,
+    lines: CandidateLines,
     with_parent: Sweep,
     everything: Sweep,
     outward: FloatArray,
@@ -278,7 +278,7 @@ def _motion_cues(
     }
 
 
-def _separation(scene: JointScene, lines: Lines, sign: FloatArray, config: JointsConfig) -> FloatArray:
+def _separation(scene: JointScene, lines: CandidateLines, sign: FloatArray, config: JointsConfig) -> FloatArray:
     """Gap to the parent after a turn of `panels.part_deg` in the preferred direction, fraction of the diagonal."""
     points = scene.cache.samples(scene.child).points
     points = points[:: max(1, len(points) // config.panels.separation_points)]
@@ -297,7 +297,7 @@ def _separation(scene: JointScene, lines: Lines, sign: FloatArray, config: Joint
     return np.asarray(np.maximum(distances.min(axis=1) - before, 0.0) / scene.diagonal)
 
 
-def _contact_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+def _contact_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig) -> dict[str, FloatArray]:
     """How close to the line the parts touch, and how close the line runs to the parent."""
     along = (scene.frame.local(scene.cache.samples(scene.child).points)).T
     half = 0.5 * np.ptp(along, axis=1)
@@ -322,13 +322,13 @@ def _contact_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict
     }
 
 
-def is_ajar(scene: JointScene, lines: Lines, share: FloatArray, config: JointsConfig) -> bool:
+def is_ajar(scene: JointScene, lines: CandidateLines, share: FloatArray, config: JointsConfig) -> bool:
     """A panel that touches its parent along one edge only stands open; then contact tells the hinge by itself."""
     corners = np.array([place == CORNER for place in lines.places])
     return bool(scene.plate and corners.any() and share[corners].max() > config.panels.ajar_share)
 
 
-def _handle_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+def _handle_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig) -> dict[str, FloatArray]:
     """A handle is far from the hinge, and a long one runs along it."""
     n = len(lines.axes)
     if scene.handle is None:
@@ -343,7 +343,7 @@ def _handle_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[
     }
 
 
-def _margin_cues(scene: JointScene, lines: Lines, config: JointsConfig) -> dict[str, FloatArray]:
+def _margin_cues(scene: JointScene, lines: CandidateLines, config: JointsConfig) -> dict[str, FloatArray]:
     """The hinge is on the side where less of the body is left; controls and the next door are opposite."""
     n = len(lines.axes)
     here, opposite = np.zeros(n), np.zeros(n)
@@ -397,7 +397,9 @@ def _tallness(scene: JointScene) -> float:
     return float(frame.extents[vertical] / max(frame.extents[level], 1e-12))
 
 
-def _gravity_cues(scene: JointScene, lines: Lines, with_parent: Sweep, outward: FloatArray) -> dict[str, FloatArray]:
+def _gravity_cues(
+    scene: JointScene, lines: CandidateLines, with_parent: Sweep, outward: FloatArray
+) -> dict[str, FloatArray]:
     """Doors turn about upright lines or drop down, lids rise, and a lid's hinge is where the body stands higher."""
     vertical = np.abs(lines.axes @ UP)
     arms = -_arms(scene.centre, lines)
@@ -421,7 +423,7 @@ def _gravity_cues(scene: JointScene, lines: Lines, with_parent: Sweep, outward: 
     }
 
 
-def _heel(scene: JointScene, lines: Lines, arms: FloatArray) -> FloatArray:
+def _heel(scene: JointScene, lines: CandidateLines, arms: FloatArray) -> FloatArray:
     """Level lines across a pedal, from -1 at its tip to 1 at its end inside the body, shape (c,)."""
     half = 0.5 * float(np.abs(scene.frame.axes @ scene.pedal_direction) @ scene.frame.extents)
     across = (np.abs(lines.axes @ UP) < 0.1) & (np.abs(lines.axes @ scene.pedal_direction) < 0.5)
@@ -442,7 +444,7 @@ def _body_behind(scene: JointScene, arms: FloatArray) -> FloatArray:
     return np.asarray(side.mean(axis=0))
 
 
-def _shape_cues(scene: JointScene, lines: Lines, near: FloatArray) -> dict[str, FloatArray]:
+def _shape_cues(scene: JointScene, lines: CandidateLines, near: FloatArray) -> dict[str, FloatArray]:
     """Where on the box the line lies and how it runs; for small parts, the normal of the contact.
 
     A round part that touches only far from its own axis (a porthole on its hinge) does not turn about that axis.
@@ -478,14 +480,14 @@ def _shape_cues(scene: JointScene, lines: Lines, near: FloatArray) -> dict[str, 
     }
 
 
-def _squareness(scene: JointScene, lines: Lines) -> FloatArray:
+def _squareness(scene: JointScene, lines: CandidateLines) -> FloatArray:
     """1 for lines along an axis of the child's or the parent's frame, 0 from 8 deg off all of them, shape (c,)."""
     axes = np.concatenate([scene.frame.axes, scene.parent_frame.axes])
     nearest = np.minimum(np.abs(lines.axes @ axes.T).max(axis=1), 1.0)
     return np.asarray(np.interp(np.degrees(np.arccos(nearest)), (4.0, 8.0), (1.0, 0.0)))
 
 
-def _rolling(scene: JointScene, lines: Lines) -> FloatArray:
+def _rolling(scene: JointScene, lines: CandidateLines) -> FloatArray:
     """1 for the lines through the middle of a wheel on the floor, along its axle, shape (c,)."""
     frame = scene.frame
     along = np.abs(lines.axes @ frame.axes[frame.thin]) > np.cos(np.radians(10.0))
@@ -493,7 +495,7 @@ def _rolling(scene: JointScene, lines: Lines) -> FloatArray:
     return np.asarray(along & (off < 0.1) & scene.rolls, dtype=np.float64)
 
 
-def _bearing_ratio(scene: JointScene, lines: Lines) -> FloatArray:
+def _bearing_ratio(scene: JointScene, lines: CandidateLines) -> FloatArray:
     """Score of each bearing line over that of the best one; 0 for other lines."""
     if scene.bearing is None or not scene.bearing.lines:
         return np.zeros(len(lines.sources))
@@ -502,7 +504,7 @@ def _bearing_ratio(scene: JointScene, lines: Lines) -> FloatArray:
     return np.array([next(scores) / best if source in ("bearing", "weak_bearing") else 0.0 for source in lines.sources])
 
 
-def _roundness(scene: JointScene, lines: Lines) -> FloatArray:
+def _roundness(scene: JointScene, lines: CandidateLines) -> FloatArray:
     """Share of the child's area across the line's direction that turns into itself about the line, from 0.5 to 1."""
     samples = scene.cache.samples(scene.child)
     result = np.zeros(len(lines.axes))

@@ -17,7 +17,7 @@ from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import RailConfig
-    from kinematify.joints.hypotheses.bearing_evidence import Side, Sides
+    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 
@@ -55,7 +55,7 @@ def fit_rail(sides: Sides, config: RailConfig, rng: np.random.Generator) -> Rail
     return Rail(axis=refined, score=float(_score(sides, refined[None], config)[0]))
 
 
-def _cross_directions(side: Side, count: int, rng: np.random.Generator) -> FloatArray:
+def _cross_directions(side: BearingSide, count: int, rng: np.random.Generator) -> FloatArray:
     """Directions across pairs of normals that are far from parallel, shape (L, 3)."""
     if len(side.weights) == 0:
         return np.empty((0, 3))
@@ -73,7 +73,7 @@ def _score(sides: Sides, axes: FloatArray, config: RailConfig) -> FloatArray:
     return np.asarray(np.sqrt(area[0] * area[1]) * guided)
 
 
-def _extruded_area(side: Side, axes: FloatArray, config: RailConfig) -> FloatArray:
+def _extruded_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:
     """Share of near area along each direction, through the smaller eigenvalue of its normals across it, (L,).
 
     One flat wall has rank one and counts nothing: it slides in two directions.
@@ -85,7 +85,7 @@ def _extruded_area(side: Side, axes: FloatArray, config: RailConfig) -> FloatArr
     return np.asarray(np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0))
 
 
-def _guiding_edges(side: Side, axes: FloatArray, config: RailConfig) -> FloatArray:
+def _guiding_edges(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:
     """Share of the near feature edges' length that runs along each direction, (L,)."""
     lengths = side.lengths * side.edge_weights
     total = float(lengths.sum())
