@@ -28,7 +28,7 @@ from kinematify.config.joints import (
     SlidesConfig,
     SweepConfig,
 )
-from kinematify.config.output import ModelConfig, PreviewConfig
+from kinematify.config.output import CollisionConfig, DynamicsConfig, ModelConfig, PreviewConfig
 from kinematify.config.refinement import FeedbackConfig, RefineConfig
 from kinematify.config.services import ServiceConfig, VisionConfig
 from kinematify.config.shapes import (
@@ -52,10 +52,12 @@ __all__ = [
     "BearingConfig",
     "CavlConfig",
     "ClearanceConfig",
+    "CollisionConfig",
     "CompoundConfig",
     "ConfidenceConfig",
     "Config",
     "ContactConfig",
+    "DynamicsConfig",
     "FeedbackConfig",
     "FramesConfig",
     "FrontCuesConfig",
@@ -103,6 +105,8 @@ class Config(StageConfig):
     bearing: BearingConfig
     quality: QualityConfig
     model: ModelConfig
+    collision: CollisionConfig
+    dynamics: DynamicsConfig
     preview: PreviewConfig
     joints: JointsConfig
     topology: TopologyConfig

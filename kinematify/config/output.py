@@ -36,6 +36,42 @@ class ModelConfig(StageConfig):
     """Longer model names are cut [characters]."""
 
 
+class CollisionConfig(StageConfig):
+    """Collision geometry of the model that is written."""
+
+    clearance: float
+    """Distance that is kept between what a joint moves and what it does not [m]."""
+    clearance_share: float
+    """It is smaller for small objects: at most this."""
+    thinnest_share: float
+    """What would be left thinner is dropped, fraction of the clearance."""
+    turn_slack: float
+    """How far beyond their limits joints that turn are kept free [rad]."""
+    slide_slack: float
+    """The same for joints that slide [m]."""
+
+
+class DynamicsConfig(StageConfig):
+    """Friction, damping and weight of the model that is written."""
+
+    hand_force: float
+    """What a hand pulls a drawer with [N]."""
+    hand_torque: float
+    """What a hand turns a door with [N m]."""
+    hand_share: float
+    """Weight and friction take at most this share of it."""
+    holding: float
+    """Friction over the weight that pulls at a joint where it rests."""
+    rubbing: float
+    """Friction of bearings and slides over the weight on them."""
+    most_friction: float
+    """Friction is at most this share of a hand's force."""
+    settling_time: float
+    """A part that was pushed comes to rest in about this time [s]: inertia over damping."""
+    opening_time: float
+    """A hand moves it over its whole range in at most about this time [s]."""
+
+
 class PreviewConfig(StageConfig):
     """Pictures of a model; lengths as fractions of the diagonal of what is shown."""
 

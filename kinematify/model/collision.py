@@ -1,0 +1,219 @@
+"""Collision geometry that works as it is written: boxes and convex pieces, carved by the motion of every joint.
+
+Engines see each mesh as its convex hull, and MuJoCo does not filter contacts with a root that it welds to the world: a
+drawer in a hollow cabinet would start inside of a solid block. So every surface is taken apart into convex pieces
+(`decomposed`), and these are cut back (`carved`) until no joint, swept alone over its range, brings what it moves
+nearer to anything else than the clearance. Contacts stay switched on for every pair.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.geometry.carve import Sweep, carved
+from kinematify.geometry.convex import ConvexPiece, surface_points
+from kinematify.geometry.hull import convex_hull
+from kinematify.model.collision_pieces import decomposed
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
+from kinematify.robot.vectors import crossed, lengths_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.config import CollisionConfig
+    from kinematify.config.validation import PrepareSettings
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Joint, Link, Robot
+
+_PROBES = 400
+"""Points of a link's surface by which it is told how much the pieces leave out."""
+_BOX_CORNERS = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1).reshape(8, 3)
+_SQUARE = 1e-6
+"""A piece is a box if its corners differ from those of one by less than this fraction of its diagonal."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FittedLink:
+    """The collision geometry of one link and how well it stands for the surface."""
+
+    link: str
+    boxes: int
+    convex: int
+    """Convex meshes."""
+    outside: float
+    """How far the pieces reached beyond the surface at most before they were carved [m]."""
+    left_out: float
+    """Largest distance of the surface from the nearest piece [m]."""
+    carved: float
+    """Share of the volume of the pieces that the motion carved away."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedCollision:
+    """A robot with new collision geometry."""
+
+    robot: Robot
+    links: tuple[FittedLink, ...]
+    """Those that have geometry."""
+    clearance: float
+    """Distance that is kept between links that a joint moves against each other [m]."""
+    jams: tuple[tuple[str, str, str], ...]
+    """Joint and two links that still meet in its range, because a link keeps at least one piece."""
+
+
+def fit_collision(robot: Robot, config: CollisionConfig, decomposition: PrepareSettings) -> FittedCollision:
+    """Replace the collision geometry of every link by boxes and convex pieces of its visual geometry.
+
+    Links without visual geometry keep the shape of their collision geometry. Joints are swept one by one, over their
+    limits and a little beyond, because engines' limits are soft; the others rest.
+
+    Args:
+        robot: The robot; a link may have any number of shapes.
+        config: Clearance and slack.
+        decomposition: How surfaces are taken apart.
+
+    Returns:
+        The robot with pieces in the link frames; meshes among them have no file yet.
+    """
+    bare = replace(robot, links=tuple(replace(link, collisions=()) if link.visuals else link for link in robot.links))
+    pieces = decomposed(bare, decomposition)
+    poses = forward_kinematics(robot, rest_configuration(robot))
+    bodies = [
+        [_moved(piece, poses[link.name]) for piece in (*map(_hull, pieces[link.name].primitives), *pieces[link.name].convex)]
+        for link in bare.links
+    ]
+    clearance = min(config.clearance, config.clearance_share * _size(bodies))
+    result = carved(
+        bodies, _sweeps(robot, poses, config), clearance=clearance, thinnest=config.thinnest_share * clearance
+    )
+    links, facts = [], []
+    for index, link in enumerate(bare.links):
+        T_link_world = np.linalg.inv(poses[link.name])
+        shapes = tuple(_shape(_moved(piece, T_link_world)) for piece in result.pieces[index])
+        links.append(replace(robot.links[index], collisions=shapes))
+        if shapes:
+            facts.append(_fitted(link, shapes, outside=pieces[link.name].gap, lost=result.lost[index]))
+    joints = _moving(robot)
+    return FittedCollision(
+        robot=replace(robot, links=tuple(links)),
+        links=tuple(facts),
+        clearance=clearance,
+        jams=tuple((joints[k].name, robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
+    )
+
+
+def _moving(robot: Robot) -> list[Joint]:
+    return [joint for joint in robot.joints if joint.kind is not JointType.FIXED]
+
+
+def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[Sweep]:
+    """One sweep for every joint that moves, relative to where it rests."""
+    joints = _moving(robot)
+    index = {link.name: number for number, link in enumerate(robot.links)}
+    rest = rest_configuration(robot)
+    found = []
+    for joint, low, high in zip(joints, *joint_ends(joints), strict=True):
+        slack = config.turn_slack if joint.kind.turns else config.slide_slack
+        T_world_child = poses[joint.child]
+        found.append(
+            Sweep(
+                moved=frozenset(index[name] for name in _carried(robot, joint.child)),
+                turns=joint.kind.turns,
+                axis=T_world_child[:3, :3] @ joint.axis,
+                pivot=T_world_child[:3, 3],
+                lower=min(float(low) - rest[joint.name], 0.0) - slack,
+                upper=max(float(high) - rest[joint.name], 0.0) + slack,
+            )
+        )
+    return found
+
+
+def _carried(robot: Robot, link: str) -> list[str]:
+    """A link and all that hangs on it."""
+    return [link, *(name for joint in robot.joints_below[link] for name in _carried(robot, joint.child))]
+
+
+def _size(bodies: Sequence[Sequence[ConvexPiece]]) -> float:
+    """Diagonal of the box around all pieces [m]."""
+    ends = np.array([end for group in bodies for piece in group for end in (piece.low, piece.high)])
+    return float(np.linalg.norm(np.ptp(ends, axis=0))) if len(ends) else 0.0
+
+
+def _hull(shape: Shape) -> ConvexPiece:
+    vertices, faces = convex_hull(shape.mesh.vertices)
+    return ConvexPiece(vertices=vertices, faces=faces)
+
+
+def _moved(piece: ConvexPiece, T: FloatArray) -> ConvexPiece:
+    return ConvexPiece(vertices=piece.vertices @ T[:3, :3].T + T[:3, 3], faces=piece.faces)
+
+
+def _shape(piece: ConvexPiece) -> Shape:
+    """A box where the piece is one, which engines collide exactly and quickest, else its mesh."""
+    mesh = LinkMesh(vertices=piece.vertices, faces=piece.faces)
+    axes = _box_axes(piece)
+    if axes is None:
+        return Shape(mesh=mesh)
+    along = piece.vertices @ axes.T
+    low, high = along.min(axis=0), along.max(axis=0)
+    T_link_box = np.eye(4)
+    T_link_box[:3, :3] = axes.T
+    T_link_box[:3, 3] = 0.5 * (low + high) @ axes
+    x, y, z = (high - low).tolist()
+    return Shape(kind="box", mesh=mesh, size=(x, y, z), T_link_shape=T_link_box)
+
+
+def _box_axes(piece: ConvexPiece) -> FloatArray | None:
+    """Axes of the box that a piece is, as rows, those nearest to the frame's; None if it is none."""
+    if len(piece.vertices) != len(_BOX_CORNERS):
+        return None
+    a, b, c = (piece.vertices[piece.faces[:, k]] for k in range(3))
+    normals = crossed(b - a, c - a)
+    normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
+    first = normals[np.argmax(np.abs(normals[:, 0]))]
+    second = normals[np.argmin(np.abs(normals @ first) - 1e-3 * np.abs(normals[:, 1]))]
+    axes = np.stack([first, second, crossed(first, second)])
+    axes = np.stack([axes[k] for k in np.argmax(np.abs(axes), axis=0)])
+    axes *= np.where(np.diag(axes) < 0.0, -1.0, 1.0)[:, None]
+    if abs(float(np.linalg.det(axes)) - 1.0) > _SQUARE:
+        return None
+    along = piece.vertices @ axes.T
+    low, high = along.min(axis=0), along.max(axis=0)
+    corners = low + _BOX_CORNERS * (high - low)
+    farthest = np.linalg.norm(along[:, None] - corners[None], axis=2).min(axis=0).max()
+    return axes if farthest <= _SQUARE * float(np.linalg.norm(high - low)) else None
+
+
+def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float) -> FittedLink:
+    boxes = sum(shape.kind == "box" for shape in shapes)
+    return FittedLink(
+        link=link.name,
+        boxes=boxes,
+        convex=len(shapes) - boxes,
+        outside=outside,
+        left_out=_left_out(link, shapes),
+        carved=lost,
+    )
+
+
+def _left_out(link: Link, shapes: Sequence[Shape]) -> float:
+    """Largest distance of points on the surface of a link from the nearest of its pieces [m]."""
+    points = np.concatenate(
+        [
+            surface_points(mesh.vertices, mesh.faces, max(_PROBES // len(link.meshes), 1))
+            for mesh in link.meshes
+            if len(mesh.faces)
+        ]
+    )
+    nearest = np.full(len(points), np.inf)
+    for shape in shapes:
+        a, b, c = (shape.mesh.vertices[shape.mesh.faces[:, k]] for k in range(3))
+        normals = crossed(b - a, c - a)
+        normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
+        beyond = (points @ normals.T - np.einsum("ij,ij->i", normals, a)).max(axis=1)
+        nearest = np.minimum(nearest, np.maximum(beyond, 0.0))
+    return float(nearest.max())

@@ -1,0 +1,168 @@
+"""Friction, damping and weight that a hand can cope with: nothing moves by itself, and everything moves when pushed.
+
+What hangs on the base by one or two joints is opened by hand: doors, drawers, lids, knobs. Longer chains are machines
+with motors; they get the same friction and damping, and their masses stay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import forward_kinematics, joint_ends, rest_configuration
+from kinematify.robot.transforms import rotation_about
+
+if TYPE_CHECKING:
+    from kinematify.config import DynamicsConfig
+    from kinematify.robot.robot import Joint, Robot
+
+_GRAVITY = np.array([0.0, 0.0, -9.81])
+_AT_LIMIT = 1e-6
+"""A limit that is nearer to rest [rad or m] takes the weight."""
+_NEAR_REST = 0.1
+"""What stands on its head would fall [rad]: the weight is looked at so far to both sides of rest."""
+_VALUES = 33
+"""Values of a joint at which its weight is looked at."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointLoad:
+    """What a joint moves: others rest."""
+
+    inertia: float
+    """About the axis [kg m^2], or the mass [kg]."""
+    at_rest: float
+    """Weight that pulls at the joint where it rests, 0 where a limit takes it [N m or N]."""
+    largest: float
+    """Largest weight over the range [N m or N]."""
+    press: float
+    """Weight of what it carries times the radius of gyration, or the weight [N m or N]: what bearings and slides rub by."""
+    travel: float
+    """Length of the range [rad or m]."""
+
+
+def with_dynamics(robot: Robot, config: DynamicsConfig) -> Robot:
+    """Return the robot with damping and friction for every joint that has none, and with parts that a hand can lift.
+
+    Friction holds what rests in the middle of its range against its weight; damping lets a hand's force move it over
+    its range in a few seconds and no quicker than in a fraction of one. Where a hand could not lift what a joint
+    carries, its masses are made smaller: they come from the volume of a closed surface as if it were solid.
+
+    Args:
+        robot: Links with mass properties; zero is their pose as given.
+        config: Forces of a hand, friction, times.
+    """
+    for joint in reversed(robot.joints_downward):
+        if joint.leads and _by_hand(robot, joint):
+            robot = _lightened(robot, joint, config)
+    joints = tuple(
+        joint
+        if joint.kind is JointType.FIXED or joint.damping is not None or joint.friction is not None
+        else _with_dynamics(robot, joint, config)
+        for joint in robot.joints
+    )
+    return replace(robot, joints=joints)
+
+
+def _by_hand(robot: Robot, joint: Joint) -> bool:
+    """Whether a joint belongs to a chain of at most two joints that move."""
+    above = 0
+    link: str = joint.parent
+    while link != robot.root:
+        above += robot.joint_above[link].kind is not JointType.FIXED
+        link = robot.joint_above[link].parent
+    return above + 1 + _longest_below(robot, joint.child) <= 2
+
+
+def _longest_below(robot: Robot, link: str) -> int:
+    """Moving joints of the longest chain that hangs on a link."""
+    below = robot.joints_below[link]
+    return max((_longest_below(robot, item.child) + (item.kind is not JointType.FIXED) for item in below), default=0)
+
+
+def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
+    """Scale the masses that a joint carries so that a hand moves them against weight and friction."""
+    load = joint_load(robot, joint)
+    needed = load.largest + _rubbing(load, config)
+    bearable = config.hand_share * _hand(joint, config)
+    if needed <= bearable:
+        return robot
+    scale = bearable / needed
+    carried = set(carried_links(robot, joint.child))
+    return replace(
+        robot,
+        links=tuple(
+            replace(link, inertial=replace(link.inertial, mass=scale * link.inertial.mass, tensor=scale * link.inertial.tensor))
+            if link.name in carried and link.inertial is not None
+            else link
+            for link in robot.links
+        ),
+    )
+
+
+def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig) -> Joint:
+    load, hand = joint_load(robot, joint), _hand(joint, config)
+    friction = _friction(load, config, hand)
+    left = max(hand - load.largest - friction, (1.0 - config.hand_share) * hand)
+    damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
+    return replace(joint, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
+
+
+def _friction(load: JointLoad, config: DynamicsConfig, hand: float) -> float:
+    """What holds a part where it rests, never so much that a hand could not move it."""
+    return min(_rubbing(load, config), config.most_friction * hand)
+
+
+def _rubbing(load: JointLoad, config: DynamicsConfig) -> float:
+    return max(config.holding * load.at_rest, config.rubbing * load.press)
+
+
+def _hand(joint: Joint, config: DynamicsConfig) -> float:
+    return config.hand_torque if joint.kind.turns else config.hand_force
+
+
+def carried_links(robot: Robot, link: str) -> list[str]:
+    """Return a link and all that hangs on it."""
+    return [link, *(name for joint in robot.joints_below[link] for name in carried_links(robot, joint.child))]
+
+
+def joint_load(robot: Robot, joint: Joint) -> JointLoad:
+    """Return what a joint has to move, the others at rest."""
+    rest = rest_configuration(robot)
+    poses = forward_kinematics(robot, rest)
+    T_world_joint = poses[joint.child]
+    axis, pivot = T_world_joint[:3, :3] @ joint.axis, T_world_joint[:3, 3]
+    carried = [(robot.link_by_name[name].inertial, poses[name]) for name in carried_links(robot, joint.child)]
+    known = [(inertial, T) for inertial, T in carried if inertial is not None and inertial.mass > 0.0]
+    masses = np.array([inertial.mass for inertial, _ in known])
+    centres = np.array([T[:3, :3] @ inertial.center_of_mass + T[:3, 3] for inertial, T in known]).reshape(-1, 3)
+    lower, upper = (float(end[0]) - rest[joint.name] for end in joint_ends([joint]))
+    weight = 9.81 * float(masses.sum())
+    if not joint.kind.turns:
+        pull = float(masses.sum() * (_GRAVITY @ axis))
+        pulls, inertia, press = np.array([pull]), float(masses.sum()), weight
+        at_rest = pull
+    else:
+        arms = [np.cross(axis, centre - pivot) for centre in centres]
+        inertia = sum(
+            mass * float(arm @ arm) + float(axis @ T[:3, :3] @ inertial.tensor @ T[:3, :3].T @ axis)
+            for mass, arm, (inertial, T) in zip(masses, arms, known, strict=True)
+        )
+        values = np.linspace(lower, upper, _VALUES)
+        moment = (masses[:, None] * (centres - pivot)).sum(axis=0)
+        pulls = np.array([axis @ np.cross(rotation_about(axis, value) @ moment, _GRAVITY) for value in values])
+        nearby = np.array([-_NEAR_REST, 0.0, _NEAR_REST])
+        around = np.array([axis @ np.cross(rotation_about(axis, value) @ moment, _GRAVITY) for value in nearby])
+        at_rest = float(around[np.argmax(np.abs(around))])
+        press = weight * float(np.sqrt(inertia / max(float(masses.sum()), 1e-300)))
+    taken = upper <= _AT_LIMIT if at_rest > 0.0 else lower >= -_AT_LIMIT
+    return JointLoad(
+        inertia=float(inertia),
+        at_rest=0.0 if taken else abs(at_rest),
+        largest=float(np.abs(pulls).max()),
+        press=press,
+        travel=upper - lower,
+    )
