@@ -10,6 +10,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
+from kinematify.cli.options import collision_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 
@@ -75,6 +76,7 @@ if TYPE_CHECKING:
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
+@collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @click.option("--no-validation", is_flag=True, help="Leave out the verdict on the model; it is most of the time.")
@@ -99,6 +101,7 @@ def command(
     up: str,
     scale: float,
     out: Path | None,
+    collision: str | None,
     force: bool,
     no_preview: bool,
     no_validation: bool,
@@ -139,7 +142,9 @@ def command(
             text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
             record=record, replay=replay, resend=resend, up=up, scale=scale, seed=seed or 0,
         )  # fmt: skip
-        return _run(ProvidedGeneration(asked, _needed(out), not no_preview, not no_validation), force, json_to)
+        return _run(
+            ProvidedGeneration(asked, _needed(out), not no_preview, not no_validation, collision), force, json_to
+        )
     _refuse_without_source(images, program, time_limit, budget, record, replay, resend)
     if (text is None) == (category is None):
         raise click.UsageError("Give either --text or --category (or --corpus, or --list to see what there is).")
@@ -147,7 +152,11 @@ def command(
         raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
     request = from_text(text) if text is not None else from_category(category or "", _pairs(settings))
     return _run(
-        Generation(request, seed, _needed(out), preview=not no_preview, validated=not no_validation), force, json_to
+        Generation(
+            request, seed, _needed(out), preview=not no_preview, validated=not no_validation, collision=collision
+        ),
+        force,
+        json_to,
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.inferred import describe
+from kinematify.cli.options import with_collision
 from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
 from kinematify.config import load_config
@@ -46,6 +47,8 @@ class Generation:
     out: Path
     preview: bool
     validated: bool
+    collision: str | None = None
+    """``auto`` or ``mesh``; None: as the configuration says."""
     blueprint: Blueprint = field(init=False)
     inference: Inference = field(init=False)
     report: ValidationReport | None = None
@@ -61,7 +64,7 @@ class Generation:
         self.blueprint = self.request.build(seed=self.seed)
         if self.validated:
             start_server()  # its imports take seconds, on another core than the inference
-        config = load_config()
+        config = with_collision(load_config(), self.collision)
         self.inference = infer(
             self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
         )

@@ -11,6 +11,7 @@ import click
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.inferred import confidences, describe
+from kinematify.cli.options import collision_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 
@@ -83,6 +84,7 @@ if TYPE_CHECKING:
     metavar="off|auto|URL",
     help="Ask a vision-language model about the joints: a chat interface, or that of KINEMATIFY_VLM_URL.",
 )
+@collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @json_option
@@ -100,6 +102,7 @@ def command(
     rounds: int | None,
     tier: str,
     vlm: str,
+    collision: str | None,
     force: bool,
     no_preview: bool,
     json_to: str | None,
@@ -122,6 +125,7 @@ def command(
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
+    settings = with_collision(settings, collision)
     with progress_reporter() as progress:
         use_one_thread(settings)
         progress("reading the parts", 0.0)

@@ -10,6 +10,7 @@ import click
 from kinematify.assembly.load import load_assembly
 from kinematify.cli.generation import status_of, summary_of, validated, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
+from kinematify.cli.options import with_collision
 from kinematify.cli.verdict import say
 from kinematify.config import load_config
 from kinematify.generate.providers.command import CommandSource
@@ -87,6 +88,8 @@ class ProvidedGeneration:
     out: Path
     preview: bool
     with_verdict: bool
+    collision: str | None = None
+    """``auto`` or ``mesh``; None: as the configuration says."""
     generated: Generated = field(init=False)
     inference: Inference = field(init=False)
     report: ValidationReport | None = None
@@ -101,7 +104,7 @@ class ProvidedGeneration:
         """
         check_output(self.out, overwrite=overwrite)
         self._make_parts(lambda stage, done: progress(stage, _MADE * done))
-        config = load_config()
+        config = with_collision(load_config(), self.collision)
         progress("reading the parts", _MADE)
         given = load_assembly(
             self.generated.path, config=config.assembly, up=self.options.up, scale=self.options.scale,

@@ -10,6 +10,7 @@ import click
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.inferred import describe
+from kinematify.cli.options import collision_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
@@ -50,6 +51,7 @@ TIERS = ("geometry", "engines", "task")
 @click.option(
     "--html", type=click.Path(path_type=Path), metavar="FILE", help="Validate the result and write its report."
 )
+@collision_option
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
 @json_option
 def command(
@@ -60,6 +62,7 @@ def command(
     budget: float | None,
     base: str | None,
     html: Path | None,
+    collision: str | None,
     no_preview: bool,
     json_to: str | None,
 ) -> int:
@@ -85,6 +88,7 @@ def command(
     with progress_reporter() as progress:
         progress("reading the parts", 0.0)
         assembly, config = open_model_folder(folder)
+        config = with_collision(config, collision)
         check_base(base, assembly.names)
         inference = infer(assembly, config=config, base=base, progress=lambda stage, done: progress(stage, 0.4 * done))
         refinement = refine(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from kinematify.config.base import StageConfig
 
 
@@ -39,6 +41,8 @@ class ModelConfig(StageConfig):
 class CollisionConfig(StageConfig):
     """Collision geometry of the model that is written."""
 
+    mode: Literal["auto", "mesh"]
+    """``auto``: boxes and convex pieces, carved by the motion; ``mesh``: the visual meshes."""
     clearance: float
     """Distance that is kept between what a joint moves and what it does not [m]."""
     clearance_share: float

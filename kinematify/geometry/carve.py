@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 _SAMPLES = 160
 """Points in a piece by which the share that a plane cuts off is estimated."""
+_WIDEST_STEP = 0.35
+"""Of a sweep that turns [rad]."""
 _MOST_STEPS = 128
 """Steps of a sweep at most: 3 deg of a whole turn."""
 _MOST_PARTS = 6
@@ -131,7 +133,9 @@ class _Polytope:
         if heights.min() >= 0.0:
             return self
         faces = self.piece.faces
-        edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
+        edges = np.unique(
+            np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0
+        )
         start, end = heights[edges[:, 0]], heights[edges[:, 1]]
         crossing = start * end < 0.0
         share = (start[crossing] / (start[crossing] - end[crossing]))[:, None]
@@ -155,108 +159,167 @@ def carved(
         clearance: Distance that is kept between what moves and what does not [m].
         thinnest: What would be left thinner than this is dropped [m].
     """
-    carving = _Carving(bodies, clearance, thinnest)
+    alive = [[_Polytope(index, piece) for piece in pieces] for index, pieces in enumerate(bodies)]
+    volumes = [sum(item.piece.volume for item in group) for group in alive]
+    jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
-        carving.free(number, sweep)
-    return carving.result()
+        clearing = _Clearing(alive, volumes, sweep, clearance=clearance, thinnest=thinnest)
+        jams += [(number, one, other) for one, other in clearing.run()]
+    left = [sum(item.piece.volume for item in group) for group in alive]
+    return Carved(
+        pieces=tuple(tuple(item.piece for item in group) for group in alive),
+        lost=tuple(max(0.0, 1.0 - now / max(before, 1e-300)) for now, before in zip(left, volumes, strict=True)),
+        jams=tuple(jams),
+    )
 
 
-class _Carving:
-    """Bodies on their way to pieces that do not meet."""
+class _Clearing:
+    """One sweep that is made free."""
 
-    def __init__(self, bodies: Sequence[Sequence[ConvexPiece]], clearance: float, thinnest: float) -> None:
-        self._alive = [[_Polytope(index, piece) for piece in pieces] for index, pieces in enumerate(bodies)]
-        self._volumes = [max(sum(item.piece.volume for item in group), 1e-300) for group in self._alive]
-        self._clearance, self._thinnest = clearance, thinnest
-        self._jams: list[tuple[int, int, int]] = []
+    def __init__(
+        self,
+        alive: list[list[_Polytope]],
+        volumes: Sequence[float],
+        sweep: Sweep,
+        *,
+        clearance: float,
+        thinnest: float,
+    ) -> None:
+        """Keep the pieces of all bodies, which are cut in place, and the volumes that bodies had."""
+        self._alive, self._volumes, self._thinnest = alive, volumes, thinnest
+        self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
+        self._resting = [item for body, group in enumerate(alive) if body not in sweep.moved for item in group]
+        self._path = _Path(sweep, self._moving, clearance)
+        self._rest_of: dict[_Polytope, list[_Polytope]] = {}
 
-    def result(self) -> Carved:
-        left = [sum(item.piece.volume for item in group) for group in self._alive]
-        return Carved(
-            pieces=tuple(tuple(item.piece for item in group) for group in self._alive),
-            lost=tuple(max(0.0, 1.0 - now / before) for now, before in zip(left, self._volumes, strict=True)),
-            jams=tuple(self._jams),
-        )
-
-    def free(self, number: int, sweep: Sweep) -> None:
-        """Cut until one sweep is free."""
-        moving = [item for body in sorted(sweep.moved) for item in self._alive[body]]
-        resting = [item for body, group in enumerate(self._alive) if body not in sweep.moved for item in group]
-        if not moving or not resting:
-            return
-        path = _Path(sweep, np.concatenate([item.vertices for item in moving]), self._clearance)
-        low, high = path.boxes(moving)
-        steps = [
-            (low[:, None, :, k] <= np.array([item.high for item in resting])[None, :, None, k] + self._clearance)
-            & (high[:, None, :, k] >= np.array([item.low for item in resting])[None, :, None, k] - self._clearance)
-            for k in range(3)
-        ]
-        near = (steps[0] & steps[1] & steps[2]).any(axis=2)
-        pairs = [(moving[i], resting[j]) for i, j in np.argwhere(near)[::-1]]
-        rest_of: dict[_Polytope, list[_Polytope]] = {}
+    def run(self) -> list[tuple[int, int]]:
+        """Cut until the sweep is free; return the pairs of bodies that still meet."""
+        jams = []
+        pairs = self._path.near(self._moving, self._resting)
         while pairs:
             one, other = pairs.pop()
-            if one in rest_of or other in rest_of:
-                pairs += [(a, b) for a in rest_of.get(one, [one]) for b in rest_of.get(other, [other])]
+            if one in self._rest_of or other in self._rest_of:
+                pairs += [(a, b) for a in self._rest_of.get(one, [one]) for b in self._rest_of.get(other, [other])]
                 continue
-            meets = path.meets(one, other, self._clearance)
-            if not len(meets):
-                continue
-            self._separate(number, path, one, other, meets, rest_of)
+            steps = self._path.meets(one, other)
+            if len(steps) and not self._separated(one, other, steps):
+                jams.append((one.body, other.body))
+        return jams
 
-    def _separate(
-        self,
-        number: int,
-        path: _Path,
-        one: _Polytope,
-        other: _Polytope,
-        meets: IntArray,
-        rest_of: dict[_Polytope, list[_Polytope]],
-    ) -> None:
-        """Cut the piece that loses less of its body."""
+    def _separated(self, moving: _Polytope, resting: _Polytope, steps: IntArray) -> bool:
+        """Cut the piece that loses less of its body; False if either body would have nothing left."""
         options = []
-        for piece, backwards in ((one, True), (other, False)):
-            obstacle = other if backwards else one
-            parts = _Cut(path, obstacle, backwards, self._clearance, self._thinnest, self._volumes[piece.body]).rest(piece, meets)
-            lost = piece.piece.volume - sum(part.piece.volume for part in parts)
+        for piece, obstacle in ((moving, resting), (resting, moving)):
+            parts = self._around(piece, obstacle, steps, backwards=piece is moving)
+            lost = (piece.piece.volume - sum(part.piece.volume for part in parts)) / self._volumes[piece.body]
             emptied = not parts and len(self._alive[piece.body]) == 1
-            cost = np.inf if emptied else lost / self._volumes[piece.body] + _PIECE_COST * (len(parts) - 1)
-            options.append((cost, piece, parts))
-        if any(parts == [piece] for _, piece, parts in options):
-            return
+            options.append((np.inf if emptied else lost + _PIECE_COST * (len(parts) - 1), piece, parts))
         cost, piece, parts = min(options, key=lambda item: item[0])
         if not np.isfinite(cost):
-            self._jams.append((number, one.body, other.body))
-            return
-        rest_of[piece] = parts
-        group = self._alive[piece.body]
-        place = group.index(piece)
-        group[place : place + 1] = parts
+            return False
+        if parts != [piece]:
+            self._rest_of[piece] = parts
+            group = self._alive[piece.body]
+            place = group.index(piece)
+            group[place : place + 1] = parts
+        return True
+
+    def _around(self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, *, backwards: bool) -> list[_Polytope]:
+        """Convex parts of a piece that are clear of the obstacle in all steps; the piece itself where it is clear."""
+        least = _LEAST_PART * min(piece.piece.volume, self._volumes[piece.body])
+        found: list[_Polytope] = []
+        whole = piece
+        while len(found) < _MOST_PARTS:
+            normal, offset = self._path.best_plane(whole, obstacle, steps, backwards=backwards)
+            kept = whole.clipped(normal, offset, self._thinnest)
+            if kept is None or kept.piece.volume < least:
+                break
+            found.append(kept)
+            beyond = whole.clipped(-normal, -offset, self._thinnest)
+            if kept is whole or beyond is None or beyond.piece.volume < least:
+                break
+            steps = self._path.meets(*((beyond, obstacle) if backwards else (obstacle, beyond)))
+            if not len(steps):
+                found.append(beyond)
+                break
+            whole = beyond
+        return found
 
 
 class _Path:
     """One sweep in steps."""
 
-    def __init__(self, sweep: Sweep, points: FloatArray, clearance: float) -> None:
-        """Choose steps short enough that arcs rise over their chords by less than a third of the clearance."""
-        self.sweep = sweep
+    def __init__(self, sweep: Sweep, moving: Sequence[_Polytope], clearance: float) -> None:
+        """Choose steps so short that arcs rise over their chords by at most a third of the clearance."""
+        self._sweep, self._clearance = sweep, clearance
         count = 1
         if sweep.turns:
-            radius = max(sweep.radius(points), 1e-9)
-            step = min(np.sqrt(8.0 * clearance / 3.0 / radius), 0.35)
+            radius = max((sweep.radius(item.vertices) for item in moving), default=0.0)
+            step = min(np.sqrt(8.0 * clearance / 3.0 / max(radius, 1e-9)), _WIDEST_STEP)
             count = int(min(max(np.ceil((sweep.upper - sweep.lower) / step), 1), _MOST_STEPS))
-        self.values = np.linspace(sweep.lower, sweep.upper, count + 1)
-        self._rotations, self._translations = sweep.motions(self.values)
-        self._rise = 1.0 - np.cos(0.5 * (sweep.upper - sweep.lower) / count) if sweep.turns else 0.0
+        self._rotations, self._translations = sweep.motions(np.linspace(sweep.lower, sweep.upper, count + 1))
+        self._arc = 1.0 - np.cos(0.5 * (sweep.upper - sweep.lower) / count) if sweep.turns else 0.0
+        self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
         self._tracks: dict[tuple[_Polytope, bool], FloatArray] = {}
 
-    def rise(self, piece: _Polytope) -> float:
-        """How far the arcs of a piece rise over their chords [m]."""
-        return self._rise * self.sweep.radius(piece.vertices) if self.sweep.turns else 0.0
+    def near(self, moving: Sequence[_Polytope], resting: Sequence[_Polytope]) -> list[tuple[_Polytope, _Polytope]]:
+        """Pairs whose boxes meet in some step, those of the first pieces last."""
+        rest_low = np.array([item.low for item in resting]).reshape(-1, 1, 3) - self._clearance
+        rest_high = np.array([item.high for item in resting]).reshape(-1, 1, 3) + self._clearance
+        found = []
+        for item in moving:
+            low, high = self._boxes(item)
+            meet = ((low <= rest_high) & (high >= rest_low)).all(axis=2).any(axis=1)
+            found += [(item, resting[number]) for number in np.flatnonzero(meet)]
+        return found[::-1]
 
-    def track(self, piece: _Polytope, *, backwards: bool) -> FloatArray:
-        """Vertices at all values, shape (n + 1, V, 3): of what moves in the world, or (backwards) of what rests as what
-        moves sees it."""
+    def _boxes(self, piece: _Polytope) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper corners of boxes around what moves, for every step, shape (n, 3) each; arcs included."""
+        track, rise = self._track(piece, backwards=False), self._rise(piece)
+        low, high = track.min(axis=1), track.max(axis=1)
+        return np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
+
+    def meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
+        """Steps in which no plane keeps two pieces apart by the clearance."""
+        apart = np.maximum(
+            self._beyond(resting, moving, backwards=False) - self._rise(moving),
+            self._beyond(moving, resting, backwards=True) - self._rise(resting),
+        )
+        return np.flatnonzero(apart < self._clearance)
+
+    def best_plane(
+        self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, *, backwards: bool
+    ) -> tuple[FloatArray, float]:
+        """Unit normal (3,) and offset of the plane that has the swept obstacle below it and most of a piece above."""
+        swept = self._track(obstacle, backwards=backwards)[np.union1d(steps, steps + 1)].reshape(-1, 3)
+        along = self._normals(obstacle, steps, backwards=backwards)
+        normals = np.concatenate([-piece.planes[0], self._across, along])
+        offsets = (normals @ swept.T).max(axis=1) + (1.0 + _ROUNDING) * self._clearance + self._rise(obstacle)
+        kept = (piece.samples @ normals.T > offsets).sum(axis=0)
+        # Of planes that keep as many samples, the one that the piece stands out of farthest is the mildest.
+        reach = (normals @ piece.vertices.T).max(axis=1) - offsets
+        best = np.lexsort((reach, kept))[-1]
+        return normals[best], float(offsets[best])
+
+    def _normals(self, piece: _Polytope, steps: IntArray, *, backwards: bool) -> FloatArray:
+        """Face normals of a piece along its track at both ends of some steps, shape (k, 3)."""
+        own = piece.planes[0]
+        if not self._sweep.turns:
+            return own
+        some = steps[np.unique(np.linspace(0, len(steps) - 1, min(len(steps), _DIRECTIONS)).astype(np.int64))]
+        turns = self._rotations[np.union1d(some, some + 1)]
+        return np.asarray(np.einsum("nji,pj->npi" if backwards else "nij,pj->npi", turns, own).reshape(-1, 3))
+
+    def _beyond(self, still: _Polytope, passing: _Polytope, *, backwards: bool) -> FloatArray:
+        """How far beyond the best plane of `still` the other one is in each step [m], shape (n,)."""
+        normals, offsets = still.planes
+        normals = np.concatenate([normals, self._across])
+        offsets = np.concatenate([offsets, (self._across @ still.vertices.T).max(axis=1)])
+        heights = (self._track(passing, backwards=backwards) @ normals.T).min(axis=1) - offsets
+        return np.asarray(np.minimum(heights[:-1], heights[1:]).max(axis=1))
+
+    def _track(self, piece: _Polytope, *, backwards: bool) -> FloatArray:
+        """Vertices at the ends of all steps, (n + 1, V, 3), of what moves; backwards: of what rests as that sees it."""
         key = (piece, backwards)
         if key not in self._tracks:
             if backwards:
@@ -267,100 +330,6 @@ class _Path:
                 self._tracks[key] = turned + self._translations[:, None]
         return self._tracks[key]
 
-    def boxes(self, pieces: Sequence[_Polytope]) -> tuple[FloatArray, FloatArray]:
-        """Boxes around what moves in every step, shape (pieces, n, 3) each, arcs included."""
-        low, high = [], []
-        for piece in pieces:
-            track, rise = self.track(piece, backwards=False), self.rise(piece)
-            ends = track.min(axis=1), track.max(axis=1)
-            low.append(np.minimum(ends[0][:-1], ends[0][1:]) - rise)
-            high.append(np.maximum(ends[1][:-1], ends[1][1:]) + rise)
-        return np.array(low), np.array(high)
-
-    def normals(self, piece: _Polytope, steps: IntArray, *, backwards: bool) -> FloatArray:
-        """Face normals of a piece along its track at both ends of some steps, shape (k, 3)."""
-        own = piece.planes[0]
-        some = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), _DIRECTIONS)).astype(np.int64))
-        turns = self._rotations[np.unique(np.concatenate([steps[some], steps[some] + 1]))]
-        turned = np.einsum("nji,pj->npi" if backwards else "nij,pj->npi", turns, own)
-        return np.asarray(turned.reshape(-1, 3)) if self.sweep.turns else own
-
-    def meets(self, moving: _Polytope, resting: _Polytope, clearance: float) -> IntArray:
-        """Steps in which no plane keeps two pieces apart by the clearance."""
-        apart = np.maximum(
-            self._beyond(resting, moving, backwards=False) - self.rise(moving),
-            self._beyond(moving, resting, backwards=True) - self.rise(resting),
-        )
-        return np.flatnonzero(apart < clearance)
-
-    def _beyond(self, still: _Polytope, passing: _Polytope, *, backwards: bool) -> FloatArray:
-        """How far beyond the best plane of `still` the other one is in each step [m], shape (n,)."""
-        normals, offsets = still.planes
-        across = _axes_of(self.sweep)
-        normals = np.concatenate([normals, across, -across])
-        offsets = np.concatenate([offsets, (across @ still.vertices.T).max(axis=1), (-across @ still.vertices.T).max(axis=1)])
-        heights = (self.track(passing, backwards=backwards) @ normals.T).min(axis=1) - offsets
-        return np.asarray(np.minimum(heights[:-1], heights[1:]).max(axis=1))
-
-
-def _axes_of(sweep: Sweep) -> FloatArray:
-    """Axis of a joint and the axes of the frame, shape (4, 3)."""
-    return np.concatenate([np.eye(3), sweep.axis[None]])
-
-
-class _Cut:
-    """What one obstacle leaves of a piece."""
-
-    def __init__(
-        self, path: _Path, obstacle: _Polytope, backwards: bool, clearance: float, thinnest: float, volume: float
-    ) -> None:
-        self._path, self._obstacle, self._backwards = path, obstacle, backwards
-        self._room = (1.0 + _ROUNDING) * clearance + path.rise(obstacle)
-        self._clearance, self._thinnest, self._volume = clearance, thinnest, volume
-        self._track = path.track(obstacle, backwards=backwards)
-
-    def rest(self, piece: _Polytope, steps: IntArray) -> list[_Polytope]:
-        """Convex parts of a piece that are clear of the obstacle in all steps."""
-        found: list[_Polytope] = []
-        whole = piece
-        while len(found) < _MOST_PARTS:
-            normal, offset = self._best_plane(whole, steps)
-            kept = whole.clipped(normal, offset, self._thinnest)
-            if kept is None or not self._counts(kept, piece):
-                break
-            found.append(kept)
-            if kept is whole:  # a plane that was not asked before is between them
-                break
-            beyond = whole.clipped(-normal, -offset, self._thinnest)
-            if beyond is None or not self._counts(beyond, piece):
-                break
-            one, other = (beyond, self._obstacle) if self._backwards else (self._obstacle, beyond)
-            steps = self._path.meets(one, other, self._clearance)
-            if not len(steps):
-                found.append(beyond)
-                break
-            whole = beyond
-        return found
-
-    def _counts(self, part: _Polytope, piece: _Polytope) -> bool:
-        return part.piece.volume > _LEAST_PART * min(piece.piece.volume, self._volume)
-
-    def _best_plane(self, piece: _Polytope, steps: IntArray) -> tuple[FloatArray, float]:
-        """The plane that has the swept obstacle below it and most of the piece above."""
-        ends = np.unique(np.concatenate([steps, steps + 1]))
-        swept = self._track[ends].reshape(-1, 3)
-        across = _axes_of(self._path.sweep)
-        normals = np.concatenate(
-            [
-                -piece.planes[0],
-                across,
-                -across,
-                self._path.normals(self._obstacle, steps, backwards=self._backwards),
-            ]
-        )
-        offsets = (normals @ swept.T).max(axis=1) + self._room
-        kept = (piece.samples @ normals.T > offsets).sum(axis=0)
-        # Among planes that keep as many samples, the one that keeps the outermost corner farthest is the mildest.
-        reach = (normals @ piece.vertices.T).max(axis=1) - offsets
-        best = np.lexsort((reach, kept))[-1]
-        return normals[best], float(offsets[best])
+    def _rise(self, piece: _Polytope) -> float:
+        """How far the arcs of a piece rise over their chords [m]."""
+        return self._arc * self._sweep.radius(piece.vertices)

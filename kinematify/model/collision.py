@@ -8,7 +8,9 @@ nearer to anything else than the clearance. Contacts stay switched on for every 
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +19,7 @@ from kinematify.geometry.carve import Sweep, carved
 from kinematify.geometry.convex import ConvexPiece, surface_points
 from kinematify.geometry.hull import convex_hull
 from kinematify.model.collision_pieces import decomposed
+from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
 from kinematify.robot.vectors import crossed, lengths_of
@@ -26,11 +29,13 @@ if TYPE_CHECKING:
 
     from kinematify.config import CollisionConfig
     from kinematify.config.validation import PrepareSettings
+    from kinematify.model.collision_pieces import Pieces
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Link, Robot
 
 _PROBES = 400
 """Points of a link's surface by which it is told how much the pieces leave out."""
+_MAX_STEM = 100  # file systems end at 255 bytes for a name
 _BOX_CORNERS = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1).reshape(8, 3)
 _SQUARE = 1e-6
 """A piece is a box if its corners differ from those of one by less than this fraction of its diagonal."""
@@ -66,10 +71,10 @@ class FittedCollision:
 
 
 def fit_collision(robot: Robot, config: CollisionConfig, decomposition: PrepareSettings) -> FittedCollision:
-    """Replace the collision geometry of every link by boxes and convex pieces of its visual geometry.
+    """Replace the collision geometry of every link, or its visual geometry, by boxes and convex pieces.
 
-    Links without visual geometry keep the shape of their collision geometry. Joints are swept one by one, over their
-    limits and a little beyond, because engines' limits are soft; the others rest.
+    Joints are swept one by one, over their limits and a little beyond, because engines' limits are soft; the others
+    rest. What no sweep meets stays: primitives are the same ones.
 
     Args:
         robot: The robot; a link may have any number of shapes.
@@ -77,24 +82,21 @@ def fit_collision(robot: Robot, config: CollisionConfig, decomposition: PrepareS
         decomposition: How surfaces are taken apart.
 
     Returns:
-        The robot with pieces in the link frames; meshes among them have no file yet.
+        The robot with pieces in the link frames; meshes among them name files in ``meshes/`` that are not written yet.
     """
-    bare = replace(robot, links=tuple(replace(link, collisions=()) if link.visuals else link for link in robot.links))
-    pieces = decomposed(bare, decomposition)
+    pieces = decomposed(robot, decomposition)
     poses = forward_kinematics(robot, rest_configuration(robot))
-    bodies = [
-        [_moved(piece, poses[link.name]) for piece in (*map(_hull, pieces[link.name].primitives), *pieces[link.name].convex)]
-        for link in bare.links
-    ]
+    bodies = [_in_world(pieces[link.name], poses[link.name]) for link in robot.links]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
     result = carved(
         bodies, _sweeps(robot, poses, config), clearance=clearance, thinnest=config.thinnest_share * clearance
     )
     links, facts = [], []
-    for index, link in enumerate(bare.links):
+    for index, link in enumerate(robot.links):
+        uncut = dict(zip(map(id, bodies[index]), pieces[link.name].primitives, strict=False))
         T_link_world = np.linalg.inv(poses[link.name])
-        shapes = tuple(_shape(_moved(piece, T_link_world)) for piece in result.pieces[index])
-        links.append(replace(robot.links[index], collisions=shapes))
+        shapes = tuple(uncut.get(id(piece)) or _shape(_moved(piece, T_link_world)) for piece in result.pieces[index])
+        links.append(replace(link, collisions=_named(shapes, link.name, index)))
         if shapes:
             facts.append(_fitted(link, shapes, outside=pieces[link.name].gap, lost=result.lost[index]))
     joints = _moving(robot)
@@ -143,9 +145,20 @@ def _size(bodies: Sequence[Sequence[ConvexPiece]]) -> float:
     return float(np.linalg.norm(np.ptp(ends, axis=0))) if len(ends) else 0.0
 
 
-def _hull(shape: Shape) -> ConvexPiece:
-    vertices, faces = convex_hull(shape.mesh.vertices)
-    return ConvexPiece(vertices=vertices, faces=faces)
+def _in_world(pieces: Pieces, T_world_link: FloatArray) -> list[ConvexPiece]:
+    """All pieces of a link in the world frame, primitives first."""
+    hulls = [convex_hull(shape.mesh.vertices) for shape in pieces.primitives]
+    primitives = [ConvexPiece(vertices=vertices, faces=faces) for vertices, faces in hulls]
+    return [_moved(piece, T_world_link) for piece in (*primitives, *pieces.convex)]
+
+
+def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
+    """Shapes with a file for each mesh; the number of the link tells names apart that differ in special letters."""
+    stem = f"{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:_MAX_STEM]}_{index}_collision"
+    return tuple(
+        replace(shape, file=Path(MESH_FOLDER, f"{stem}_{number}.obj")) if shape.kind == "mesh" else shape
+        for number, shape in enumerate(shapes)
+    )
 
 
 def _moved(piece: ConvexPiece, T: FloatArray) -> ConvexPiece:

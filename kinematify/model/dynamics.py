@@ -39,7 +39,7 @@ class JointLoad:
     largest: float
     """Largest weight over the range [N m or N]."""
     press: float
-    """Weight of what it carries times the radius of gyration, or the weight [N m or N]: what bearings and slides rub by."""
+    """What bearings and slides rub by: the weight carried [N], for a turn times the radius of gyration [N m]."""
     travel: float
     """Length of the range [rad or m]."""
 
@@ -95,7 +95,10 @@ def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
     return replace(
         robot,
         links=tuple(
-            replace(link, inertial=replace(link.inertial, mass=scale * link.inertial.mass, tensor=scale * link.inertial.tensor))
+            replace(
+                link,
+                inertial=replace(link.inertial, mass=scale * link.inertial.mass, tensor=scale * link.inertial.tensor),
+            )
             if link.name in carried and link.inertial is not None
             else link
             for link in robot.links

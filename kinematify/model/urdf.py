@@ -39,7 +39,16 @@ def write_urdf(model: KinematicModel, folder: Path) -> Path:
     Raises:
         OSError: The folder cannot be written.
     """
-    robot = model_robot(model)
+    return write_model(model_robot(model), folder)
+
+
+def write_model(robot: Robot, folder: Path) -> Path:
+    """Write ``model.urdf`` and the meshes that its shapes name, relative to it, into an existing folder.
+
+    Raises:
+        OSError: The folder cannot be written.
+        ValueError: A mesh shape names no file.
+    """
     (folder / MESH_FOLDER).mkdir(exist_ok=True)
     shapes = (shape for link in robot.links for shape in (*link.visuals, *link.collisions))
     for file, mesh in {shape.file: shape.mesh for shape in shapes if shape.file is not None}.items():

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
-from kinematify.model.urdf import write_urdf
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model
 from kinematify.robot.obj_file import write_obj
 from kinematify.topology.tree import KinematicTree
 
@@ -70,7 +71,7 @@ def write_truth(blueprint: Blueprint, folder: Path, config: Config) -> Kinematic
     """
     folder.mkdir(parents=True)
     model = true_model(blueprint, config)
-    write_urdf(model, folder)
+    write_model(simulable_model(model, config).robot, folder)
     (folder / "truth.json").write_text(ground_truth(blueprint).to_json() + "\n", encoding="utf-8")
     facts = {"kind": "procedural", "category": blueprint.family, "parameters": dict(blueprint.parameters)}
     (folder / "source.json").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")

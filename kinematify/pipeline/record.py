@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from kinematify import __version__
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.preview import render_preview
-from kinematify.model.urdf import MESH_FOLDER, write_urdf
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import MESH_FOLDER, write_model
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
@@ -52,8 +53,9 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
     Raises:
         OSError: It cannot be written.
     """
-    write_urdf(inference.model, folder)
-    record = {**inference_record(inference), "files": file_hashes(folder)}
+    model = simulable_model(inference.model, inference.config)
+    write_model(model.robot, folder)
+    record = {**inference_record(inference), "collision": model.record(), "files": file_hashes(folder)}
     text = json.dumps(record, indent=1, allow_nan=False)
     (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
     if preview:
