@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.robot import Robot
 
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SimulableModel:
     """A robot to write, and what was done to it."""
