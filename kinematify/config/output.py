@@ -49,6 +49,9 @@ class CollisionConfig(StageConfig):
     """It is smaller for small objects: at most this."""
     thinnest_share: float
     """What would be left thinner is dropped, fraction of the clearance."""
+    forced_share: float
+    """Links whose surfaces get deeper into each other than at rest by more than this fraction of the model's size block
+    each other; what is less is carved."""
     turn_slack: float
     """How far beyond their limits joints that turn are kept free [rad]."""
     slide_slack: float

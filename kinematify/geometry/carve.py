@@ -10,7 +10,7 @@ cut: by one plane if that leaves nearly all of it, else into the convex rest aro
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,18 +21,20 @@ from kinematify.geometry.hull import convex_hull
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
+    FreeRange = Callable[[int, int, int], tuple[float, float]]
+    """Values of a sweep between which two bodies may be kept apart [rad or m]: sweep, body, body."""
 
 _SAMPLES = 160
 """Points in a piece by which the share that a plane cuts off is estimated."""
-_WIDEST_STEP = 0.35
-"""Of a sweep that turns [rad]."""
+_LEAST_STEPS = 24
+"""Steps of a sweep at least."""
 _MOST_STEPS = 128
 """Steps of a sweep at most: 3 deg of a whole turn."""
 _MOST_PARTS = 6
@@ -149,13 +151,20 @@ class _Polytope:
 
 
 def carved(
-    bodies: Sequence[Sequence[ConvexPiece]], sweeps: Sequence[Sweep], *, clearance: float, thinnest: float
+    bodies: Sequence[Sequence[ConvexPiece]],
+    sweeps: Sequence[Sweep],
+    free_range: FreeRange,
+    *,
+    clearance: float,
+    thinnest: float,
 ) -> Carved:
-    """Cut pieces back until no sweep brings two of them nearer than the clearance.
+    """Cut pieces back until no sweep brings two of them nearer than the clearance where the bodies are free to move.
 
     Args:
         bodies: Convex pieces of every body, world frame at rest.
         sweeps: One per joint that moves.
+        free_range: Where the bodies themselves do not block each other; asked only for those whose pieces meet. What
+            lies beyond is left as it is: carving there would hide that the motion is not possible.
         clearance: Distance that is kept between what moves and what does not [m].
         thinnest: What would be left thinner than this is dropped [m].
     """
@@ -163,7 +172,8 @@ def carved(
     volumes = [sum(item.piece.volume for item in group) for group in alive]
     jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
-        clearing = _Clearing(alive, volumes, sweep, clearance=clearance, thinnest=thinnest)
+        free = partial(free_range, number)
+        clearing = _Clearing(alive, volumes, sweep, free, clearance=clearance, thinnest=thinnest)
         jams += [(number, one, other) for one, other in clearing.run()]
     left = [sum(item.piece.volume for item in group) for group in alive]
     return Carved(
@@ -181,12 +191,14 @@ class _Clearing:
         alive: list[list[_Polytope]],
         volumes: Sequence[float],
         sweep: Sweep,
+        free_range: Callable[[int, int], tuple[float, float]],
         *,
         clearance: float,
         thinnest: float,
     ) -> None:
         """Keep the pieces of all bodies, which are cut in place, and the volumes that bodies had."""
         self._alive, self._volumes, self._thinnest = alive, volumes, thinnest
+        self._free_range = cache(free_range)
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
         self._resting = [item for body, group in enumerate(alive) if body not in sweep.moved for item in group]
         self._path = _Path(sweep, self._moving, clearance)
@@ -201,10 +213,15 @@ class _Clearing:
             if one in self._rest_of or other in self._rest_of:
                 pairs += [(a, b) for a in self._rest_of.get(one, [one]) for b in self._rest_of.get(other, [other])]
                 continue
-            steps = self._path.meets(one, other)
+            steps = self._meets(one, other)
             if len(steps) and not self._separated(one, other, steps):
                 jams.append((one.body, other.body))
         return jams
+
+    def _meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
+        """Steps in which two pieces meet although their bodies are free to move there."""
+        steps = self._path.meets(moving, resting)
+        return self._path.within(steps, *self._free_range(moving.body, resting.body)) if len(steps) else steps
 
     def _separated(self, moving: _Polytope, resting: _Polytope, steps: IntArray) -> bool:
         """Cut the piece that loses less of its body; False if either body would have nothing left."""
@@ -238,7 +255,7 @@ class _Clearing:
             beyond = whole.clipped(-normal, -offset, self._thinnest)
             if kept is whole or beyond is None or beyond.piece.volume < least:
                 break
-            steps = self._path.meets(*((beyond, obstacle) if backwards else (obstacle, beyond)))
+            steps = self._meets(*((beyond, obstacle) if backwards else (obstacle, beyond)))
             if not len(steps):
                 found.append(beyond)
                 break
@@ -250,15 +267,18 @@ class _Path:
     """One sweep in steps."""
 
     def __init__(self, sweep: Sweep, moving: Sequence[_Polytope], clearance: float) -> None:
-        """Choose steps so short that arcs rise over their chords by at most a third of the clearance."""
+        """Choose steps whose arcs rise over their chords by at most a third of the clearance, and one at rest."""
         self._sweep, self._clearance = sweep, clearance
-        count = 1
+        count = _LEAST_STEPS
         if sweep.turns:
             radius = max((sweep.radius(item.vertices) for item in moving), default=0.0)
-            step = min(np.sqrt(8.0 * clearance / 3.0 / max(radius, 1e-9)), _WIDEST_STEP)
-            count = int(min(max(np.ceil((sweep.upper - sweep.lower) / step), 1), _MOST_STEPS))
-        self._rotations, self._translations = sweep.motions(np.linspace(sweep.lower, sweep.upper, count + 1))
-        self._arc = 1.0 - np.cos(0.5 * (sweep.upper - sweep.lower) / count) if sweep.turns else 0.0
+            step = np.sqrt(8.0 * clearance / 3.0 / max(radius, 1e-9))
+            count = int(min(max(np.ceil((sweep.upper - sweep.lower) / step), _LEAST_STEPS), _MOST_STEPS))
+        below = int(np.ceil(count * -sweep.lower / max(sweep.upper - sweep.lower, 1e-300)))
+        down = np.linspace(sweep.lower, 0.0, below + 1)
+        self._values = np.concatenate([down, np.linspace(0.0, sweep.upper, max(count - below, 0) + 1)])
+        self._rotations, self._translations = sweep.motions(self._values)
+        self._arc = 1.0 - np.cos(0.5 * np.diff(self._values).max()) if sweep.turns else 0.0
         self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
         self._tracks: dict[tuple[_Polytope, bool], FloatArray] = {}
 
@@ -278,6 +298,11 @@ class _Path:
         track, rise = self._track(piece, backwards=False), self._rise(piece)
         low, high = track.min(axis=1), track.max(axis=1)
         return np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
+
+    def within(self, steps: IntArray, lower: float, upper: float) -> IntArray:
+        """Those of some steps that lie within a range of values [rad or m]; rest always does."""
+        start, end = self._values[steps], self._values[steps + 1]
+        return steps[((start >= lower) & (end <= upper)) | (start == end)]
 
     def meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
         """Steps in which no plane keeps two pieces apart by the clearance."""

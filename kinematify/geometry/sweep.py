@@ -100,6 +100,12 @@ class Sweeper:
         low, high = (self._side(leader, sign, own) for sign in (-1.0, 1.0))
         return JointSweep(leader=leader, travel=travel, own=own, sides=(low, high))
 
+    def meeting(self, leader: int, pair: Pair, sign: float) -> Meeting | None:
+        """What one pair meets within the declared range on the way to one side, as in `sweep`."""
+        travel = self._scene.travels[leader]
+        values = self._to(leader, travel.rest, travel.upper if sign > 0 else travel.lower, sign)
+        return self._within(leader, pair, values, relative(self._scene.poses(self.rows(leader, values)), pair))
+
     def rows(self, leader: int, values: FloatArray) -> FloatArray:
         """Rows of leaders with one joint at `values` (n,) and the others at rest, shape (n, leaders)."""
         rows = np.tile(self._scene.mechanism.rest, (len(values), 1))

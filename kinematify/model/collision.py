@@ -18,6 +18,10 @@ import numpy as np
 from kinematify.geometry.carve import Sweep, carved
 from kinematify.geometry.convex import ConvexPiece, surface_points
 from kinematify.geometry.hull import convex_hull
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
+from kinematify.geometry.scene import read_scene
+from kinematify.geometry.sweep import Sweeper
 from kinematify.model.collision_pieces import decomposed
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.joint_type import JointType
@@ -28,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import CollisionConfig
-    from kinematify.config.validation import PrepareSettings
+    from kinematify.config.validation import GeometrySettings, PrepareSettings
     from kinematify.model.collision_pieces import Pieces
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Link, Robot
@@ -57,6 +61,18 @@ class FittedLink:
     """Share of the volume of the pieces that the motion carved away."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Blocked:
+    """Two links whose surfaces meet within the range of a joint: their pieces do, too."""
+
+    joint: str
+    links: tuple[str, str]
+    at: float
+    """Value of the joint from which on they meet [rad or m]."""
+    depth: float
+    """How deep they get into each other within the range [m]."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FittedCollision:
     """A robot with new collision geometry."""
@@ -68,18 +84,24 @@ class FittedCollision:
     """Distance that is kept between links that a joint moves against each other [m]."""
     jams: tuple[tuple[str, str, str], ...]
     """Joint and two links that still meet in its range, because a link keeps at least one piece."""
+    blocked: tuple[Blocked, ...]
+    """What the surfaces themselves do not let pass."""
 
 
-def fit_collision(robot: Robot, config: CollisionConfig, decomposition: PrepareSettings) -> FittedCollision:
+def fit_collision(
+    robot: Robot, config: CollisionConfig, decomposition: PrepareSettings, geometry: GeometrySettings
+) -> FittedCollision:
     """Replace the collision geometry of every link, or its visual geometry, by boxes and convex pieces.
 
     Joints are swept one by one, over their limits and a little beyond, because engines' limits are soft; the others
-    rest. What no sweep meets stays: primitives are the same ones.
+    rest. What no sweep meets stays: primitives are the same ones. Where the surfaces themselves block a motion, the
+    pieces do too.
 
     Args:
         robot: The robot; a link may have any number of shapes.
         config: Clearance and slack.
         decomposition: How surfaces are taken apart.
+        geometry: When surfaces block a motion.
 
     Returns:
         The robot with pieces in the link frames; meshes among them name files in ``meshes/`` that are not written yet.
@@ -88,8 +110,13 @@ def fit_collision(robot: Robot, config: CollisionConfig, decomposition: PrepareS
     poses = forward_kinematics(robot, rest_configuration(robot))
     bodies = [_in_world(pieces[link.name], poses[link.name]) for link in robot.links]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
+    exact = _ExactSweeps(robot, geometry, config.forced_share)
     result = carved(
-        bodies, _sweeps(robot, poses, config), clearance=clearance, thinnest=config.thinnest_share * clearance
+        bodies,
+        _sweeps(robot, poses, config),
+        exact.free_range,
+        clearance=clearance,
+        thinnest=config.thinnest_share * clearance,
     )
     links, facts = [], []
     for index, link in enumerate(robot.links):
@@ -105,7 +132,45 @@ def fit_collision(robot: Robot, config: CollisionConfig, decomposition: PrepareS
         links=tuple(facts),
         clearance=clearance,
         jams=tuple((joints[k].name, robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
+        blocked=tuple(exact.blocked),
     )
+
+
+class _ExactSweeps:
+    """Where the surfaces of two links let a joint move, asked pair by pair."""
+
+    def __init__(self, robot: Robot, settings: GeometrySettings, forced_share: float) -> None:
+        self._robot, self._joints = robot, _moving(robot)
+        self._scene = read_scene(robot, settings)
+        self._forced = forced_share * self._scene.size
+        overlap = Overlap(self._scene)
+        self._sweeper = Sweeper(self._scene, overlap, Allowance(self._scene, overlap))
+        self._body_of = {name: index for index, body in enumerate(self._scene.bodies) for name in body.links}
+        self._leader_of = {travel.joint: index for index, travel in enumerate(self._scene.travels)}
+        self._asked: dict[tuple[int, int, int], tuple[float, float]] = {}
+        self.blocked: list[Blocked] = []
+
+    def free_range(self, sweep: int, first: int, second: int) -> tuple[float, float]:
+        """Range around rest in which a joint does not bring two links into each other [rad or m]."""
+        joint = self._joints[sweep].name
+        a, b = sorted(self._body_of[self._robot.links[link].name] for link in (first, second))
+        if joint not in self._leader_of:  # followers are swept for the clearance alone: they never move by themselves
+            return -np.inf, np.inf
+        leader = self._leader_of[joint]
+        key = (leader, a, b)
+        if key not in self._asked:
+            self._asked[key] = self._range(leader, (a, b))
+        return self._asked[key]
+
+    def _range(self, leader: int, pair: tuple[int, int]) -> tuple[float, float]:
+        travel, ends = self._scene.travels[leader], [-np.inf, np.inf]
+        for side, sign in enumerate((-1.0, 1.0)):
+            meeting = self._sweeper.meeting(leader, pair, sign)
+            if meeting is not None and meeting.depth > self._forced:
+                ends[side] = meeting.first - travel.rest
+                links = self._scene.name(pair)
+                self.blocked.append(Blocked(joint=travel.joint, links=links, at=meeting.first, depth=meeting.depth))
+        return ends[0], ends[1]
 
 
 def _moving(robot: Robot) -> list[Joint]:

@@ -34,6 +34,7 @@ class SimulableModel:
             "clearance": self.collision.clearance,
             "links": [asdict(link) for link in self.collision.links],
             "jams": [list(jam) for jam in self.collision.jams],
+            "blocked": [asdict(item) for item in self.collision.blocked],
         }
 
 
@@ -42,5 +43,6 @@ def simulable_model(model: KinematicModel, config: Config) -> SimulableModel:
     robot = with_dynamics(model_robot(model), config.dynamics)
     if config.collision.mode == "mesh":
         return SimulableModel(robot=robot, collision=None)
-    fitted = fit_collision(robot, config.collision, load_settings().prepare)
+    settings = load_settings()
+    fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry)
     return SimulableModel(robot=fitted.robot, collision=fitted)
