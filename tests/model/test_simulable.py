@@ -1,0 +1,116 @@
+"""Models that engines simulate as they read them: the untouched file, with each engine's own defaults."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+import pybullet
+import pytest
+
+from kinematify.config import load_config
+from kinematify.generate.procedural.request import from_category
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model
+from kinematify.pipeline.generate import true_model
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.model.simulable import SimulableModel
+
+FAMILIES = ("cabinet", "microwave", "toilet", "laptop", "washing_machine")
+
+
+@pytest.fixture(scope="module", params=FAMILIES)
+def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[SimulableModel, Path]:
+    config = load_config()
+    model = simulable_model(true_model(from_category(request.param, {}).build(seed=1), config), config)
+    return model, write_model(model.robot, tmp_path_factory.mktemp(request.param))
+
+
+def hand(kind: object) -> float:
+    config = load_config().dynamics
+    return config.hand_torque if kind.turns else config.hand_force
+
+
+def test_every_joint_moves_in_plain_mujoco(written: tuple[SimulableModel, Path]) -> None:
+    made, urdf = written
+    model = mujoco.MjModel.from_xml_path(str(urdf))
+    for joint in made.robot.leaders:
+        data = mujoco.MjData(model)
+        at, dof = model.joint(joint.name).qposadr[0], model.joint(joint.name).dofadr[0]
+        way = joint.upper if math.isfinite(joint.upper) else math.pi
+        sign = 1.0 if way >= -max(joint.lower, -math.pi) else -1.0
+        goal = 0.95 * (way if sign > 0 else -joint.lower)
+        for _ in range(3000):
+            data.qfrc_applied[dof] = sign * hand(joint.kind)
+            mujoco.mj_step(model, data)
+            others = np.arange(model.nv) != dof
+            data.qpos[others], data.qvel[others] = 0.0, 0.0
+            if sign * data.qpos[at] >= goal:
+                break
+        assert sign * data.qpos[at] >= goal, joint.name
+
+
+def test_nothing_overlaps_or_moves_by_itself_in_plain_mujoco(written: tuple[SimulableModel, Path]) -> None:
+    _, urdf = written
+    model = mujoco.MjModel.from_xml_path(str(urdf))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert data.ncon == 0
+    mujoco.mj_step(model, data, 1000)
+    assert np.abs(data.qpos).max() < 0.01
+
+
+def test_every_joint_moves_in_plain_pybullet(written: tuple[SimulableModel, Path]) -> None:
+    made, urdf = written
+    client = pybullet.connect(pybullet.DIRECT)
+    try:
+        pybullet.setGravity(0.0, 0.0, -9.81, physicsClientId=client)
+        body = pybullet.loadURDF(
+            str(urdf), useFixedBase=1, flags=pybullet.URDF_USE_SELF_COLLISION, physicsClientId=client
+        )
+        index = {
+            pybullet.getJointInfo(body, k, physicsClientId=client)[1].decode(): k
+            for k in range(pybullet.getNumJoints(body, physicsClientId=client))
+        }
+        for joint in made.robot.leaders:
+            number = index[joint.name]
+            way = joint.upper if math.isfinite(joint.upper) else math.pi
+            sign = 1.0 if way >= -max(joint.lower, -math.pi) else -1.0
+            goal = 0.95 * (way if sign > 0 else -joint.lower)
+            free = {"controlMode": pybullet.VELOCITY_CONTROL, "force": 0.0, "physicsClientId": client}
+            pybullet.setJointMotorControl2(body, number, **free)
+            for _ in range(1500):
+                pybullet.setJointMotorControl2(
+                    body, number, pybullet.TORQUE_CONTROL, force=sign * hand(joint.kind), physicsClientId=client
+                )
+                pybullet.stepSimulation(physicsClientId=client)
+                if sign * pybullet.getJointState(body, number, physicsClientId=client)[0] >= goal:
+                    break
+            assert sign * pybullet.getJointState(body, number, physicsClientId=client)[0] >= goal, joint.name
+            pybullet.resetJointState(body, number, 0.0, physicsClientId=client)
+            pybullet.setJointMotorControl2(
+                body, number, pybullet.VELOCITY_CONTROL, targetVelocity=0.0, force=100.0, physicsClientId=client
+            )
+    finally:
+        pybullet.disconnect(client)
+
+
+def test_the_record_says_what_was_fitted(written: tuple[SimulableModel, Path]) -> None:
+    made, _ = written
+    record = made.record()
+    assert record["mode"] == "auto"
+    assert {link["link"] for link in record["links"]} == {link.name for link in made.robot.links}
+    assert all(link["boxes"] + link["convex"] > 0 for link in record["links"])
+
+
+def test_visual_meshes_collide_where_they_are_asked_for() -> None:
+    config = load_config()
+    config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": "mesh"})})
+    made = simulable_model(true_model(from_category("cabinet", {}).build(seed=1), config), config)
+    assert made.record() == {"mode": "mesh"}
+    assert all(link.collisions == link.visuals for link in made.robot.links)
