@@ -289,8 +289,8 @@ class _Path:
         found = []
         for item in moving:
             low, high = self._boxes(item)
-            meet = ((low <= rest_high) & (high >= rest_low)).all(axis=2).any(axis=1)
-            found += [(item, resting[number]) for number in np.flatnonzero(meet)]
+            apart = np.any((low > rest_high) | (high < rest_low), axis=2)
+            found += [(item, other) for other, always in zip(resting, np.all(apart, axis=1), strict=True) if not always]
         return found[::-1]
 
     def _boxes(self, piece: _Polytope) -> tuple[FloatArray, FloatArray]:
@@ -302,7 +302,7 @@ class _Path:
     def within(self, steps: IntArray, lower: float, upper: float) -> IntArray:
         """Those of some steps that lie within a range of values [rad or m]; rest always does."""
         start, end = self._values[steps], self._values[steps + 1]
-        return steps[((start >= lower) & (end <= upper)) | (start == end)]
+        return np.asarray(steps[((start >= lower) & (end <= upper)) | (start == end)])
 
     def meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
         """Steps in which no plane keeps two pieces apart by the clearance."""

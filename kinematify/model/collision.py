@@ -121,7 +121,7 @@ def fit_collision(
     links, facts = [], []
     for index, link in enumerate(robot.links):
         uncut = dict(zip(map(id, bodies[index]), pieces[link.name].primitives, strict=False))
-        T_link_world = np.linalg.inv(poses[link.name])
+        T_link_world = np.asarray(np.linalg.inv(poses[link.name]), dtype=np.float64)
         shapes = tuple(uncut.get(id(piece)) or _shape(_moved(piece, T_link_world)) for piece in result.pieces[index])
         links.append(replace(link, collisions=_named(shapes, link.name, index)))
         if shapes:
