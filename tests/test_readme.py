@@ -12,6 +12,7 @@ import pytest
 
 import kinematify
 from kinematify.cli.app import COMMANDS, cli
+from kinematify.cli.study import study_command
 from tests.places import ROOT
 
 PAGES = ("README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")))
@@ -37,6 +38,8 @@ def problem_of(words: list[str]) -> str | None:
     command = cli.get_command(click.Context(cli), name)
     if command is None:
         return f"no command {name}"
+    if name == "bench" and rest:
+        command = study_command(rest[0]) or command
     known = {option for parameter in command.params for option in parameter.opts} | {"--help"}
     unknown = [word for word in rest if word.startswith("-") and word != "-" and word not in known]
     return f"{name} has no option {', '.join(unknown)}" if unknown else None
