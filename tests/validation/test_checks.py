@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import subprocess
 import sys
 
@@ -10,6 +11,7 @@ import pytest
 from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, check, engine_check
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.isolation import _PRELOADED
 from kinematify.validation.plan import ENGINES, agreement_stage, asset_stage, keys, later_stages, task_stage
 from kinematify.validation.stage import OpenCheck, Recorder
 from tests.places import ROOT
@@ -105,3 +107,7 @@ def test_the_example_of_contributing_is_the_code() -> None:
     function, test = (part.split("```")[0].strip() for part in section.split("```python")[1:])
     assert function in (ROOT / "validation/checks/limits.py").read_text("utf-8")
     assert test in (ROOT / "tests/validation/test_physics.py").read_text("utf-8")
+
+
+def test_what_workers_have_imported_beforehand_is_there() -> None:
+    assert [name for name in _PRELOADED if importlib.util.find_spec(name) is None] == []  # the server would not say so
