@@ -28,7 +28,6 @@ def missing_collisions(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Copy the <visual> to a <collision>, or write a simpler shape.
     """
-    # One problem for the whole model where no link has any
     solid = [body for body in physics.bodies if body.rooms]
     if solid and not physics.collision:
         result.find(
@@ -150,7 +149,7 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Cut the mesh into convex pieces and write each as a <collision>.
     """
-    # One problem per link, the worst of its meshes
+    # one finding per link, about the worst of its meshes
     for link in physics.model.links:
         ratio, index = max(((physics.inflation(shape), k) for k, shape in enumerate(link.collisions)), default=(0.0, 0))
         if ratio > physics.settings.inflation:

@@ -57,7 +57,7 @@ def contacts_differ(result: OpenCheck, left: EngineResults) -> None:
 
     Remedy: Give the two links collision geometry of boxes, cylinders, spheres or convex meshes.
     """
-    # Of every pair of bodies, the deepest overlap that one source sees and another has no contact for
+    # of every pair of bodies the deepest overlap that one source sees and another has no contact for
     engines = [engine for engine in left.chosen if ENGINES[engine].runs]
     if len(engines) + (left.exact is not None) < 2:
         result.skip("fewer than two sources of contacts were asked for")

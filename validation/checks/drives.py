@@ -29,7 +29,7 @@ def missing_drives(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Write what the drive can do; for a passive joint what it can bear.
     """
-    # One problem for the whole model where no joint has both
+    # one finding for the whole model where no joint has both
     moving = [joint for joint in physics.model.joints if joint.kind is not JointType.FIXED]
     lacking = [(joint, _lacking(joint)) for joint in moving]
     found = [(joint, words) for joint, words in lacking if words]
@@ -130,7 +130,6 @@ def weak_drives(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Check the masses beyond the joint and its effort.
     """
-    # Weight at the joint in its worst sampled configuration against its effort
     settings = physics.settings
     for joint in physics.model.leaders:
         load, q = physics.worst_loads.get(joint.name, (0.0, {}))

@@ -131,7 +131,6 @@ def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Divide the axis by its length.
     """
-    # Readers disagree whether the length of an axis scales the motion
     for joint, element, axis in _axes(urdf):
         length = math.hypot(*axis)
         deviation = abs(length - 1.0)

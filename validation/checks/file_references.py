@@ -118,7 +118,7 @@ def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Rename one of the files.
     """
-    # One note for all of them
+    # one note for all of them
     found: dict[str, dict[Path, _Reference]] = defaultdict(dict)
     for reference in _references(urdf):
         if reference.path is not None:
@@ -145,7 +145,7 @@ def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Write paths relative to the URDF, or package://NAME/PATH.
     """
-    # One note for all of them
+    # one note for all of them
     bound = [reference for reference in _references(urdf) if _is_bound(reference.filename)]
     if bound:
         result.find(

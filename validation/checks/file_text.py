@@ -158,7 +158,6 @@ def displaced_elements(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Keep one element, in the place that the finding names.
     """
-    # More than once where it may stand once, or known but in the wrong place
     for parent in _structure(urdf.robot):
         counts = Counter(child.tag for child in parent if isinstance(child.tag, str))
         for tag, count in counts.items():
@@ -202,7 +201,7 @@ def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Correct the tag, or delete it if nothing reads it.
     """
-    # One note per kind of element
+    # one note per kind of element
     found: dict[tuple[str, str], list[_Element]] = defaultdict(list)
     for parent in _structure(urdf.robot):
         for child in parent:

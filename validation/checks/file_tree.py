@@ -118,7 +118,6 @@ def cycles(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Cut the joint that closes the circle, or correct its parent.
     """
-    # Joints that lead back to a link above them
     for joint, way in _closing_joints(urdf):
         links = " -> ".join(way[:_SHOWN] + (["..."] if len(way) > _SHOWN else []) + [joint.child])
         result.find(
@@ -158,7 +157,7 @@ def second_roots(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Join the second root to the rest by a fixed joint, or split the file.
     """
-    # Trees beside the largest one; links without any joint have a check of their own
+    # links without any joint have a check of their own
     roots = [root for root in urdf.roots if root in urdf.below]
     if not roots and urdf.edges:
         result.find(
@@ -228,7 +227,6 @@ def mimic_circles(result: OpenCheck, urdf: Urdf) -> None:
 
     Remedy: Let one of them lead, and let the others name it.
     """
-    # Circles, and chains so long that they can only be a mistake
     follows = {joint.name: mimic.get("joint") or "" for joint, mimic in _followers(urdf)}
     lines = {joint.name: line_of(mimic) for joint, mimic in _followers(urdf)}
     settled: dict[str, int] = {}

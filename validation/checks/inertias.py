@@ -38,7 +38,6 @@ def tensors_not_positive(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Compute the tensor from the geometry; the finding names the values of a box of the same size.
     """
-    # Harmless where nothing moves, for instance in the base of an arm
     for body, link, inertial in _weighed(physics):
         low, _, high = np.linalg.eigvalsh(inertial.tensor)
         if low > _ROUNDING * high and high > 0.0:
@@ -98,7 +97,6 @@ def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Compute the tensor from the geometry, or write it with more digits.
     """
-    # In every body two principal moments together are at least the third
     settings = physics.settings
     for body, link, inertial in _weighed(physics):
         low, middle, high = np.linalg.eigvalsh(inertial.tensor)
@@ -220,7 +218,7 @@ def centres_outside(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Correct the <origin> of the <inertial>: its unit, or the frame that it is meant in.
     """
-    # The body counts, not the link, because authors lump what is fixed together
+    # the body counts, not the link, because authors lump what is fixed together
     settings = physics.settings
     for body, link, inertial in _weighed(physics):
         room = body.room

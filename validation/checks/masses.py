@@ -30,7 +30,6 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Add an <inertial> to the link; 100 to 1000 kg/m3 times its volume is a start.
     """
-    # One problem for the whole model where no link has a mass
     moving = [body for body in physics.bodies if body.moves]
     without = [body for body in moving if all(link.inertial is None for link in body.links)]
     if not without:
@@ -150,7 +149,7 @@ def implausible_densities(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Correct the mass, or the scale of the geometry.
     """
-    # Too heavy even for a solid hull, or too light for what its closed surfaces enclose
+    # too heavy even for a solid hull, or too light for what its closed surfaces enclose
     settings = physics.settings
     for body in physics.bodies:
         room = body.room
@@ -201,7 +200,7 @@ def steep_mass_ratios(result: OpenCheck, physics: Physics) -> None:
 
     Remedy: Check both masses.
     """
-    # A heavy body on a light one; a light one on a heavy one is harmless in joint coordinates
+    # a light body on a heavy one is harmless in joint coordinates
     for body in physics.bodies:
         if body.joint is None:
             continue
