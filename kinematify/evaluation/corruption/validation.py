@@ -21,6 +21,7 @@ from kinematify.validation.formats.json_lines import as_json_text
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.outcome import Unusable
+from kinematify.validation.plan import DEFAULT_ENGINES
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -63,7 +64,8 @@ def _validated(urdf: Path, task: CorruptionTask) -> Record:
     settings = load_settings()
     hurried = settings.model_copy(update={"budget": settings.budget.model_copy(update={"seconds": task.seconds})})
     try:
-        engines = sorted({engine for check in task.selected for engine in CHECKS[check].engines})
+        asked = {engine for check in task.selected for engine in CHECKS[check].engines}
+        engines = [engine for engine in DEFAULT_ENGINES if engine in asked]
         report = validate(urdf, settings=hurried, selected=task.selected, engines=engines, workers=1)
     except InputError as error:
         _write_all(Unusable(model=str(urdf), message=str(error)))
