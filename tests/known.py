@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.joints.candidate import JointType
 from kinematify.robot.arrays import read_only
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

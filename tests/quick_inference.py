@@ -11,7 +11,8 @@ import time
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate
+from kinematify.robot.joint_type import JointType
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import pytest
 import trimesh
 from trimesh.collision import CollisionManager
 
-from kinematify.joints.candidate import JointType
+from kinematify.robot.joint_type import JointType
 from tests.objects import BUILDERS, KnownJoint, KnownObject, build_all, moved, posed, rotation, shuffled, with_yaw
 
 STEPS = 11

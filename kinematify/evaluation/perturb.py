@@ -17,7 +17,7 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.evaluation.degrade import DEGRADATIONS, with_parts
 from kinematify.evaluation.prediction import Prediction
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.candidate import JointType
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

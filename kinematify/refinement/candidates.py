@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate
 from kinematify.joints.choice.limits import find_range
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

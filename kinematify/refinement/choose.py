@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
 from kinematify.refinement.candidates import is_same, score_of
 from kinematify.refinement.history import PlanChange
 from kinematify.refinement.words import described, ranged
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.feedback import feedback_from
 
 if TYPE_CHECKING:

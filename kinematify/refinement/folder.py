@@ -14,10 +14,11 @@ import numpy as np
 from kinematify.assembly.assemble import assemble
 from kinematify.config import Config
 from kinematify.errors import InputError
-from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.pipeline.record import PREVIEW_FILE, SCHEMA, file_hashes, write_inference_files
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics

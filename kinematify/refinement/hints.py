@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.joints.candidate import JointCandidate, JointType
+from kinematify.joints.candidate import JointCandidate
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.refinement.words import described
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

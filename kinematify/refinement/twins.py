@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kinematify.joints.candidate import JointType
 from kinematify.refinement.history import PlanChange
 from kinematify.refinement.words import described
+from kinematify.robot.joint_type import JointType
 
 TWINS = "twins"
 """What the evidence of the other twins is for a joint that followed them [log odds], in `JointEstimate.evidence`."""

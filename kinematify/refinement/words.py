@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.joints.candidate import JointType
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.joints.candidate import JointEstimate

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinematify.geometry.scene import Body, Scene
 from kinematify.geometry.solid import Solid
-from kinematify.joints.candidate import JointType
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
 

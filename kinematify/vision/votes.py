@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
 from kinematify.refinement.candidates import CandidateJoints, is_same
+from kinematify.robot.joint_type import JointType
 from kinematify.vision.answer import TYPES, Direction, HingeSide
 from kinematify.vision.question import joint_question
 

@@ -12,8 +12,8 @@ from kinematify.config import load_config
 from kinematify.contact.seams import find_cuts, find_seams, rigid_pieces
 from kinematify.evaluation.perturb import cut_in_bands, perturbed
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.candidate import JointType
 from kinematify.pipeline import infer
+from kinematify.robot.joint_type import JointType
 
 CONFIG = load_config()
 X = np.array([1.0, 0.0, 0.0])

@@ -10,7 +10,8 @@ from kinematify.generate.procedural.blueprint import Blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box, tray
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate
+from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import infer_joints
 from tests.known import KnownJoint, KnownObject
 

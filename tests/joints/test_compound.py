@@ -13,8 +13,9 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate
 from kinematify.joints.choice.compound import Compound, CompoundKind, compounds, described
+from kinematify.robot.joint_type import JointType
 
 CONFIG = load_config().joints.compound
 X, Y, Z = np.eye(3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.generate.procedural.solids import box, cylinder, tray
-from kinematify.joints.candidate import JointType
+from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning, with_yaw
 

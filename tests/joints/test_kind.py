@@ -12,12 +12,12 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.request import from_text
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.kind import Siblings, decide_kind
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
+from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, estimates_of, evidence, infer_joints, scene_of
 from tests.known import known_object, sliding, turning
 from tests.objects import BUILDERS

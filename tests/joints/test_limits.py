@@ -12,8 +12,8 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.limits import find_range
+from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, estimates_of, infer_joints, scene_of
 from tests.known import KnownObject, known_object, sliding, turning
 from tests.objects import BUILDERS

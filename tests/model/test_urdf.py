@@ -9,9 +9,9 @@ from scipy.spatial import cKDTree
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.errors import DescriptionError
-from kinematify.joints.candidate import JointType
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from kinematify.topology.tree import KinematicTree
 from tests.engines import READERS

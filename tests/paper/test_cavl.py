@@ -19,7 +19,7 @@ from kinematify.config import load_config
 from kinematify.contact.graph import ContactEdge, ContactSamples
 from kinematify.errors import ConfigError
 from kinematify.geometry.sampling import sample_surface
-from kinematify.joints.candidate import JointCandidate, JointType
+from kinematify.joints.candidate import JointCandidate
 from kinematify.paper.cavl import (
     CavlScene,
     CavlSide,
@@ -34,6 +34,7 @@ from kinematify.paper.contact_region import ContactRegion
 from kinematify.paper.joints import estimate_paper_joint, paper_candidates
 from kinematify.paper.motion import revolve, slide, unit_axis
 from kinematify.paper.sdf_grid import SignedDistanceCache, exact_distance
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.config import CavlConfig

@@ -13,9 +13,9 @@ import pytest
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.errors import InputError
-from kinematify.joints.candidate import JointType
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.pipeline.record import inference_record
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 from tests.engines import read_pinocchio
 from tests.objects import BUILDERS, KnownObject, posed, rotation, shuffled, with_yaw

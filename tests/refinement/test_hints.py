@@ -10,9 +10,10 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.errors import InputError
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate
 from kinematify.pipeline import Inference, infer
 from kinematify.refinement.hints import Hint, parse_hints, with_hints
+from kinematify.robot.joint_type import JointType
 from tests.objects import BUILDERS
 
 PARTS = ("body", "door_1", "door_2", "lid")

@@ -24,12 +24,13 @@ from kinematify.evaluation.prediction import Prediction
 from kinematify.evaluation.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
 from kinematify.evaluation.study import load_study_report
 from kinematify.evaluation.tree_metrics import TreeDistance
-from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.refinement import loop, refine
 from kinematify.refinement.folder import open_model_folder
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import Severity
 from kinematify.validation.inferred import round_rows
 from tests.objects import BUILDERS

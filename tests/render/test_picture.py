@@ -9,7 +9,6 @@ from PIL import Image
 
 from kinematify.config import load_config
 from kinematify.geometry.rays import RayScene
-from kinematify.joints.candidate import JointType
 from kinematify.model.palette import link_colors
 from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.scene import (
@@ -23,6 +22,7 @@ from kinematify.model.scene import (
 from kinematify.render.camera import fit_camera
 from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.robot.joint_type import JointType
 from tests.mechanisms import box, chain, door, drawer, flat_and_fixed, knob
 
 CONFIG = load_config().preview.model_copy(update={"panel_width": 240, "panel_height": 220})

@@ -10,9 +10,10 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
-from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
+from kinematify.robot.joint_type import JointType
 from kinematify.topology.tree import KinematicTree
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding

@@ -27,12 +27,12 @@ from kinematify.evaluation.study import Options, Study, explained
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.truth import ground_truth
-from kinematify.joints.candidate import JointType
 from kinematify.paper.sdf_grid import exact_distance
 from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:

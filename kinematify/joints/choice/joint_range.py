@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kinematify.joints.candidate import JointType
+    from kinematify.robot.joint_type import JointType
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.clearance import contact_clearance
 from kinematify.joints.measure.scene import eccentricity, is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides, sweep_turns
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.joint_range import Range
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.closing import closing_turns
@@ -19,6 +18,7 @@ from kinematify.joints.measure.opening_direction import clockwise_sign, neutral_
 from kinematify.joints.measure.scene import eccentricity
 from kinematify.joints.measure.sweep import moving_points, sweep_turns
 from kinematify.joints.measure.travel import slide_range
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig

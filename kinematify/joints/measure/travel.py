@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.joint_range import Range
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.clearance import slide_clearance
 from kinematify.joints.measure.guide import guided_travel
 from kinematify.joints.measure.scene import is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.config import JointsConfig
