@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from lxml import etree
 
+from kinematify.errors import DescriptionError
+from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.outcome import counted_words
 
@@ -47,12 +48,12 @@ def inferred_beside(urdf: Path) -> Inferred | None:
         record = json.loads(path.read_text(encoding="utf-8"))
         if record["files"][urdf.name] != hashlib.sha256(urdf.read_bytes()).hexdigest():
             return None
-        above = _joints_above(urdf)
+        above = {link: joint.name for link, joint in read_robot(urdf, geometry="none").joint_above.items()}
         alternatives = {
             above[item["child"]]: tuple(_others(item)) for item in record["joints"] if item["child"] in above
         }
         return Inferred(alternatives=alternatives, refinement=record.get("refinement"))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, etree.XMLSyntaxError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, DescriptionError):
         return None  # whatever lies there is not ours, and the model is judged without it
 
 
@@ -106,14 +107,6 @@ def round_words(refinement: Mapping[str, Any]) -> list[str]:
         f"Kept: {what}, with {left}. The loop ended because {refinement['ended']} ({cost}).",
         *(f"Refused, because it would have hidden a failure: {phrase}." for phrase in dict.fromkeys(refused)),
     ]
-
-
-def _joints_above(urdf: Path) -> dict[str, str]:
-    """Joint above each link."""
-    robot = etree.parse(urdf, etree.XMLParser(resolve_entities=False, no_network=True)).getroot()
-    return {
-        str(child.get("link")): str(joint.get("name")) for joint in robot.iter("joint") for child in joint.iter("child")
-    }
 
 
 def _others(item: Mapping[str, Any]) -> list[dict[str, Any]]:
