@@ -24,7 +24,7 @@ if TYPE_CHECKING:
             ["--task", "pull", "--robot", "{arm}", "--tool", "hand", "--gripper", "thumb"],
             "has no movable joint 'thumb'",
         ),
-        (["--task", "pull", "--robot", "{arm}.xacro", "--tool", "hand"], "No such file"),
+        (["--task", "pull", "--robot", "{arm}.xacro", "--tool", "hand"], "There is no file"),
         (["--task", "pull", "--robot", "{cabinet}", "--tool", "body"], "There is no arm"),
         (["--task", "pull", "--films", "{arm}"], "is no folder"),
         (["--task", "juggle"], "juggle"),
