@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
+import networkx as nx
 import pytest
 
-from tools.imports import ORDER, imported_names, modules
+from tools.imports import ORDER, import_graph, imported_names, modules
 
 NEVER = {("validation", "topology"), ("validation", "pipeline")}  # validation knows models, never the search
 FROM_THE_TOP = {"__version__"}
@@ -29,9 +32,26 @@ def violations(name: str, source: str) -> list[str]:
     return found
 
 
+def circles(imports: Mapping[str, Iterable[str]]) -> list[list[str]]:
+    """Groups of files of the package that import each other, for types alone included."""
+    graph = nx.DiGraph((name, imported) for name in imports for imported in imports[name])
+    package = graph.subgraph(name for name in graph if name.startswith("kinematify."))
+    return [sorted(group) for group in nx.strongly_connected_components(package) if len(group) > 1]
+
+
 def test_every_module_imports_only_from_its_left() -> None:
     package = {name: path for name, path in modules().items() if name.split(".")[0] == "kinematify"}
     assert [line for name, path in package.items() for line in violations(name, path.read_text("utf-8"))] == []
+
+
+def test_no_files_import_each_other() -> None:
+    assert circles(import_graph()) == []
+
+
+def test_circles_are_found() -> None:
+    imports = {"kinematify.a": ["kinematify.b", "numpy"], "kinematify.b": ["kinematify.c"], "kinematify.c": []}
+    assert circles(imports) == []
+    assert circles({**imports, "kinematify.c": ["kinematify.a"]}) == [["kinematify.a", "kinematify.b", "kinematify.c"]]
 
 
 def test_every_layer_exists() -> None:
