@@ -18,7 +18,7 @@ from kinematify.evaluation.nightly.store import Night, earlier_runs
 from kinematify.robot.read import read_robot
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.view_data import view_data
-from kinematify.validation.report import JointCurve, PairSummary, PairTable
+from kinematify.validation.summary import JointCurve, PairSummary, PairTable
 from tests.browser import opened
 from tests.reports import add_checks, full_report
 

@@ -16,19 +16,19 @@ are made from it. The functions stand in `validation/checks`; reading them loads
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from kinematify.simulation.engines import ENGINES
+from kinematify.validation.finding import Finding, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.validation.finding import Blame, Severity
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.finding import Blame
 
-    CheckFunction = Callable[[OpenCheck, Any], None]
+    CheckFunction = Callable[["OpenCheck", Any], None]
     Need = Callable[[Any], str | None]
 
 ENGINE_FAMILIES = {name: engine.family for name, engine in ENGINES.items() if engine.runs}
@@ -110,6 +110,72 @@ class Check:
 
 REGISTRY: dict[str, Check] = {}
 """Checks keyed by id, in the order in which their modules were read; `validation.checks.CHECKS` has all of them."""
+
+
+@dataclass(kw_only=True)
+class OpenCheck:
+    """A check that is under way: findings are added to it, its status follows from them."""
+
+    id: str
+    engine: str | None
+    findings: list[Finding] = field(default_factory=list)
+    measured: dict[str, float] = field(default_factory=dict)
+    status: Status | None = None
+    reason: str | None = None
+    harmful: bool = False
+    """True after an error that forbids later stages to read the file."""
+
+    def find(
+        self,
+        message: str,
+        remedy: str,
+        *,
+        severity: Severity | None = None,
+        blame: Blame | None = None,
+        joint: str | None = None,
+        link: str | None = None,
+        pair: tuple[str, str] | None = None,
+        engine: str | None = None,
+        q: dict[str, float] | None = None,
+        value: float | None = None,
+        limit: float | None = None,
+        unit: str | None = None,
+        line: int | None = None,
+        harmless: bool = False,
+    ) -> None:
+        """Add a finding.
+
+        Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
+        after which later stages may read the file all the same.
+        """
+        check = REGISTRY[self.id]
+        self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
+        self.findings.append(
+            Finding(
+                check=self.id,
+                severity=severity or check.severity,
+                blame=blame or check.blame,
+                message=message,
+                remedy=remedy,
+                joint=joint,
+                link=link,
+                pair=pair,
+                engine=engine or self.engine,
+                q=q,
+                value=None if value is None else float(value),
+                limit=None if limit is None else float(limit),
+                unit=unit,
+                line=line,
+            )
+        )
+
+    def skip(self, reason: str) -> None:
+        """Say that it does not apply, or that time ran out before it was complete."""
+        self.status, self.reason = Status.SKIPPED, reason
+
+    def block(self, reason: str) -> None:
+        """Say that an earlier failure keeps it from running."""
+        self.status, self.reason = Status.BLOCKED, reason
 
 
 def check(

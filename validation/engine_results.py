@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
     from kinematify.simulation.configurations import Configurations, EnginePoses
     from kinematify.simulation.prepared import Prepared
-    from kinematify.validation.stage import OpenCheck, StageRequest
+    from kinematify.validation.check import OpenCheck
+    from kinematify.validation.stage import StageRequest
 
 EXACT = "geometry"
 """Under this name the geometry stage leaves its contacts."""

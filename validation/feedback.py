@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kinematify.config import FeedbackConfig
     from kinematify.robot.robot import Joint
     from kinematify.validation.finding import Finding
-    from kinematify.validation.report import JointSummary
+    from kinematify.validation.summary import JointSummary
 
 
 @dataclass(frozen=True, kw_only=True)

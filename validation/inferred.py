@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.report import JointSummary
+    from kinematify.validation.summary import JointSummary
 
 RECORD_FILE = "inference.json"
 ALTERNATIVES = 3

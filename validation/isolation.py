@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
-    from kinematify.validation.report import Summary
     from kinematify.validation.stage import Recorder, StageRequest
+    from kinematify.validation.summary import Summary
 
 _SHOWN = 200
 """Characters of a failed stage's last words."""

@@ -13,72 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 
 SCHEMA = 1
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointSummary:
-    """What is known of one joint at the end."""
-
-    joint: str
-    kind: str
-    declared_limits: tuple[float, float] | None
-    """[rad or m]; None where there are none."""
-    free_travel: tuple[float, float] | None = None
-    """Range around rest in which nothing collides [rad or m]; None if it was not measured."""
-    best_alternative: Mapping[str, Any] | None = None
-    """``kind``, ``axis``, ``pivot`` (world frame at zero), ``score`` of a joint that explains the geometry better."""
-    next_best: tuple[Mapping[str, Any], ...] = ()
-    """Of a joint that failed, the next best candidates of the inference, where its record stands beside the model."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointCurve:
-    """How one engine drove a joint from rest to one end, at some looks on the way."""
-
-    joint: str
-    engine: str
-    upper: bool
-    """True towards the upper end."""
-    commanded: tuple[float, ...]
-    """[rad or m]."""
-    reached: tuple[float, ...]
-    """[rad or m]."""
-    force: tuple[float, ...]
-    """Of the servo [N m or N]."""
-    depth: tuple[float, ...]
-    """How much deeper than allowed any two links are in each other [m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairSummary:
-    """What the exact geometry knows of two bodies that touch, or that something is to be said of."""
-
-    pair: tuple[str, str]
-    """In the order of the document."""
-    reason: str | None
-    """Why their contact is tolerated; None if it is not."""
-    at_rest: float
-    """Depth at rest [m]."""
-    tolerated: float
-    """Depth up to which nothing is reported [m]."""
-    meets: tuple[tuple[str, float, float], ...] = ()
-    """Joint, value where it begins [rad or m], and the depth that comes of it [m]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PairTable:
-    """Which bodies meet which, by exact geometry."""
-
-    bodies: tuple[str, ...]
-    """All that have geometry, in the order of the tree."""
-    pairs: tuple[PairSummary, ...]
-    """Those that touch at rest or meet on the way; all others stay clear in what was looked at."""
-
-
-Summary = JointSummary | JointCurve | PairTable
-"""What a stage may tell besides its checks."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -30,8 +30,9 @@ from kinematify.validation.plan import (
     task_stage,
 )
 from kinematify.validation.precheck.document import precheck
-from kinematify.validation.report import JointCurve, JointSummary, PairTable, ValidationReport
+from kinematify.validation.report import ValidationReport
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 from kinematify.validation.suppression import suppress
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from kinematify.validation.check import Check
     from kinematify.validation.isolation import StageEnd
     from kinematify.validation.plan import CheckKey
-    from kinematify.validation.report import Summary
+    from kinematify.validation.summary import Summary
     from kinematify.validation.suppression import Suppression
 
     Progress = Callable[[str, float], None]

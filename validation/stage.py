@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import CheckResult, Finding, Severity, Status
+from kinematify.validation.check import OpenCheck
+from kinematify.validation.finding import CheckResult, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.request import Suspicion, TaskRequest
     from kinematify.validation.check import Check
-    from kinematify.validation.finding import Blame
-    from kinematify.validation.report import Summary
+    from kinematify.validation.summary import Summary
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,72 +53,6 @@ class StageRequest:
     def remaining(self) -> float:
         """Seconds until the deadline, at least 0."""
         return max(0.0, self.deadline - time.time())
-
-
-@dataclass(kw_only=True)
-class OpenCheck:
-    """A check that is under way: findings are added to it, its status follows from them."""
-
-    id: str
-    engine: str | None
-    findings: list[Finding] = field(default_factory=list)
-    measured: dict[str, float] = field(default_factory=dict)
-    status: Status | None = None
-    reason: str | None = None
-    harmful: bool = False
-    """True after an error that forbids later stages to read the file."""
-
-    def find(
-        self,
-        message: str,
-        remedy: str,
-        *,
-        severity: Severity | None = None,
-        blame: Blame | None = None,
-        joint: str | None = None,
-        link: str | None = None,
-        pair: tuple[str, str] | None = None,
-        engine: str | None = None,
-        q: dict[str, float] | None = None,
-        value: float | None = None,
-        limit: float | None = None,
-        unit: str | None = None,
-        line: int | None = None,
-        harmless: bool = False,
-    ) -> None:
-        """Add a finding.
-
-        Severity, blame and engine are the check's unless given, see `Finding` for the rest; `harmless` is for an error
-        after which later stages may read the file all the same.
-        """
-        check = CHECKS[self.id]
-        self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
-        self.findings.append(
-            Finding(
-                check=self.id,
-                severity=severity or check.severity,
-                blame=blame or check.blame,
-                message=message,
-                remedy=remedy,
-                joint=joint,
-                link=link,
-                pair=pair,
-                engine=engine or self.engine,
-                q=q,
-                value=None if value is None else float(value),
-                limit=None if limit is None else float(limit),
-                unit=unit,
-                line=line,
-            )
-        )
-
-    def skip(self, reason: str) -> None:
-        """Say that it does not apply, or that time ran out before it was complete."""
-        self.status, self.reason = Status.SKIPPED, reason
-
-    def block(self, reason: str) -> None:
-        """Say that an earlier failure keeps it from running."""
-        self.status, self.reason = Status.BLOCKED, reason
 
 
 class Recorder:

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.refinement.world import PartsWorld
+from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
 from kinematify.validation.geometry.look import GeometryLook, JointMotion
-from kinematify.validation.report import JointSummary
-from kinematify.validation.stage import OpenCheck
+from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

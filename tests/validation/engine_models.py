@@ -12,14 +12,14 @@ from kinematify.robot.read import read_robot
 from kinematify.simulation.prepare import prepare
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult
-from kinematify.validation.report import JointCurve
 from kinematify.validation.stage import Recorder, StageRequest
+from kinematify.validation.summary import JointCurve
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.config.validation import ValidationSettings
-    from kinematify.validation.report import Summary
+    from kinematify.validation.summary import Summary
 
 Vector = tuple[float, float, float]
 

@@ -17,9 +17,9 @@ from kinematify.robot.joint_type import JointType
 from kinematify.topology.tree import KinematicTree
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
-from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.evidence import run
+from kinematify.validation.summary import JointSummary
 from tests.known import KnownJoint, KnownObject, rotation
 
 SELECTED = frozenset(CHECKS)

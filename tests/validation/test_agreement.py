@@ -25,9 +25,10 @@ from kinematify.simulation.configurations import (
 from kinematify.simulation.engine import LoadedJoint, LoadedModel
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
+from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks.engine_loading import compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status
-from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages import agreement as agreement_stage
 from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH

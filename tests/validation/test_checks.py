@@ -8,12 +8,12 @@ import sys
 
 import pytest
 
-from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, check, engine_check
+from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, OpenCheck, check, engine_check
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.isolation import _PRELOADED
 from kinematify.validation.plan import ENGINES, agreement_stage, asset_stage, keys, later_stages, task_stage
-from kinematify.validation.stage import OpenCheck, Recorder
+from kinematify.validation.stage import Recorder
 from tests.places import ROOT
 
 HEAVY = {"torch", "mujoco", "pybullet", "pinocchio", "coal", "fcl", "igl", "ompl", "trimesh", "scipy", "pydantic"}

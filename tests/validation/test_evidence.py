@@ -12,8 +12,8 @@ from kinematify.generate.procedural.solids import box, union
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, CheckResult, Severity, Status
-from kinematify.validation.report import JointSummary
 from kinematify.validation.run import validate
+from kinematify.validation.summary import JointSummary
 from tests.household import (
     barrel_hinge_door,
     button,

@@ -13,9 +13,9 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
 from kinematify.validation.feedback import Feedback, feedback_from
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity
-from kinematify.validation.report import JointSummary
 from kinematify.validation.stage import Recorder
 from kinematify.validation.stages.geometry import run
+from kinematify.validation.summary import JointSummary
 from tests.validation.engine_models import Box, Model, Part, cabinet
 from tests.validation.test_geometry import SELECTED, beam, block, request_for
 

@@ -302,7 +302,7 @@ def test_places_and_configurations_read_as_phrases() -> None:
 
 
 def test_ranges_are_in_degrees_or_millimetres() -> None:
-    from kinematify.validation.report import JointSummary
+    from kinematify.validation.summary import JointSummary
 
     slide = JointSummary(joint="s", kind="prismatic", declared_limits=(0.0, 0.25))
     assert joint_range(slide, slide.declared_limits) == "0 to 250 mm"

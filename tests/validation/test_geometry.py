@@ -14,9 +14,9 @@ from kinematify.simulation.configurations import read_poses
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.engine_results import EXACT
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
-from kinematify.validation.report import JointSummary, PairTable
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.geometry import run
+from kinematify.validation.summary import JointSummary, PairTable
 from tests.validation.engine_models import Box, Model, Part, cabinet, tell
 
 SELECTED = frozenset(CHECKS)

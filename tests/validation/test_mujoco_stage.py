@@ -16,12 +16,13 @@ from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepare import prepare
 from kinematify.simulation.prepared import URDF_FILE, load_prepared
+from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
 from kinematify.validation.checks.engine_rest import find_drop, find_growth
 from kinematify.validation.checks.engine_stability import find_unstable
 from kinematify.validation.engine_context import RunEnd
 from kinematify.validation.finding import Blame, Finding, Severity, Status
-from kinematify.validation.stage import OpenCheck, StageRequest
+from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import engine as engine_stage
 from tests.places import BENCH
 from tests.validation.engine_models import (

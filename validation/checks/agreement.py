@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
     from kinematify.simulation.configurations import EnginePoses
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_results import EngineResults
-    from kinematify.validation.stage import OpenCheck
 
 REFERENCE = "pinocchio"
 """Masses and torques are held against it: it computes them in closed form."""

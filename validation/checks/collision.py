@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Link
     from kinematify.validation.asset.bodies import Body, Physics, Room
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
 
 
 @check("KV240", title="Links have collision geometry", severity=Severity.WARNING, blame=Blame.PHYSICS)

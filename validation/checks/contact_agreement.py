@@ -15,8 +15,8 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.configurations import EnginePoses
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_results import EngineResults
-    from kinematify.validation.stage import OpenCheck
 
 _TOLD_PAIRS = 10
 """The deepest so many disagreements are findings, all of them are counted."""

@@ -12,7 +12,7 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
     from kinematify.validation.asset.bodies import Physics
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
 
 
 @check(

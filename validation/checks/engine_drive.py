@@ -14,8 +14,8 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
     from kinematify.simulation.drive import Driven
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext
-    from kinematify.validation.stage import OpenCheck
 
 
 @engine_check(

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from kinematify.simulation.configurations import Configurations
     from kinematify.simulation.engine import LoadedJoint, LoadedModel
     from kinematify.simulation.prepared import Prepared
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext
-    from kinematify.validation.stage import OpenCheck
 
 _LIMIT_SLACK = 1e-6
 """Difference of a limit [rad or m] that no decimal number in a file explains."""

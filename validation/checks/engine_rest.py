@@ -15,8 +15,8 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext
-    from kinematify.validation.stage import OpenCheck
 
 _HARDLY = 0.02
 """Motion that is too small to say anything, fraction of the range."""

@@ -18,8 +18,8 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.engine_context import EngineContext, RunEnd
-    from kinematify.validation.stage import OpenCheck
 
 _TOLD = 10
 """So many messages of an engine are findings, all of them are counted."""

@@ -17,8 +17,8 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import EvidenceSettings
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.evidence.case import JointCase
-    from kinematify.validation.stage import OpenCheck
 
 
 @check(

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
-    from kinematify.validation.stage import OpenCheck
 
 _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

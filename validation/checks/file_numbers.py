@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
-    from kinematify.validation.stage import OpenCheck
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _Counts = dict[str, dict[str, tuple[int, ...]]]

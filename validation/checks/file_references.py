@@ -18,8 +18,8 @@ from kinematify.validation.precheck.words import shown
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
-    from kinematify.validation.stage import OpenCheck
 
 _BY_ENGINES = (".obj", ".stl")
 _DRIVE = re.compile(r"[A-Za-z]:[\\/]")

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
-    from kinematify.validation.stage import OpenCheck
 
 _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "length"), "capsule": ("radius", "length")}
 _KNOWN = ("mesh", *_SIZES)

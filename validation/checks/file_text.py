@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.robot.urdf_text import UrdfText
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
-    from kinematify.validation.stage import OpenCheck
 
 _CHILDREN = {
     "robot": {"link", "joint", "material", "transmission", "gazebo", "sensor"},

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.robot.urdf_document import JointElement
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
-    from kinematify.validation.stage import OpenCheck
 
 _SHOWN = 8
 

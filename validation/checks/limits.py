@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.robot import Joint
     from kinematify.validation.asset.bodies import Physics
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
 
 _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""

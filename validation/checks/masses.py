@@ -11,7 +11,7 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.robot.robot import Inertial, Link
     from kinematify.validation.asset.bodies import Body, Physics, Room
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
 
 
 @check(

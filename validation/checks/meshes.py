@@ -9,7 +9,7 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.validation.asset.mesh_look import MeshLook
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
 
 
 @check("KV150", title="Mesh files can be read", severity=Severity.ERROR, blame=Blame.ASSET)

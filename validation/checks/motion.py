@@ -21,8 +21,8 @@ from kinematify.validation.geometry.words import (
 
 if TYPE_CHECKING:
     from kinematify.geometry.sweep import Meeting
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import JointMotion
-    from kinematify.validation.stage import OpenCheck
 
 
 @check(

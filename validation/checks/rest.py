@@ -12,8 +12,8 @@ from kinematify.validation.geometry.words import SLIMMER, UNSEEN, configuration,
 if TYPE_CHECKING:
     from kinematify.geometry.rest import AtRest, Reason
     from kinematify.geometry.scene import Pair
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryLook
-    from kinematify.validation.stage import OpenCheck
 
 
 @check(

@@ -13,7 +13,7 @@ from kinematify.validation.finding import Blame, Severity
 if TYPE_CHECKING:
     from kinematify.validation.asset.extents import Extent
     from kinematify.validation.asset.mesh_look import MeshLook
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
 
 
 @check("KV157", title="Links are in the same unit", severity=Severity.ERROR, blame=Blame.ASSET)

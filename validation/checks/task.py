@@ -9,7 +9,7 @@ from kinematify.validation.check import FeedbackRow, check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
-    from kinematify.validation.stage import OpenCheck
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.task.robot_task import RobotTask
 
 

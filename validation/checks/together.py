@@ -9,8 +9,8 @@ from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.words import configuration, in_document_order, joint_value, length
 
 if TYPE_CHECKING:
+    from kinematify.validation.check import OpenCheck
     from kinematify.validation.geometry.look import GeometryLook
-    from kinematify.validation.stage import OpenCheck
 
 _HULL_SAMPLES = 24
 

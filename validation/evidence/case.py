@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
-from kinematify.validation.report import JointSummary
+from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Collection

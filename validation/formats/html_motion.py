@@ -13,7 +13,8 @@ from kinematify.validation.formats.text import TURNING
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.validation.report import JointCurve, JointSummary, ValidationReport
+    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.summary import JointCurve, JointSummary
 
 _STYLES = {"mujoco": "first", "pybullet": "second"}
 _TITLES = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}

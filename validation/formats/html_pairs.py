@@ -11,7 +11,7 @@ from kinematify.validation.formats.text import number
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.validation.report import PairSummary, PairTable
+    from kinematify.validation.summary import PairSummary, PairTable
 
 _MATRIX_AT_MOST = 40
 """Bodies; a larger matrix is read by nobody."""

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.validation.finding import CheckResult, Finding
-    from kinematify.validation.report import JointSummary, ValidationReport
+    from kinematify.validation.report import ValidationReport
+    from kinematify.validation.summary import JointSummary
 
 SHOWN_JOINTS = 4
 """A configuration is shortened to the joints that are farthest from zero."""

@@ -19,7 +19,7 @@ from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
 from kinematify.validation.geometry.hulls import HullView
 from kinematify.validation.geometry.words import in_document_order
-from kinematify.validation.report import PairSummary, PairTable
+from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,8 +13,8 @@ from kinematify.validation.finding import Status
 from kinematify.validation.precheck.urdf import Urdf
 
 if TYPE_CHECKING:
-    from kinematify.validation.check import Check
-    from kinematify.validation.stage import OpenCheck, Recorder, StageRequest
+    from kinematify.validation.check import Check, OpenCheck
+    from kinematify.validation.stage import Recorder, StageRequest
 
 _TEXT = ("KV101", "KV102")
 _SIZE = "KV103"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.report import JointCurve
+from kinematify.validation.summary import JointCurve
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.checks import checks_of
-from kinematify.validation.report import JointSummary
+from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene

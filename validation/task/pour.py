@@ -17,7 +17,8 @@ from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
     from kinematify.manipulation.request import TaskRequest
-    from kinematify.validation.stage import OpenCheck, StageRequest
+    from kinematify.validation.check import OpenCheck
+    from kinematify.validation.stage import StageRequest
 
 _WHERE = {
     ("mujoco", Hold.WELD): "in MuJoCo, with the hand welded to the cup",

@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     from kinematify.manipulation.request import TaskRequest
     from kinematify.manipulation.sizes import Sizing
     from kinematify.robot.arrays import FloatArray
-    from kinematify.validation.stage import OpenCheck, StageRequest
+    from kinematify.validation.check import OpenCheck
+    from kinematify.validation.stage import StageRequest
 
 OBJECT_FILE = "object.urdf"
 LEEWAY = 20.0
