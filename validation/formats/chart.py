@@ -23,7 +23,7 @@ class Series:
     label: str
     points: tuple[Point, ...]
     style: str = "first"
-    """``first``, or ``second`` which is dashed too, so that colour is not needed."""
+    """``first``, ``second`` which is dashed too, or ``third`` which is dotted, so that colour is not needed."""
     links: tuple[tuple[str, str], ...] = ()
     """Title and address of each point, where points are marked."""
 
@@ -139,4 +139,4 @@ def _extent(line: Series) -> str:
 
 
 def _dash(line: Series) -> str:
-    return "- -" if line.style == "second" else "\N{EM DASH}"
+    return {"second": "- -", "third": ". ."}.get(line.style, "\N{EM DASH}")

@@ -6,6 +6,7 @@ import json
 import math
 from typing import TYPE_CHECKING, Any
 
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation.formats.chart import Axes, Series, line_chart
 from kinematify.validation.formats.html_frame import text
 from kinematify.validation.formats.text import TURNING
@@ -16,9 +17,8 @@ if TYPE_CHECKING:
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.summary import JointCurve, JointSummary
 
-_STYLES = {"mujoco": "first", "pybullet": "second"}
-_TITLES = {"mujoco": "MuJoCo", "pybullet": "PyBullet"}
-_LINES = {"first": "solid line", "second": "dashed line"}
+_LINES = {"first": "solid line", "second": "dashed line", "third": "dotted line"}
+_STYLES = dict(zip((name for name, engine in ENGINES.items() if engine.runs), _LINES, strict=False))
 _WIDTH = 275
 """Of a chart [px]: four stand side by side."""
 _STEPS = 200
@@ -79,7 +79,7 @@ def curves(report: ValidationReport) -> str:
     if not report.curves:
         return ""
     engines = dict.fromkeys(curve.engine for curve in report.curves)
-    lines = ", ".join(f"{_TITLES.get(engine, engine)}: {_LINES[_style(engine)]}" for engine in engines)
+    lines = ", ".join(f"{ENGINES[engine].title}: {_LINES[_STYLES[engine]]}" for engine in engines)
     names = dict.fromkeys(curve.joint for curve in report.curves)
     known = {joint.joint: joint for joint in report.joints}
     charts = "".join(
@@ -117,12 +117,8 @@ def _series(driven: Sequence[JointCurve], scale: float, pick: Callable[[JointCur
             way = [(scale * x, y) for x, y in zip(curve.commanded, pick(curve), strict=True) if math.isfinite(y)]
             points += way if curve.upper else way[::-1]
         if points:
-            found.append(Series(label=_TITLES.get(engine, engine), points=tuple(points), style=_style(engine)))
+            found.append(Series(label=ENGINES[engine].title, points=tuple(points), style=_STYLES[engine]))
     return found
-
-
-def _style(engine: str) -> str:
-    return _STYLES.get(engine, "first")
 
 
 def _axes(joint: JointSummary | None, scale: float, unit: str, y: str) -> Axes:
