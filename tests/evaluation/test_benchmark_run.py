@@ -176,7 +176,7 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     )
     script = tmp_path / "program.py"
     script.write_text(program)
-    places = os.pathsep.join([str(ROOT / "tests"), *sys.path])
+    places = os.pathsep.join([str(ROOT / "tests" / "evaluation"), *sys.path])
     child = subprocess.Popen(
         [sys.executable, str(script)], env={**os.environ, "PYTHONPATH": places}, stderr=subprocess.DEVNULL
     )

@@ -131,7 +131,8 @@ def kinds(result: NightResult) -> Counter[str]:
 def _tests_on_the_path(monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers import the function under test by its name."""
     monkeypatch.setenv(
-        "PYTHONPATH", os.pathsep.join([str(ROOT / "tests"), *filter(None, [os.environ.get("PYTHONPATH")])])
+        "PYTHONPATH",
+        os.pathsep.join([str(ROOT / "tests" / "evaluation"), *filter(None, [os.environ.get("PYTHONPATH")])]),
     )
 
 
