@@ -94,6 +94,8 @@ class Check:
     """What refinement makes of its findings; None if nothing."""
     doubts: bool = False
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
+    opinion: bool = False
+    """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
     needs: tuple[Need, ...] = ()
     """Asked before it runs, with the context: each gives the reason why there is nothing to look at, or None."""
     function: CheckFunction
@@ -187,6 +189,7 @@ def check(
     engines: tuple[str, ...] = (),
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
+    opinion: bool = False,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:
     """Register the decorated function as a check; see `Check` for the arguments.
@@ -205,6 +208,7 @@ def check(
             engines=engines,
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
+            opinion=opinion,
             needs=needs,
             function=function,
             **_documentation(id, function),

@@ -20,6 +20,7 @@ from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import run_stages, start_server
+from kinematify.validation.opinions import evidence_before_blame
 from kinematify.validation.plan import (
     DEFAULT_ENGINES,
     agreement_stage,
@@ -227,7 +228,8 @@ class _Run:
         if self.interrupted:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
-        checks = suppress([self._result(key) for key in keys(list(self.checks.values()))], suppressions)
+        results = evidence_before_blame([self._result(key) for key in keys(list(self.checks.values()))])
+        checks = suppress(results, suppressions)
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
         )

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.scene import simplified, visible_shapes
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import FeedbackRow, engine_check
 from kinematify.validation.checks.needs import late, not_driven, nothing_moves
 from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.geometry.words import SLIMMER, UNSEEN
 
 if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
@@ -28,9 +31,10 @@ if TYPE_CHECKING:
 )
 def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     """One joint after the other is driven from rest to both ends by a position servo, the others held. Each must
-    arrive within engines.reach of its range. A joint that its own base stops is an error if their collision geometry
-    is what the file declares; where other neighbours or convex stand-ins are in the way it is a warning, and a note
-    where parts are in the way that can move themselves: a robot reaches itself within its ranges. A tracking error
+    arrive within engines.reach of its range. A joint that its own base stops is an error if the surfaces that the file
+    declares meet, the visible ones too; where only collision geometry meets or convex stand-ins are in the way it is a
+    warning, and a note where parts are in the way that can move themselves, a robot reaches itself within its ranges,
+    or that pass each other in every engine unless their contacts are asked for. A tracking error
     above engines.tracking is a note.
 
     PyBullet: Pairs that touch at rest once meshes are inflated by 1 mm do not act on each other, since PyBullet would
@@ -151,12 +155,14 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
     excess, values = context.excess_towards(driven)
     deepest = int(np.argmax(excess[index]))
     beyond = excess[index, deepest] > stand_in_error(context.prepared, pair)
-    real = bool(beyond) and _stopped_by_surfaces(context, driven, pair, until=float(values[deepest]))
+    real, seen = (False, False) if not beyond else _surfaces(context, driven, pair, until=float(values[deepest]))
     why = (
         f"there {first} and {second} collide; moved on without physics, they get {excess[index, deepest] * 1e3:.3g} mm "
         f"deeper into each other than at rest (at {values[deepest]:.4g} {travel.unit})"
     )
-    if real:
+    if real and not seen:
+        why, remedy = f"{why}. {UNSEEN.rstrip('.')}", SLIMMER
+    elif real:
         remedy = f"Correct axis, pivot or limit of {travel.joint} so that {first} and {second} stay clear."
     else:
         reason = stand_in_reason(context.prepared, pair) if not beyond else "while their declared surfaces stay clear"
@@ -165,15 +171,19 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
     result.find(
         f"{stops}: {why}.",
         remedy,
-        severity=_severity(context, index, real=real, limited=travel.limited),
-        blame=Blame.KINEMATICS if real else Blame.PHYSICS,
+        severity=_severity(context, index, real=real, certain=seen and travel.limited),
+        blame=Blame.KINEMATICS if seen else Blame.PHYSICS,
         pair=pair,
         **facts,  # type: ignore[arg-type]
     )
 
 
-def _stopped_by_surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, until: float) -> bool:
-    """Whether the declared surfaces of two links meet as well, on the way from rest to where the pieces are deepest."""
+def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, until: float) -> tuple[bool, bool]:
+    """Whether the declared surfaces of two links meet on the way from rest to where the pieces are deepest.
+
+    Returns:
+        For those that collide; and for what is visible too, since collision shapes are often stubs or swollen.
+    """
     from kinematify.validation.geometry.surfaces import surfaces_meet  # noqa: PLC0415 - exact geometry takes a while
     from kinematify.validation.left_model import model_of  # noqa: PLC0415 - as above
 
@@ -184,19 +194,22 @@ def _stopped_by_surfaces(context: EngineContext, driven: Driven, pair: tuple[str
     rows[1:, leader] = values[way]
     declared = model_of(context.request)  # the engines themselves do without surfaces
     geometry = context.request.settings.geometry
-    return surfaces_meet(declared, pair, rows, tolerance=context.drives.sweep.tolerance, settings=geometry)
+    ask = partial(surfaces_meet, declared, pair, rows, tolerance=context.drives.sweep.tolerance, settings=geometry)
+    real = ask()
+    return real, real and (not simplified(declared) or ask(shapes_of=visible_shapes))
 
 
-def _severity(context: EngineContext, index: int, *, real: bool, limited: bool) -> Severity:
+def _severity(context: EngineContext, index: int, *, real: bool, certain: bool) -> Severity:
     """How bad it is that a pair stops a joint.
 
-    Neighbours above the root pass each other in engines unless one asks for their contacts, and parts that both move
-    can get out of each other's way: a robot reaches itself within its ranges.
+    By default, MuJoCo lets neighbours pass each other but for those of a root that is fixed to the world, and PyBullet
+    all of them. Parts that both move can get out of each other's way: a robot reaches itself within its ranges.
     """
     pair = tuple(sorted(context.drives.sweep.bodies[index].tolist()))
-    if real and limited and pair in context.mechanism.neighbours and pair[0] == 0:
+    neighbours = pair in context.mechanism.neighbours
+    if certain and neighbours and pair[0] == 0:
         return Severity.ERROR
-    return Severity.WARNING if pair in context.mechanism.neighbours or (real and pair[0] == 0) else Severity.NOTE
+    return Severity.WARNING if pair[0] == 0 and (neighbours or real) else Severity.NOTE
 
 
 def _blocking_pair(context: EngineContext, driven: Driven) -> int | None:

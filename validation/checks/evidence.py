@@ -1,8 +1,9 @@
 """KV341 to KV348: does the geometry of two links explain the joint between them?
 
-What geometry proves is an error, what it only makes unlikely a warning: people build doors that no rule has seen. One
-cause, one finding: a joint with the wrong parent is judged no further, and where several joints in series share one
-contact only what holds for each of them is.
+KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact about
+the same joint, and are one note per joint else (`kinematify.validation.opinions`). One cause, one finding: a joint with
+the wrong parent is judged no further, and where several joints in series share one contact only what holds for each of
+them is.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_CARRIED,
     doubts=True,
+    opinion=True,
 )
 def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     """At rest, every moving body touches the body that carries it, or at least no other one. A child that is more than
@@ -76,6 +78,7 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
     doubts=True,
+    opinion=True,
 )
 def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     """The axis lies within evidence.unknown_deg of a direction that the two bodies show: axes of round surfaces and
@@ -111,6 +114,7 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
     doubts=True,
+    opinion=True,
 )
 def unknown_place(result: OpenCheck, case: JointCase) -> None:
     """A turning joint's axis runs within evidence.unknown_distance of the child's size (in linkages
@@ -146,6 +150,7 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
     doubts=True,
+    opinion=True,
 )
 def another_fits(result: OpenCheck, case: JointCase) -> None:
     """The declared joint is scored beside all candidates of its type by the cues of the inference (room, contact near
@@ -198,6 +203,7 @@ def _contradicted(case: JointCase) -> bool:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.TYPE,
     doubts=True,
+    opinion=True,
 )
 def other_type(result: OpenCheck, case: JointCase) -> None:
     """Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity slide,
@@ -243,7 +249,14 @@ def _type_open(case: JointCase) -> bool:
     return better or case.measures.weighed.scene.has_bearing or case.blocked > case.settings.blocked
 
 
-@check("KV346", title="permitted motion opens", severity=Severity.WARNING, blame=Blame.KINEMATICS, doubts=True)
+@check(
+    "KV346",
+    title="permitted motion opens",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    doubts=True,
+    opinion=True,
+)
 def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     """With a one-sided range (evidence.one_sided), the permitted side does not lead into the parent within
     evidence.shut of the range while the other side is free for evidence.open of it; a closed panel does not turn

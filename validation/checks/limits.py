@@ -21,8 +21,10 @@ if TYPE_CHECKING:
 
 _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""
-_ROUND_TOLERANCE = 0.01
-"""[deg]."""
+_ROUND_TOLERANCE = 0.3
+"""What two decimals of a radian leave of a round angle [deg]: 200 deg are written as 3.49 rad."""
+_NO_LIMIT = 10.0
+"""Limits of plus and minus this are how files say that there is none [rad]."""
 
 
 @check(
@@ -33,8 +35,9 @@ _ROUND_TOLERANCE = 0.01
     needs=(something_moves,),
 )
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
-    """No hinge turns by more than `widest_turn` (a warning from `full_turn` on, unless both limits are round numbers
-    of degrees; a warning beyond `endless`, where no limit was meant). No slide moves by more than `widest_slide` or
+    """No hinge turns by more than `widest_turn` (a warning from `full_turn` on; a warning beyond `endless`, and a note
+    at plus and minus 10 rad, where no limit was meant), unless both limits are round numbers of degrees up to
+    `widest_wrist`. No slide moves by more than `widest_slide` or
     `slide_sizes` times the size of the model; beyond `slide_wrong` times it is an error.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
@@ -54,10 +57,11 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     width = joint.upper - joint.lower
     if width <= settings.full_turn:
         return
-    endless = width > settings.endless
+    unlimited = joint.upper == -joint.lower == _NO_LIMIT
+    endless = unlimited or width > settings.endless
     # Wrists of large arms turn by 400 degrees to each side; their limits are round numbers of degrees.
     meant = _round(joint.lower) and _round(joint.upper) and width <= settings.widest_wrist
-    if meant and width <= settings.widest_turn:
+    if meant:
         return
     degrees = f"{math.radians(joint.lower):.6g} and {math.radians(joint.upper):.6g}"
     result.find(
@@ -67,7 +71,11 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         'Write type="continuous" where a hinge has no limit.'
         if endless
         else f"Write lower and upper in radians: {degrees} if they are degrees.",
-        severity=Severity.WARNING if endless or meant or width <= settings.widest_turn else Severity.ERROR,
+        severity=Severity.NOTE
+        if unlimited
+        else Severity.WARNING
+        if endless or width <= settings.widest_turn
+        else Severity.ERROR,
         joint=joint.name,
         link=joint.child,
         value=width,

@@ -182,7 +182,7 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
 )
 def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     """Along the range, the gap between child and parent grows by less than geometry.lost of the model's size; beyond
-    geometry.far it is an error.
+    geometry.far it is an error. It counts where both what is visible and what collides part.
 
     Why it matters: A hinge about the wrong line swings the part away from it, and a slide that is too long drops it.
 
@@ -190,24 +190,22 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     """
     scene = motion.scene
     limit = scene.settings.lost * scene.size
-    gaps = [item for side in motion.sweep.sides for item in side.gaps]
-    for pair in sorted({pair for pair, _, _ in gaps}):
-        gap, value = max((gap, value) for other, gap, value in gaps if other == pair)
-        rest = motion.look.allowance.gap(pair)
-        if gap - rest <= limit:
+    for pair in sorted({pair for side in motion.sweep.sides for pair, _, _ in side.gaps}):
+        grown, value = min(motion.parted(pair), motion.as_seen.parted(pair))
+        if grown <= limit:
             continue
         connection = scene.connection_of[pair]
         parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
         what = "turns away from its hinge" if motion.sweep.travel.turns else "leaves its guide"
         result.find(
-            f"{child} is {length(gap)} away from {parent} at {_value(motion, value)} of {motion.joint} "
-            f"({length(rest)} at rest): it {what}.",
+            f"{child} gets {length(grown)} farther away from {parent} than at rest at {_value(motion, value)} of "
+            f"{motion.joint}: it {what}.",
             "Align <axis> and <origin> with the hinge or guide, check the type, or reduce the limits.",
-            severity=Severity.ERROR if gap - rest > scene.settings.far * scene.size else Severity.WARNING,
+            severity=Severity.ERROR if grown > scene.settings.far * scene.size else Severity.WARNING,
             joint=motion.joint,
             pair=in_document_order(scene, pair),
             q=configuration(scene, {motion.sweep.leader: value}),
-            value=gap - rest,
+            value=grown,
             limit=limit,
             unit="m",
         )
@@ -222,7 +220,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
 )
 def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
     """A sliding part still stands beside its parent at the end of its range: the way is below geometry.guide of the
-    length along the axis that both share.
+    length along the axis that both share, visible or colliding, whichever is more.
 
     Why it matters: A drawer that is pulled out farther than it is long falls, but not in an engine.
 
@@ -235,7 +233,7 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
         connection = scene.connection_of[pair]
         for side in motion.sweep.sides:
             way = abs(side.declared - travel.rest)
-            guide = motion.guide(connection, side)
+            guide = max(motion.guide(connection, side), motion.as_seen.guide(connection, side))
             # What stands on its parent, as a lid does, has no guide, and may be lifted off.
             if guide <= scene.settings.hover * scene.size or way <= scene.settings.guide * guide:
                 continue

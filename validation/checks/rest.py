@@ -102,7 +102,7 @@ def _overlap(
 )
 def hovering(result: OpenCheck, look: GeometryLook) -> None:
     """At rest, a moving part is less than geometry.hover of the model's size away from the body that its joint hangs
-    it on.
+    it on. What is visible counts: collision shapes are often stubs that leave the bearing out.
 
     Why it matters: A part in the air often has the wrong parent or the wrong origin.
 
@@ -111,8 +111,9 @@ def hovering(result: OpenCheck, look: GeometryLook) -> None:
     scene, allowance = look.scene, look.allowance
     limit = scene.settings.hover * scene.size
     for connection in scene.connections:
-        if allowance.hovers(connection.pair, limit):
-            gap = allowance.gap(connection.pair)
+        seen = allowance if look.visible is None else look.visible.allowance
+        if allowance.hovers(connection.pair, limit) and seen.hovers(connection.pair, limit):
+            gap = seen.gap(connection.pair)
             parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
             result.find(
                 f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "

@@ -168,6 +168,18 @@ class JointMotion:
         return self.sweep.travel.joint
 
     @cached_property
+    def as_seen(self) -> JointMotion:
+        """The same of what is visible: collision shapes are often stubs that leave bearings and guides out."""
+        visible = self.look.visible
+        return self if visible is None else JointMotion(look=visible, sweep=visible.sweep(self.sweep.leader))
+
+    def parted(self, pair: Pair) -> tuple[float, float]:
+        """How much farther apart than at rest a pair gets at most [m], and at which value [rad or m]."""
+        gaps = [(gap, value) for side in self.sweep.sides for other, gap, value in side.gaps if other == pair]
+        gap, value = max(gaps, default=(0.0, self.sweep.travel.rest))
+        return gap - self.look.allowance.gap(pair), value
+
+    @cached_property
     def blocked(self) -> dict[float, Meeting]:
         """For each side the first own meeting, if one gets too deep within the declared range."""
         firsts = {side.sign: self.own_first(side) for side in self.sweep.sides}
@@ -199,9 +211,9 @@ class JointMotion:
 
     def seen(self, meeting: Meeting) -> float:
         """How deep the visible geometry of the two gets into each other [m], 0 where it stays clear."""
-        if self.look.visible is None:
+        if self.as_seen is self:
             return meeting.depth
-        found = [seen for side in self.look.visible.sweep(self.sweep.leader).sides for seen in side.meetings]
+        found = [seen for side in self.as_seen.sweep.sides for seen in side.meetings]
         return max((seen.depth for seen in found if seen.pair == meeting.pair and seen.inside), default=0.0)
 
     def clearable(self, meeting: Meeting) -> bool:
