@@ -248,12 +248,23 @@ def test_degrees_for_radians_are_an_error_at_the_joint(good: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("degrees", "severity"), [(350.0, None), (360.0, None), (400.0, Severity.WARNING), (2000.0, Severity.ERROR)]
+    ("degrees", "severity"), [(350.0, None), (360.0, None), (400.0, None), (2000.0, Severity.ERROR)]
 )
 def test_wrists_may_turn_by_round_numbers_of_degrees(good: Path, degrees: float, severity: Severity | None) -> None:
     ends = {"lower": repr(-math.radians(degrees)), "upper": repr(math.radians(degrees))}
     found = counted(edited(good, "//joint[@name='door_joint']/limit", **ends))
     assert [finding.severity for finding in found] == ([] if severity is None else [severity])
+
+
+def test_ends_of_ten_radians_stand_for_no_limit(good: Path) -> None:
+    urdf = edited(good, "//joint[@name='door_joint']/limit", lower="-10", upper="10")
+    assert counted(urdf) == []
+    (note,) = next(result.findings for result in checked(urdf).values() if result.check == "KV220")
+    assert "continuous" in note.remedy
+
+
+def test_round_degrees_may_be_written_with_two_decimals_of_a_radian(good: Path) -> None:
+    assert counted(edited(good, "//joint[@name='door_joint']/limit", lower="-3.49", upper="3.49")) == []
 
 
 def test_a_small_range_in_degrees_is_no_round_angle(good: Path) -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.scene import simplified, visible_shapes
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
 from kinematify.validation.check import FeedbackRow, engine_check
 from kinematify.validation.checks.needs import late, not_driven, nothing_moves
@@ -184,7 +183,8 @@ def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, 
     Returns:
         For those that collide; and for what is visible too, since collision shapes are often stubs or swollen.
     """
-    from kinematify.validation.geometry.surfaces import surfaces_meet  # noqa: PLC0415 - exact geometry takes a while
+    from kinematify.geometry.scene import simplified, visible_shapes  # noqa: PLC0415 - exact geometry takes a while
+    from kinematify.validation.geometry.surfaces import surfaces_meet  # noqa: PLC0415 - as above
     from kinematify.validation.left_model import model_of  # noqa: PLC0415 - as above
 
     leader, (_, values) = driven.drive.leader, context.excess_towards(driven)

@@ -1,0 +1,34 @@
+"""Opinions of the inference are notes until a fact agrees."""
+
+from __future__ import annotations
+
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.opinions import evidence_before_blame
+
+
+def failed(check: str, joint: str, severity: Severity = Severity.WARNING) -> CheckResult:
+    finding = Finding(
+        check=check, severity=severity, blame=Blame.KINEMATICS, message="It is off.", remedy="Mend it.", joint=joint
+    )
+    return CheckResult(check=check, engine=None, status=Status.FAIL, findings=(finding,))
+
+
+def test_opinions_about_a_joint_are_one_note() -> None:
+    line, kind = evidence_before_blame([failed("KV344", "hinge"), failed("KV345", "hinge", Severity.ERROR)])
+    (note,) = line.findings
+    assert (note.severity, note.joint) == (Severity.NOTE, "hinge")
+    assert "KV345" in note.message
+    assert kind.findings == ()
+    assert (line.status, kind.status) == (Status.PASS, Status.PASS)
+
+
+def test_an_error_of_fact_about_the_same_joint_lets_them_count() -> None:
+    fact = failed("KV312", "hinge", Severity.ERROR)
+    told = evidence_before_blame([fact, failed("KV344", "hinge"), failed("KV344", "slide")])
+    assert told[0] == fact
+    assert [finding.severity for result in told[1:] for finding in result.findings] == [Severity.WARNING, Severity.NOTE]
+
+
+def test_a_warning_is_no_proof() -> None:
+    told = evidence_before_blame([failed("KV311", "hinge"), failed("KV344", "hinge")])
+    assert told[1].findings[0].severity is Severity.NOTE
