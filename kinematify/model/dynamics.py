@@ -45,18 +45,19 @@ class JointLoad:
 
 
 def with_dynamics(robot: Robot, config: DynamicsConfig) -> Robot:
-    """Return the robot with damping and friction for every joint that has none, and with parts that a hand can lift.
+    """Return the robot with damping and friction for every joint that has none, and with parts that can be moved.
 
     Friction holds what rests in the middle of its range against its weight; damping lets a hand's force move it over
     its range in a few seconds and no quicker than in a fraction of one. Where a hand could not lift what a joint
-    carries, its masses are made smaller: they come from the volume of a closed surface as if it were solid.
+    carries, its masses are made smaller: they come from the volume of a closed surface as if it were solid. Motors of
+    machines get the effort that their load asks for.
 
     Args:
         robot: Links with mass properties; zero is their pose as given.
         config: Forces of a hand, friction, times.
     """
     for joint in reversed(robot.joints_downward):
-        if joint.leads and _by_hand(robot, joint):
+        if joint.leads and moved_by_hand(robot, joint):
             robot = _lightened(robot, joint, config)
     joints = tuple(
         joint
@@ -67,8 +68,8 @@ def with_dynamics(robot: Robot, config: DynamicsConfig) -> Robot:
     return replace(robot, joints=joints)
 
 
-def _by_hand(robot: Robot, joint: Joint) -> bool:
-    """Whether a joint belongs to a chain of at most two joints that move."""
+def moved_by_hand(robot: Robot, joint: Joint) -> bool:
+    """Whether a joint belongs to a chain of at most two joints that move; others have motors."""
     above = 0
     link: str = joint.parent
     while link != robot.root:
@@ -111,7 +112,13 @@ def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig) -> Joint:
     friction = _friction(load, config, hand)
     left = max(hand - load.largest - friction, (1.0 - config.hand_share) * hand)
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
-    return replace(joint, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
+    effort = joint.effort
+    if effort is not None and not moved_by_hand(robot, joint):
+        needed = (
+            load.largest + friction + (load.inertia / config.opening_time + damping) * load.travel / config.opening_time
+        )
+        effort = max(effort, float(f"{needed / config.hand_share:.3g}"))
+    return replace(joint, effort=effort, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
 
 
 def _friction(load: JointLoad, config: DynamicsConfig, hand: float) -> float:
