@@ -32,6 +32,12 @@ class ModelConfig(StageConfig):
     """Velocity limit of joints that slide [m/s]."""
     min_travel: float
     """Smallest range between the limits [rad if it turns, else fraction of the diagonal]."""
+    play: float
+    """Joints that turn close no farther than to zero where they could go so much farther [rad]: that is play."""
+    play_travel: float
+    """The same for joints that slide."""
+    play_share: float
+    """It is play only up to this share of the range."""
     max_travel: float
     """Largest travel of a joint that slides, in each direction."""
     max_name_length: int
@@ -49,6 +55,10 @@ class CollisionConfig(StageConfig):
     """It is smaller for small objects: at most this."""
     thinnest_share: float
     """What would be left thinner is dropped, fraction of the clearance."""
+    most_pieces: int
+    """Convex pieces of a link before it is carved."""
+    corners: int
+    """Vertices of a piece that was joined from others, at most."""
     forced_share: float
     """Links whose surfaces get deeper into each other than at rest by more than this fraction of the model's size block
     each other; what is less is carved."""

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _SAMPLES = 160
 """Points in a piece by which the share that a plane cuts off is estimated."""
-_LEAST_STEPS = 24
+_LEAST_STEPS = 48
 """Steps of a sweep at least."""
 _MOST_STEPS = 128
 """Steps of a sweep at most: 3 deg of a whole turn."""

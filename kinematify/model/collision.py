@@ -17,6 +17,7 @@ import numpy as np
 
 from kinematify.geometry.carve import Sweep, carved
 from kinematify.geometry.convex import ConvexPiece, surface_points
+from kinematify.geometry.fewer import fewer_pieces
 from kinematify.geometry.hull import convex_hull
 from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.rest import Allowance
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Link, Robot
 
+_THINNEST = 1e-4
+"""Of flat pieces that are joined [m]."""
 _PROBES = 400
 """Points of a link's surface by which it is told how much the pieces leave out."""
 _MAX_STEM = 100  # file systems end at 255 bytes for a name
@@ -108,7 +111,7 @@ def fit_collision(
     """
     pieces = decomposed(robot, decomposition)
     poses = forward_kinematics(robot, rest_configuration(robot))
-    bodies = [_in_world(pieces[link.name], poses[link.name]) for link in robot.links]
+    bodies = [_in_world(_few(pieces[link.name], config), poses[link.name]) for link in robot.links]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
     exact = _ExactSweeps(robot, geometry, config.forced_share)
     result = carved(
@@ -208,6 +211,12 @@ def _size(bodies: Sequence[Sequence[ConvexPiece]]) -> float:
     """Diagonal of the box around all pieces [m]."""
     ends = np.array([end for group in bodies for piece in group for end in (piece.low, piece.high)])
     return float(np.linalg.norm(np.ptp(ends, axis=0))) if len(ends) else 0.0
+
+
+def _few(pieces: Pieces, config: CollisionConfig) -> Pieces:
+    """At most as many convex pieces as a link may have."""
+    few = fewer_pieces(pieces.convex, config.most_pieces, thickness=_THINNEST, corners=config.corners)
+    return replace(pieces, convex=tuple(few))
 
 
 def _in_world(pieces: Pieces, T_world_link: FloatArray) -> list[ConvexPiece]:

@@ -114,9 +114,8 @@ def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig) -> Joint:
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
     effort = joint.effort
     if effort is not None and not moved_by_hand(robot, joint):
-        needed = (
-            load.largest + friction + (load.inertia / config.opening_time + damping) * load.travel / config.opening_time
-        )
+        pace = load.travel / config.opening_time
+        needed = load.largest + friction + (load.inertia / config.opening_time + damping) * pace
         effort = max(effort, float(f"{needed / config.hand_share:.3g}"))
     return replace(joint, effort=effort, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+import math
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from kinematify.config.validation import load_settings
 from kinematify.model.collision import fit_collision
@@ -14,7 +17,9 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.model.collision import FittedCollision
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.robot.robot import Robot
+    from kinematify.robot.robot import Inertial, Robot
+
+_DIGITS = 9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,9 +43,38 @@ class SimulableModel:
         }
 
 
+def rounded(robot: Robot) -> Robot:
+    """Return a robot without digits that are only noise: lengths and angles to 1e-9, mass properties to nine digits."""
+    return replace(
+        robot,
+        links=tuple(replace(link, inertial=_rounded_inertial(link.inertial)) for link in robot.links),
+        joints=tuple(
+            replace(
+                joint,
+                T_parent_child=np.round(joint.T_parent_child, _DIGITS),
+                lower=round(joint.lower, _DIGITS),
+                upper=round(joint.upper, _DIGITS),
+            )
+            for joint in robot.joints
+        ),
+    )
+
+
+def _rounded_inertial(inertial: Inertial | None) -> Inertial | None:
+    if inertial is None:
+        return None
+    decimals = _DIGITS - math.ceil(math.log10(max(float(np.trace(inertial.tensor)), 1e-300)))
+    return replace(
+        inertial,
+        mass=float(f"{inertial.mass:.{_DIGITS}g}"),
+        center_of_mass=np.round(inertial.center_of_mass, _DIGITS),
+        tensor=np.round(inertial.tensor, decimals),
+    )
+
+
 def simulable_model(model: KinematicModel, config: Config) -> SimulableModel:
     """Return the model with friction, damping, liftable parts and collision geometry that leaves the motion free."""
-    robot = with_dynamics(model_robot(model), config.dynamics)
+    robot = with_dynamics(rounded(model_robot(model)), config.dynamics)
     if config.collision.mode == "mesh":
         return SimulableModel(robot=robot, collision=None)
     settings = load_settings()

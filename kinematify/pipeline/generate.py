@@ -44,7 +44,8 @@ def true_model(blueprint: Blueprint, config: Config) -> KinematicModel:
         for joint in blueprint.joints
     ]
     tree = KinematicTree(parents=tuple(parents))
-    return build_model(blueprint.assembly, tree, joints, name=blueprint.name, config=config.model)
+    exact = config.model.model_copy(update={"play": 0.0, "play_travel": 0.0})  # what stands open knows how far
+    return build_model(blueprint.assembly, tree, joints, name=blueprint.name, config=exact)
 
 
 def write_parts(blueprint: Blueprint, folder: Path) -> None:

@@ -1,11 +1,11 @@
 """Do the files that are written work in engines as they are?
 
-Objects of the benchmark are inferred from their parts alone and written; generated ones are written with the joints that
-they were built with. Each file is loaded with the engine's own defaults: `MjModel.from_xml_path`, and `loadURDF` with a
-fixed base, with and without self-collision. It is left alone under gravity for 4 s, in which no joint may leave its
-range, and then each joint is pushed by a hand (60 N or 15 N m; machines by the effort that their file declares), the
-others held: it must move over 95 % of its range, which ends where exact geometry blocks it. `blocked` counts the joints
-of which that is less than what is declared; `still` are models in which nothing moves by itself.
+Objects of the benchmark are inferred from their parts alone and written; generated ones are written with the joints
+that they were built with. Each file is loaded with the engine's own defaults: `MjModel.from_xml_path`, and `loadURDF`
+with a fixed base, with and without self-collision. It is left alone under gravity for 4 s, in which no joint may leave
+its range, and then each joint is pushed by a hand (60 N or 15 N m; machines by the effort that their file declares),
+the others held: it must move over 95 % of its range, which ends where exact geometry blocks it. `blocked` counts the
+joints of which that is less than what is declared; `still` are models in which nothing moves by itself.
 """
 
 from __future__ import annotations
@@ -144,8 +144,8 @@ def report(found: Report[Record]) -> list[str]:
     pieces = [count for record in found.records for count in record["pieces"]]
     seconds = [record["seconds"] for record in found.records]
     facts = (
-        f"Collision pieces of a link: median {median(pieces):.0f}, most {max(pieces)}. Time of a processor to fit them: "
-        f"median {median(seconds):.1f} s, most {max(seconds):.1f} s an object."
+        f"Collision pieces of a link: median {median(pieces):.0f}, most {max(pieces)}. Time of a processor to fit "
+        f"them: median {median(seconds):.1f} s, most {max(seconds):.1f} s an object."
     )
     return [
         explained(__doc__),
