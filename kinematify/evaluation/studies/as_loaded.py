@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 import tempfile
 import time
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import partial
 from operator import itemgetter
 from pathlib import Path
@@ -64,32 +64,38 @@ class AsLoadedOptions(Options):
     collision: Literal["auto", "mesh"] = Field("auto", description="Collision geometry that is written.")
 
 
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """One object, and how it is written."""
+
+    item: BenchObject | None
+    """To be inferred; None for a generated one."""
+    family: str
+    seed: int
+    collision: str
+
+
 def measure(options: AsLoadedOptions, work: Work) -> Measured:
     """Write every object and try it in every engine."""
+    found = {item.name: item for data in options.data for item in find_objects(data)}
+    cases = {name: Case(item=item, family="", seed=0, collision=options.collision) for name, item in found.items()}
+    for seed in range(options.seeds):
+        for family in options.families or FAMILIES:
+            case = Case(item=None, family=family, seed=seed, collision=options.collision)
+            cases[f"{family} {seed}"] = case
+    return list(work.each(tried_as_loaded, cases, timeout=900.0).values()), {}
+
+
+def tried_as_loaded(case: Case) -> Record:
+    """Infer or build an object, write it and try it."""
     config = load_config()
-    config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": options.collision})})
-    objects = {item.name: item for data in options.data for item in find_objects(data)}
-    drawn = {
-        f"{family} {seed}": (family, seed) for seed in range(options.seeds) for family in options.families or FAMILIES
-    }
-    records = [
-        *work.each(partial(inferred_as_loaded, config), objects, timeout=900.0).values(),
-        *work.each(partial(generated_as_loaded, config), drawn, timeout=900.0).values(),
-    ]
-    return records, {}
-
-
-def inferred_as_loaded(config: Config, item: BenchObject) -> Record:
-    """Infer an object, write it and try it."""
-    model = infer(shown_parts(erased_item(item, CONDITIONS[0])), config=config).model
-    return {"set": item.urdf.parents[1].name, "object": item.name, **_tried(model, config)}
-
-
-def generated_as_loaded(config: Config, drawn: tuple[str, int]) -> Record:
-    """Build an object, write it with its exact joints and try it."""
-    family, seed = drawn
-    blueprint = build(FAMILIES[family], {}, seed=seed, name=f"{family}_{seed}")
-    return {"set": "generated", "object": f"{family} {seed}", **_tried(true_model(blueprint, config), config)}
+    config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
+    if case.item is not None:
+        model = infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config).model
+        return {"set": case.item.urdf.parents[1].name, "object": case.item.name, **_tried(model, config)}
+    blueprint = build(FAMILIES[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
+    model = true_model(blueprint, config)
+    return {"set": "generated", "object": f"{case.family} {case.seed}", **_tried(model, config)}
 
 
 def _tried(model: KinematicModel, config: Config) -> Record:
