@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 COMMANDS = (
-    "generate", "infer", "refine", "validate", "explain", "view", "export", "erase", "bench", "nightly", "doctor",
+    "generate", "infer", "refine", "validate", "explain", "fix", "view", "export", "erase", "bench", "nightly",
+    "doctor",
 )  # fmt: skip
 """Each is a module of this package that defines `command`."""
 

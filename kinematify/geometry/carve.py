@@ -45,6 +45,8 @@ _PIECE_COST = 0.01
 """Share of a link that is given up to save one more piece."""
 _ROUNDING = 1e-3
 """Cuts keep this much more than the clearance, as a share of it."""
+_BEGUN = 0.25
+"""Share of a step that lies within a range if the step counts as one within it."""
 _DIRECTIONS = 6
 """Steps of a sweep whose face planes are tried as cuts."""
 
@@ -228,7 +230,9 @@ class _Clearing:
         options = []
         for piece, obstacle in ((moving, resting), (resting, moving)):
             parts = self._around(piece, obstacle, steps, backwards=piece is moving)
-            lost = (piece.piece.volume - sum(part.piece.volume for part in parts)) / self._volumes[piece.body]
+            left = sum(item.piece.volume for item in self._alive[piece.body])
+            # Of what is left: a body that has lost much already is spared.
+            lost = (piece.piece.volume - sum(part.piece.volume for part in parts)) / left
             emptied = not parts and len(self._alive[piece.body]) == 1
             options.append((np.inf if emptied else lost + _PIECE_COST * (len(parts) - 1), piece, parts))
         cost, piece, parts = min(options, key=lambda item: item[0])
@@ -300,9 +304,10 @@ class _Path:
         return np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
 
     def within(self, steps: IntArray, lower: float, upper: float) -> IntArray:
-        """Those of some steps that lie within a range of values [rad or m]; rest always does."""
+        """Those of some steps that lie within a range of values [rad or m], or begin there; rest always does."""
         start, end = self._values[steps], self._values[steps + 1]
-        return np.asarray(steps[((start >= lower) & (end <= upper)) | (start == end)])
+        begun = _BEGUN * (end - start)
+        return np.asarray(steps[((end - begun >= lower) & (start + begun <= upper)) | (start == end)])
 
     def meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
         """Steps in which no plane keeps two pieces apart by the clearance."""

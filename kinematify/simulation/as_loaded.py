@@ -15,6 +15,7 @@ import mujoco
 import numpy as np
 import pybullet as bullet
 
+from kinematify.model.dynamics import joint_load
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Self
 
-    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint, Robot
 
 PLAIN_WORLDS = ("mujoco", "pybullet", "pybullet, self-collision")
@@ -119,7 +119,9 @@ def as_loaded(
     Raises:
         ValueError, pybullet.error: The engine does not load the file.
     """
-    with _MujocoWorld(urdf) if world == "mujoco" else _PybulletWorld(urdf, selfish=world != "pybullet") as loaded:
+    with (
+        _MujocoWorld(urdf) if world == "mujoco" else _PybulletWorld(urdf, robot, selfish=world != "pybullet") as loaded
+    ):
         depth, pair = loaded.deepest()
         ranges = {joint.name: _range(joint, free.get(joint.name, (-math.inf, math.inf))) for joint in robot.leaders}
         beyond, moved = _left_alone(loaded, ranges)
@@ -143,7 +145,7 @@ def as_loaded(
 def _range(joint: Joint, free: tuple[float, float]) -> tuple[float, float]:
     """Where a joint is to move, around zero: what has no limits half a turn to both sides."""
     lower, upper = (-math.pi, math.pi) if joint.kind is JointType.CONTINUOUS else (joint.lower, joint.upper)
-    return max(lower, free[0]), min(upper, free[1])
+    return float(max(lower, free[0])), float(min(upper, free[1]))
 
 
 def _left_alone(world: _World, ranges: Mapping[str, tuple[float, float]]) -> tuple[dict[str, float], dict[str, float]]:
@@ -220,7 +222,7 @@ class _MujocoWorld:
         """What a push at a joint accelerates while the others are not held."""
         matrix = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_fullM(self._model, self._data, matrix)
-        return _effective(matrix, self._dof(joint))
+        return float(1.0 / np.linalg.inv(matrix)[self._dof(joint), self._dof(joint)])
 
     def deepest(self) -> tuple[float, tuple[str, str] | None]:
         self.reset()
@@ -244,7 +246,8 @@ class _MujocoWorld:
 class _PybulletWorld:
     """`loadURDF` with a fixed base and `stepSimulation`."""
 
-    def __init__(self, urdf: Path, *, selfish: bool) -> None:
+    def __init__(self, urdf: Path, robot: Robot, *, selfish: bool) -> None:
+        self._robot = robot
         self._client = bullet.connect(bullet.DIRECT)
         flags = bullet.URDF_USE_SELF_COLLISION if selfish else 0
         self._call(bullet.setPhysicsEngineParameter, enableFileCaching=0)
@@ -281,10 +284,8 @@ class _PybulletWorld:
         return float(self._call(bullet.getJointState, self._body, self._index[joint])[1])
 
     def inertia(self, joint: str) -> float:
-        numbers = sorted(self._index.values())
-        values = [self._call(bullet.getJointState, self._body, number)[0] for number in numbers]
-        matrix = np.array(self._call(bullet.calculateMassMatrix, self._body, values))
-        return _effective(matrix, numbers.index(self._index[joint]))
+        """Of what the joint carries: the others are held. PyBullet's own mass matrix fails for some models."""
+        return joint_load(self._robot, self._robot.joint_by_name[joint]).inertia
 
     def deepest(self) -> tuple[float, tuple[str, str] | None]:
         self.reset()
@@ -300,7 +301,3 @@ class _PybulletWorld:
 
     def __exit__(self, *error: object) -> None:
         bullet.disconnect(self._client)
-
-
-def _effective(matrix: FloatArray, dof: int) -> float:
-    return float(1.0 / np.linalg.inv(matrix)[dof, dof])
