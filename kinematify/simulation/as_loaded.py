@@ -119,9 +119,10 @@ def as_loaded(
     Raises:
         ValueError, pybullet.error: The engine does not load the file.
     """
-    with (
-        _MujocoWorld(urdf) if world == "mujoco" else _PybulletWorld(urdf, robot, selfish=world != "pybullet") as loaded
-    ):
+    plain: _World = (
+        _MujocoWorld(urdf) if world == "mujoco" else _PybulletWorld(urdf, robot, selfish=world != "pybullet")
+    )
+    with plain as loaded:
         depth, pair = loaded.deepest()
         ranges = {joint.name: _range(joint, free.get(joint.name, (-math.inf, math.inf))) for joint in robot.leaders}
         beyond, moved = _left_alone(loaded, ranges)
