@@ -1,0 +1,96 @@
+"""Friction, damping and weight of the joints that are written."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from kinematify.config import load_config
+from kinematify.model.dynamics import joint_load, moved_by_hand, with_dynamics
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.robot import Inertial, Joint, Link, Robot
+
+CONFIG = load_config().dynamics
+
+
+def body(name: str, mass: float, center: tuple[float, float, float]) -> Link:
+    return Link(
+        name=name, inertial=Inertial(mass=mass, center_of_mass=np.array(center), tensor=0.01 * mass * np.eye(3))
+    )
+
+
+def hinge(child: str, parent: str, axis: tuple[float, float, float], lower: float, upper: float) -> Joint:
+    return Joint(
+        name=f"{child}_joint",
+        kind=JointType.REVOLUTE,
+        parent=parent,
+        child=child,
+        T_parent_child=np.eye(4),
+        axis=np.array(axis),
+        lower=lower,
+        upper=upper,
+        effort=100.0,
+        velocity=3.0,
+    )
+
+
+def lid(mass: float, lower: float) -> Robot:
+    """Its middle is 0.5 m beside the hinge; it opens upwards."""
+    return Robot(
+        name="box",
+        links=(body("base", 10.0, (0.0, 0.0, 0.0)), body("lid", mass, (0.5, 0.0, 0.0))),
+        joints=(hinge("lid", "base", (0.0, -1.0, 0.0), lower, 1.5),),
+    )
+
+
+def test_the_load_is_weight_times_arm() -> None:
+    robot = lid(2.0, -0.5)
+    load = joint_load(robot, robot.joints[0])
+    assert load.largest == pytest.approx(2.0 * 9.81 * 0.5)
+    assert load.inertia == pytest.approx(2.0 * 0.5**2 + 0.02)
+
+
+def test_a_limit_takes_the_weight_of_a_closed_lid() -> None:
+    closed, ajar = lid(2.0, 0.0), lid(2.0, -0.5)
+    assert joint_load(closed, closed.joints[0]).at_rest == 0.0
+    assert joint_load(ajar, ajar.joints[0]).at_rest == pytest.approx(2.0 * 9.81 * 0.5, rel=0.01)
+
+
+@pytest.mark.parametrize("mass", [0.5, 5.0, 200.0])
+@pytest.mark.parametrize("lower", [0.0, -0.5])
+def test_a_hand_lifts_what_friction_holds(mass: float, lower: float) -> None:
+    made = with_dynamics(lid(mass, lower), CONFIG)
+    load, joint = joint_load(made, made.joints[0]), made.joints[0]
+    assert joint.friction is not None
+    assert joint.friction >= load.at_rest
+    assert load.largest + joint.friction < CONFIG.hand_torque
+
+
+def test_light_parts_keep_their_mass() -> None:
+    made = with_dynamics(lid(0.5, 0.0), CONFIG)
+    assert made.links[1].inertial is not None
+    assert made.links[1].inertial.mass == 0.5
+
+
+def test_machines_keep_their_masses_and_get_the_effort_that_they_need() -> None:
+    names = ("base", "a", "b", "c")
+    arm = Robot(
+        name="arm",
+        links=tuple(body(name, 100.0, (1.0, 0.0, 0.0)) for name in names),
+        joints=tuple(hinge(child, parent, (0.0, 1.0, 0.0), -1.0, 1.0) for parent, child in pairwise(names)),
+    )
+    assert not any(moved_by_hand(arm, joint) for joint in arm.joints)
+    made = with_dynamics(arm, CONFIG)
+    assert [link.inertial for link in made.links] == [link.inertial for link in arm.links]
+    first = made.joints[0]
+    assert first.effort is not None
+    assert first.effort > joint_load(made, first).largest
+
+
+def test_what_a_file_states_stays() -> None:
+    robot = lid(0.5, 0.0)
+    stated = replace(robot, joints=(replace(robot.joints[0], damping=0.0, friction=0.25),))
+    assert with_dynamics(stated, CONFIG).joints[0].friction == 0.25
