@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from kinematify.model.simulable import SimulableModel
 
-FAMILIES = ("cabinet", "microwave", "toilet")
+FAMILIES = ("box", "microwave", "toilet")
 
 
 @pytest.fixture(scope="module", params=FAMILIES)
