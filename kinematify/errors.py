@@ -25,7 +25,7 @@ class ExitStatus(IntEnum):
     UNUSABLE = 2
     """The input or an argument cannot be used."""
     FAULT = 3
-    """An engine, the machine or Kinematify itself failed."""
+    """An engine, the machine or Kinematify itself failed, or time ran out before an answer."""
     INTERRUPTED = 130
 
 

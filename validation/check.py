@@ -21,7 +21,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.finding import Finding, Severity, Status
+from kinematify.validation.finding import Finding, Severity, Status, not_finished
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -172,8 +172,12 @@ class OpenCheck:
         )
 
     def skip(self, reason: str) -> None:
-        """Say that it does not apply, or that time ran out before it was complete."""
+        """Say that it does not apply."""
         self.status, self.reason = Status.SKIPPED, reason
+
+    def leave(self, what: str) -> None:
+        """Say what time ran out for; what was found before stands."""
+        self.skip(not_finished(f"time ran out before {what}"))
 
     def block(self, reason: str) -> None:
         """Say that an earlier failure keeps it from running."""

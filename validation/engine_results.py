@@ -13,6 +13,7 @@ from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.simulation.configurations import agreement_configurations, read_poses
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.prepared import load_prepared
+from kinematify.validation.finding import not_finished
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -114,4 +115,8 @@ class EngineResults:
             reasons = (
                 f"{ENGINES[e].title} {self.failures.get(e, 'left no figures, see its own checks')}" for e in missing
             )
-            check.block(f"not everything could be compared: {'; '.join(reasons)}")
+            reason = f"not everything could be compared: {'; '.join(reasons)}"
+            if self.request.late.intersection(missing):
+                check.skip(not_finished(reason))
+            else:
+                check.block(reason)

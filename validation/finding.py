@@ -41,9 +41,17 @@ class Status(StrEnum):
     FAIL = "fail"
     """It has at least one error or warning."""
     SKIPPED = "skipped"
-    """It does not apply, was not asked for, or time ran out; the reason is given."""
+    """It does not apply, was not asked for, or was not finished; the reason is given."""
     BLOCKED = "blocked"
-    """An earlier failure, a crash or a hang kept it from running; the reason is given."""
+    """An earlier failure or a crash kept it from running; the reason is given."""
+
+
+_NOT_FINISHED = "not finished: "
+
+
+def not_finished(why: str) -> str:
+    """Reason of a check that time ran out for; it says nothing against the model."""
+    return f"{_NOT_FINISHED}{why}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,8 +105,13 @@ class CheckResult:
     """``mujoco``, ``pybullet``, ``pinocchio``, or None where no engine is involved."""
     status: Status
     reason: str | None = None
-    """Why it was skipped or blocked."""
+    """Why it was skipped, blocked or not finished."""
     seconds: float = 0.0
     findings: tuple[Finding, ...] = ()
     measured: Mapping[str, float] = field(default_factory=dict)
     """Named figures worth reading even where nothing is wrong, e.g. the largest tracking error."""
+
+    @property
+    def unfinished(self) -> bool:
+        """True if time ran out before it was complete; what it found by then stands."""
+        return (self.reason or "").startswith(_NOT_FINISHED)

@@ -1,5 +1,7 @@
 """Stages in processes of their own: a crash, a hang or a memory blow-up ends the stage, not the run.
 
+Their limits count processor time, so that a busy machine changes no verdict.
+
 Workers are forked from a server that has the heavy imports done, so that one costs milliseconds. A worker sends each
 result through a pipe at once; what it sent before it died is kept.
 """
@@ -7,6 +9,7 @@ result through a pipe at once; what it sent before it died is kept.
 from __future__ import annotations
 
 import gc
+import math
 import multiprocessing
 import os
 import resource
@@ -14,7 +17,7 @@ import signal
 import sys
 import time
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import connection, forkserver, resource_tracker
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -31,6 +34,10 @@ if TYPE_CHECKING:
 
 _SHOWN = 200
 """Characters of a failed stage's last words."""
+_GRACE = 2.0
+"""Processor time after which a stage that should have ended by itself at the deadline is stopped [s]."""
+_PATIENCE = 10.0
+"""Time on the clock over processor time after which a stage waits for what never comes, however busy the machine is."""
 _VARIABLES = {
     **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
     "MUJOCO_GL": "disable",
@@ -65,8 +72,6 @@ class Stage:
     """Every (id, engine) that it tells if nothing goes wrong."""
     after: tuple[str, ...] = ()
     """Names of the stages that must have ended without a crash before."""
-    seconds: float | None = None
-    """Wall time after which it hangs [s]; `budget.stage_seconds` if None."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,14 +82,21 @@ class StageEnd:
     told: tuple[CheckResult | Summary, ...]
     failure: str | None
     """Why it did not end by itself, as words that follow "because"; None if it did."""
-    seconds: float
+    late: bool = False
+    """It, or one that it comes after, was stopped because time ran out: no fact about the model."""
+    seconds: float = 0.0
+    """Processor time of a stage that ended by itself, with the longest of those that it comes after."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Running:
     stage: Stage
     process: BaseProcess
+    before: float
+    """Processor time of those that it comes after [s]."""
     started: float
+    patience: float
+    """Time on the clock after which it is stopped [s]."""
     told: list[CheckResult | Summary]
 
 
@@ -101,11 +113,11 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
 
     Args:
         stages: In an order in which each stands behind those that it comes after.
-        request: What each of them is given.
+        request: What each of them is given; what those before it took is taken off the time of a stage.
         workers: Processes at a time.
     """
     start_server()
-    waiting, ended = list(stages), dict[str, str | None]()
+    waiting, ended = list(stages), dict[str, StageEnd]()
     active: dict[Connection, _Running] = {}
     try:
         while waiting or active:
@@ -113,31 +125,35 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
                 if len(active) == workers:
                     break
                 waiting.remove(stage)
-                broken = next((name for name in stage.after if ended[name]), None)
+                before = [ended[name] for name in stage.after]
+                broken = next((end for end in before if end.failure), None)
                 if broken is not None:
-                    why = f"did not run, because the stage {broken} {ended[broken]}"
-                    end = StageEnd(stage=stage, told=(), failure=why, seconds=0.0)
-                    ended[stage.name] = "did not run"
-                    yield end
+                    why = f"did not run, because the stage {broken.stage.name} {broken.failure}"
+                    ended[stage.name] = StageEnd(stage=stage, told=(), failure=why, late=broken.late)
+                    yield ended[stage.name]
                 else:
-                    receiver, running = _start(stage, request)
+                    receiver, running = _start(stage, request, max((end.seconds for end in before), default=0.0))
                     active[receiver] = running
             for end in _listen(active, request):
-                ended[end.stage.name] = end.failure
+                ended[end.stage.name] = end
                 yield end
     finally:
         for receiver, running in active.items():
             _stop(receiver, running.process)
 
 
-def _start(stage: Stage, request: StageRequest) -> tuple[Connection, _Running]:
+def _start(stage: Stage, request: StageRequest, before: float) -> tuple[Connection, _Running]:
+    request = replace(request, deadline=max(0.0, request.deadline - before))
     context = multiprocessing.get_context("forkserver")
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_work, args=(sender, stage, request), daemon=True)
     with _without_main():
         process.start()
     sender.close()  # only the worker may hold the sending end: its death is then the end of the stream
-    return receiver, _Running(stage=stage, process=process, started=time.monotonic(), told=[])
+    patience = _PATIENCE * request.deadline + _GRACE
+    return receiver, _Running(
+        stage=stage, process=process, before=before, started=time.monotonic(), patience=patience, told=[]
+    )
 
 
 def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
@@ -147,6 +163,9 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     limit = request.settings.budget.stage_bytes
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    seconds = math.ceil(request.deadline + _GRACE)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds if most == resource.RLIM_INFINITY else min(seconds, most), most))
     try:
         _silence(_log(stage, request))
     except FileNotFoundError:
@@ -156,7 +175,7 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
 
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
         stage.run(request, Recorder(sender.send, request.selected))
-        sender.send(None)
+        sender.send(time.process_time())
 
 
 def _silence(log: os.PathLike[str]) -> None:
@@ -170,44 +189,35 @@ def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterat
     """Take in what the workers tell, and yield those that have ended, died or run out of time."""
     if not active:
         return
-    until = min(min(_end(running, request) for running in active.values()) - time.monotonic(), _grace(request))
+    until = min(running.started + running.patience for running in active.values()) - time.monotonic()
     ready = connection.wait(list(active), max(0.0, until))
     for receiver, running in list(active.items()):
         failure: str | None = None
+        late, seconds = False, 0.0
         if receiver in ready:
             try:
                 message = receiver.recv()
             except EOFError:
                 running.process.join()
+                late = running.process.exitcode == -signal.SIGXCPU
                 failure = _cause(running.process.exitcode, _log(running.stage, request))
             else:
-                if message is not None:
+                if not isinstance(message, float):
                     running.told.append(message)
                     continue
-        elif time.monotonic() >= _end(running, request):
-            failure = f"hung: it was stopped after {time.monotonic() - running.started:.0f} s"
-        elif _grace(request) <= 0.0:
-            failure = "was stopped at the end of the time budget"
+                seconds = running.before + message
+        elif time.monotonic() >= running.started + running.patience:
+            late, failure = True, f"was stopped after {running.patience:.0f} s in which it did not end"
         else:
             continue
         del active[receiver]
         _stop(receiver, running.process)
-        seconds = time.monotonic() - running.started
-        yield StageEnd(stage=running.stage, told=tuple(running.told), failure=failure, seconds=seconds)
-
-
-def _end(running: _Running, request: StageRequest) -> float:
-    """`time.monotonic()` at which a stage hangs."""
-    limit = running.stage.seconds
-    return running.started + (request.settings.budget.stage_seconds if limit is None else limit)
-
-
-def _grace(request: StageRequest) -> float:
-    """Seconds until a stage that should have ended by itself at the deadline is stopped."""
-    return request.deadline + 2.0 - time.time()
+        yield StageEnd(stage=running.stage, told=tuple(running.told), failure=failure, late=late, seconds=seconds)
 
 
 def _cause(exit_code: int | None, log: Path) -> str:
+    if exit_code == -signal.SIGXCPU:
+        return "was stopped when its processor time was used up"
     if exit_code is not None and exit_code < 0:
         return f"crashed with {signal.Signals(-exit_code).name}"
     try:

@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from kinematify.errors import ExitStatus
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.report import SCHEMA, ValidationReport
 
@@ -26,6 +27,11 @@ class Unusable:
     def verdict(self) -> str:
         """Always ``unusable``."""
         return "unusable"
+
+    @property
+    def exit_status(self) -> int:
+        """Always 2."""
+        return ExitStatus.UNUSABLE
 
     def as_json(self) -> dict[str, Any]:
         """The same keys as a report's, with the reason under ``error``."""

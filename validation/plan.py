@@ -46,9 +46,9 @@ def agreement_stage() -> Stage:
     return Stage(name="agreement", run=agreement.run, checks=checks)
 
 
-def task_stage(seconds: float) -> Stage:
+def task_stage() -> Stage:
     """A robot uses the object; it comes after all others, since it wants to know which joints they doubt."""
-    return Stage(name="task", run=task.run, checks=keys(checks_of("KV7")), seconds=seconds)
+    return Stage(name="task", run=task.run, checks=keys(checks_of("KV7")))
 
 
 def needed(stages: Sequence[Stage], selected: Collection[str]) -> list[Stage]:

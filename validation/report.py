@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from kinematify.errors import ExitStatus
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 
@@ -56,9 +57,16 @@ class ValidationReport:
         return "warn" if Severity.WARNING in severities else "pass"
 
     @property
+    def unfinished(self) -> tuple[CheckResult, ...]:
+        """Checks that time ran out for."""
+        return tuple(check for check in self.checks if check.unfinished)
+
+    @property
     def exit_status(self) -> int:
-        """1 with an error, else 0."""
-        return 1 if self.verdict == "fail" else 0
+        """1 with an error, else 3 if a check was not finished, else 0."""
+        if self.verdict == "fail":
+            return ExitStatus.FAILURES
+        return ExitStatus.FAULT if self.unfinished else ExitStatus.FINE
 
     def as_json(self) -> dict[str, Any]:
         """The report as JSON values (design 2.3, schema 1); absent values and non-finite numbers are null."""

@@ -6,6 +6,7 @@ Every check ends up in the report: passed, failed, skipped or blocked, the latte
 from __future__ import annotations
 
 import os
+import shlex
 import tempfile
 import time
 from dataclasses import replace
@@ -17,7 +18,7 @@ from kinematify.manipulation.request import Suspicion
 from kinematify.simulation.engines import ENGINES, require_engine
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
-from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import run_stages, start_server
 from kinematify.validation.opinions import evidence_before_blame
@@ -98,7 +99,7 @@ def validate(
                 work=Path(folder),
                 settings=settings,
                 selected=run.selected,
-                deadline=time.time() + settings.budget.seconds,
+                deadline=settings.budget.seconds,
                 task=task,
             )
             run.all(request, workers or os.cpu_count() or 1)
@@ -117,7 +118,7 @@ _LAST_GUARD = "KV152"
 _DOUBTS = frozenset(name for name, check in CHECKS.items() if check.doubts)
 """What the stage of a task wants to know of the joints: whether parent, axis, place, type and direction are right."""
 _LEEWAY = 20.0
-"""Seconds in which the comparison of engines, and what the stage of a task is at, may end after the budget."""
+"""Processor time that the comparison of engines has at least, and the stage of a task to end what it is at [s]."""
 
 
 def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check]:
@@ -156,6 +157,7 @@ class _Run:
         self._pairs: PairTable | None = None
         self._why: dict[CheckKey, tuple[Status, str]] = {}
         self._failures: dict[str, str] = {}
+        self._late: set[str] = set()
         self._started = time.perf_counter()
 
     def all(self, request: StageRequest, workers: int) -> None:
@@ -167,9 +169,13 @@ class _Run:
         if not usable:
             self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
             return
-        for end in run_stages([asset_stage()], asset_request, workers=1):
-            self._take_end(end)
+        (asset,) = run_stages([asset_stage()], asset_request, workers=1)
+        self._take_end(asset)
         self._progress("meshes and declared physics", 0.15)
+        if asset.late:
+            self._explain_rest(Status.SKIPPED, not_finished("time ran out before the meshes were checked"))
+            return
+        request = replace(request, deadline=max(0.0, request.deadline - asset.seconds))
         fault = self._fault_of_meshes()
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
@@ -191,19 +197,22 @@ class _Run:
 
     def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Hold the engines against each other; it is quick, and runs even where no time is left."""
-        late = max(request.deadline, time.time() + _LEEWAY)
-        request = replace(request, deadline=late, engines=tuple(engines), failures=self._failures)
+        request = replace(
+            request,
+            deadline=max(request.deadline, _LEEWAY),
+            engines=tuple(engines),
+            failures=self._failures,
+            late=frozenset(self._late),
+        )
         for end in run_stages(needed([agreement_stage()], request.selected), request, workers=1):
             self._take_end(end)
 
     def _use(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Let a robot use the object; it has time of its own."""
-        seconds = request.settings.task.seconds
-        request = replace(
-            request, deadline=time.time() + seconds + _LEEWAY, suspects=self._suspects(), task_engines=tuple(engines)
-        )
+        seconds = _task_seconds(request.settings)
+        request = replace(request, deadline=seconds + _LEEWAY, suspects=self._suspects(), task_engines=tuple(engines))
         self._progress("task", 0.96)
-        for end in run_stages([task_stage(seconds + 2.0 * _LEEWAY)], request, workers=1):
+        for end in run_stages([task_stage()], request, workers=1):
             self._take_end(end)
 
     def _suspects(self) -> dict[str, Suspicion]:
@@ -229,7 +238,7 @@ class _Run:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         results = evidence_before_blame([self._result(key) for key in keys(list(self.checks.values()))])
-        checks = suppress(results, suppressions)
+        checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
         )
@@ -261,10 +270,14 @@ class _Run:
             return
         self._failures[end.stage.name] = end.failure
         left = [key for key in end.stage.checks if key not in self._results and key[0] in self.selected]
+        reason = f"the stage {end.stage.name} {end.failure}"
+        if end.late:
+            self._late.add(end.stage.name)
+            self._explain(left, Status.SKIPPED, not_finished(reason))
+            return
         if left and not end.failure.startswith("did not run"):
             self._results[left[0]] = _fallen(left[0], end)
-        status = Status.SKIPPED if "budget" in end.failure else Status.BLOCKED
-        self._explain(left, status, f"the stage {end.stage.name} {end.failure}")
+        self._explain(left, Status.BLOCKED, reason)
 
     def _fault_of_meshes(self) -> str | None:
         """Why no later stage may open the meshes; None if they may."""
@@ -291,6 +304,19 @@ class _Run:
         status, reason = self._why.get(key, (Status.SKIPPED, "it was not asked for"))
         return CheckResult(check=key[0], engine=key[1], status=status, reason=reason)
 
+    def _with_command(self, result: CheckResult, settings: ValidationSettings) -> CheckResult:
+        """Add to the reason of what was not finished how to finish it."""
+        if not result.unfinished:
+            return result
+        seconds = 2.0 * (_task_seconds(settings) if result.check.startswith("KV7") else settings.budget.seconds)
+        command = f"kinematify validate {shlex.quote(str(self.path))} --budget {seconds:g}"
+        return replace(result, reason=f"{result.reason}; to finish: {command}, other options as they were")
+
+
+def _task_seconds(settings: ValidationSettings) -> float:
+    """Processor time of the stage of a task [s]."""
+    return max(settings.task.seconds, settings.budget.seconds)
+
 
 def _has_error(result: CheckResult) -> bool:
     return any(finding.severity is Severity.ERROR for finding in result.findings)
@@ -308,7 +334,7 @@ def _merged(before: JointSummary | None, now: JointSummary) -> JointSummary:
 
 
 def _fallen(key: CheckKey, end: StageEnd) -> CheckResult:
-    """A crash or a hang as a finding of the check that was under way."""
+    """A crash as a finding of the check that was under way."""
     check, engine = key
     finding = Finding(
         check=check,

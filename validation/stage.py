@@ -1,7 +1,7 @@
 """How a group of checks runs: in a process of its own, telling each result as soon as it is known.
 
-A stage is a function `stage(request, recorder)`. What it has told before it crashes, hangs or is stopped is kept;
-the checks that it has not told become ``blocked``.
+A stage is a function `stage(request, recorder)`. What it has told before it crashes or is stopped is kept;
+the checks that it has not told become ``blocked``, or ``skipped`` as not finished where time ran out.
 """
 
 from __future__ import annotations
@@ -37,11 +37,14 @@ class StageRequest:
     selected: frozenset[str]
     """Ids of the checks that the user wants."""
     deadline: float
-    """`time.time()` at which the run should be over; a stage that is late says what it left out."""
+    """`time.process_time()` of the stage's process at which it should be over, which no other program's load changes; a
+    stage that is late says what it left out."""
     engines: tuple[str, ...] = ()
     """Engines that were asked for, for the stage that compares them."""
     failures: Mapping[str, str] = field(default_factory=dict)
     """Why stages before it did not end by themselves, keyed by stage."""
+    late: frozenset[str] = frozenset()
+    """Those of them that time ran out for."""
     task: TaskRequest | None = None
     """What a robot is to do with the object."""
     task_engines: tuple[str, ...] = ()
@@ -51,8 +54,8 @@ class StageRequest:
 
     @property
     def remaining(self) -> float:
-        """Seconds until the deadline, at least 0."""
-        return max(0.0, self.deadline - time.time())
+        """Seconds of processor time until the deadline, at least 0."""
+        return max(0.0, self.deadline - time.process_time())
 
 
 class Recorder:

@@ -48,7 +48,12 @@ if TYPE_CHECKING:
 @click.option(
     "--suppress", type=click.Path(path_type=Path), metavar="FILE", help="YAML list of accepted findings with reasons."
 )
-@click.option("--budget", type=float, metavar="SECONDS", help="Time for one model; what is left out is said.")
+@click.option(
+    "--budget",
+    type=float,
+    metavar="SECONDS",
+    help="Processor time for each stage of a model; what is not finished is said.",
+)
 @click.option(
     "--config", default="validation", show_default=True, metavar="NAME|FILE", help="Shipped or own thresholds."
 )
@@ -122,7 +127,8 @@ def command(
     MODEL is a URDF file, a folder with URDF files at any depth, or a pattern in quotes. Nothing else is needed: no
     truth, no second pose. `kinematify explain KV301` tells more about a check.
 
-    Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used.
+    Ends with 0 if no model has an error (warnings are allowed), with 1 if one has, with 2 if one cannot be used,
+    with 3 if there is no error and something that was asked for was not finished (the report says what finishes it).
     Ctrl-C ends with 130 and leaves valid reports of what is known by then.
     """
     from kinematify.validation.isolation import start_server

@@ -99,13 +99,12 @@ class ValidationRun:
 
     @property
     def exit_status(self) -> int:
-        """130 after Ctrl-C, else the worst of the models."""
+        """130 after Ctrl-C, else the worst of the models: unusable, an error, not finished, fine."""
         if self.interrupted:
             return ExitStatus.INTERRUPTED
-        verdicts = {outcome.verdict for outcome in self.outcomes}
-        if "unusable" in verdicts:
-            return ExitStatus.UNUSABLE
-        return ExitStatus.FAILURES if "fail" in verdicts else 0
+        found = {item.exit_status for item in self.outcomes}
+        order = (ExitStatus.UNUSABLE, ExitStatus.FAILURES, ExitStatus.FAULT)
+        return next((status for status in order if status in found), ExitStatus.FINE)
 
     def say(self, *, quiet: bool) -> None:
         """Tell the user: the report on stdout unless a machine reads that, what is no result on stderr."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.text import (
     FAMILY_HEADINGS,
@@ -109,16 +110,22 @@ def _verdict_line(outcome: Outcome) -> str:
         *([f"{counted_words(suppressed, 'finding')} suppressed"] if suppressed else []),
         ", ".join([f"{ran} of {len(outcome.checks)} checks ran", *left]),
         f"{float(outcome.environment.get('seconds', 0.0)):.1f} s",
+        *([_unfinished(outcome)] if outcome.unfinished else []),
         *(["interrupted: partial"] if outcome.environment.get("interrupted") else []),
     ]
     return f"{word}  {printable(outcome.model)}: {'; '.join(parts)}"
+
+
+def _unfinished(report: ValidationReport) -> str:
+    status = ", exit status 3" if report.exit_status == ExitStatus.FAULT else ""
+    return f"{counted_words(len(report.unfinished), 'check')} not finished{status}"
 
 
 def _reasons(report: ValidationReport) -> list[str]:
     """Why checks did not run, a line for each reason."""
     grouped: dict[tuple[Status, str], list[str]] = {}
     for check in report.checks:
-        if check.status in (Status.SKIPPED, Status.BLOCKED):
+        if check.status in (Status.SKIPPED, Status.BLOCKED) or check.unfinished:
             grouped.setdefault((check.status, check.reason or "no reason given"), []).append(check.check)
     return [
         _wrapped(printable(f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}"), 2, 4)

@@ -15,9 +15,7 @@ class BudgetSettings(StageConfig):
     """Time and memory."""
 
     seconds: float
-    """Wall time of a whole run [s]; checks that are left over are reported as skipped."""
-    stage_seconds: float
-    """Wall time of one isolated stage [s]; a stage that takes longer hangs."""
+    """Processor time of each isolated stage with those that it comes after [s]; what is left over is not finished."""
     stage_bytes: int
     """Address space of one isolated stage [bytes]."""
 

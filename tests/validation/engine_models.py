@@ -158,7 +158,7 @@ def prepared_request(
         work=folder,
         settings=settings,
         selected=frozenset(CHECKS),
-        deadline=time.time() + seconds,
+        deadline=time.process_time() + seconds,
     )
 
 

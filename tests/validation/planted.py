@@ -62,7 +62,7 @@ def told(urdf: Path, folder: Path, *, seconds: float = 100.0) -> Told:
         work=folder,
         settings=load_settings(),
         selected=SELECTED,
-        deadline=time.time() + seconds,
+        deadline=time.process_time() + seconds,
     )
     run(request, Recorder(results.append, SELECTED))
     return results

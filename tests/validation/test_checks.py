@@ -53,7 +53,7 @@ def test_every_check_has_all_its_texts() -> None:
 
 
 def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
-    stages = [asset_stage(), *later_stages(ENGINES), agreement_stage(), task_stage(1.0)]
+    stages = [asset_stage(), *later_stages(ENGINES), agreement_stage(), task_stage()]
     told = [key for stage in stages for key in stage.checks]
     text = keys(checks_of("KV10", "KV11", "KV12", "KV13", "KV14"))
     assert sorted(map(str, (*told, *text))) == sorted(map(str, keys(CHECKS.values())))
@@ -99,7 +99,7 @@ def test_what_a_check_needs_is_the_reason_why_it_is_skipped() -> None:
     recorder.run(CHECKS["KV331"], Late())
     recorder.run(CHECKS["KV330"], Late())  # it was not asked for, and would fail
     (result,) = told
-    assert (result.status, result.reason) == (Status.SKIPPED, "time ran out")
+    assert (result.status, result.reason) == (Status.SKIPPED, "not finished: time ran out before it")
 
 
 def test_the_example_of_contributing_is_the_code() -> None:

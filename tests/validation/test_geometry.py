@@ -29,7 +29,7 @@ def request_for(model: Model, folder: Path, *, seconds: float = 100.0) -> StageR
         work=folder,
         settings=load_settings(),
         selected=SELECTED,
-        deadline=time.time() + seconds,
+        deadline=time.process_time() + seconds,
     )
 
 

@@ -69,7 +69,7 @@ def check_path(path: Path, package_dirs: tuple[Path, ...] = ()) -> tuple[bool, l
         work=path.parent,
         settings=SETTINGS,
         selected=frozenset(CHECKS),
-        deadline=time.time() + 60.0,
+        deadline=time.process_time() + 60.0,
     )
     return precheck(request, Recorder(results.append, request.selected)), results
 

@@ -126,7 +126,7 @@ def limits_hold(result: OpenCheck, context: EngineContext) -> None:
 
 def _say_left(result: OpenCheck, context: EngineContext) -> None:
     if context.drives.left:
-        result.skip(f"time ran out before {context.drives.left} of the drives")
+        result.leave(f"{context.drives.left} of the drives")
 
 
 def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.robot.joint_type import JointType
+from kinematify.validation.finding import not_finished
 
 if TYPE_CHECKING:
     from kinematify.validation.asset.bodies import Physics
@@ -44,7 +45,7 @@ def no_geometry(context: EngineContext) -> str | None:
 
 def late(context: EngineContext) -> str | None:
     """In an engine, time for one more run."""
-    return "time ran out before it" if context.request.remaining <= 0.0 else None
+    return not_finished("time ran out before it") if context.request.remaining <= 0.0 else None
 
 
 def not_driven(context: EngineContext) -> str | None:

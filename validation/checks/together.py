@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.validation.check import FeedbackRow, check
-from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.finding import Blame, Severity, not_finished
 from kinematify.validation.geometry.words import configuration, in_document_order, joint_value, length
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
     title="free configurations of all joints",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
-    needs=(lambda look: "time ran out" if look.random is None else None,),
+    needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
 def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
     """Quasi-random configurations of all joints (geometry.random_rows Sobol points); the share that is free is
@@ -120,7 +120,7 @@ def hulls_block(result: OpenCheck, look: GeometryLook) -> None:
     """
     for done, sweep in enumerate(look.sweeps):
         if not look.in_time():
-            result.skip(f"time ran out before {len(look.sweeps) - done} joints")
+            result.leave(f"{len(look.sweeps) - done} joints")
             return
         found = look.hulls.blocked(sweep, _HULL_SAMPLES)
         if found is None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -62,7 +61,7 @@ def drawing_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
         path: The URDF file.
         package_dirs: Where packages lie.
         settings: Limits of the process.
-        seconds: Time that it may take.
+        seconds: Processor time that it may take.
 
     Returns:
         What was drawn in time.
@@ -75,7 +74,7 @@ def drawing_of(path: Path, package_dirs: Sequence[Path], settings: ValidationSet
             work=Path(folder),
             settings=settings,
             selected=frozenset(),
-            deadline=time.time() + seconds,
+            deadline=seconds,
         )
         (end,) = run_stages([stage], request, workers=1)
         picture, scene = Path(folder, _FILE), Path(folder, _SCENE)

@@ -17,6 +17,7 @@ from kinematify.geometry.rest import Allowance, Reason
 from kinematify.geometry.scene import read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
+from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.hulls import HullView
 from kinematify.validation.geometry.words import in_document_order
 from kinematify.validation.summary import PairSummary, PairTable
@@ -85,7 +86,7 @@ class GeometryLook:
     def late(self) -> str | None:
         """Which joints were left out."""
         left = [travel.joint for travel in self.scene.travels[len(self.sweeps) :]]
-        return f"time ran out before {len(left)} joints: {', '.join(left)}" if left else None
+        return not_finished(f"time ran out before {len(left)} joints: {', '.join(left)}") if left else None
 
     @cached_property
     def motions(self) -> list[JointMotion]:

@@ -72,7 +72,7 @@ def _validated(urdf: Path, task: CorruptionTask) -> Record:
         return {"outcome": "no URDF", "message": str(error)[:200]}
     _write_all(report)
     errors = Counter(finding.check for finding in report.findings if finding.severity is Severity.ERROR)
-    outcome = "fails" if report.exit_status else "passes"
+    outcome = "fails" if report.verdict == "fail" else "passes"
     return {"outcome": outcome, "message": "", "errors": dict(errors), "unexplained": _unexplained(report)}
 
 

@@ -116,7 +116,7 @@ def _inferred(validation: NightValidation, folder: Path) -> Path:
 
 
 def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings:
-    budget = settings.budget.model_copy(update={"seconds": seconds, "stage_seconds": seconds})
+    budget = settings.budget.model_copy(update={"seconds": seconds})
     return settings.model_copy(update={"budget": budget})
 
 

@@ -116,7 +116,7 @@ def _validated(model: KinematicModel) -> Record:
 def _patient() -> ValidationSettings:
     """The shipped thresholds; what a check says of a model must not hang on how busy the machine is."""
     settings = load_settings()
-    budget = settings.budget.model_copy(update={"seconds": _BUDGET, "stage_seconds": _BUDGET})
+    budget = settings.budget.model_copy(update={"seconds": _BUDGET})
     return settings.model_copy(update={"budget": budget})
 
 

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
     from kinematify.evaluation.study import Measured, Record, Work
 
 BAD = ("crash", "timeout", "error")
-_GRACE = 15.0
-"""Seconds beyond the budget of a run, for starting and writing, after which it hangs."""
+_PATIENCE = 12.0
+"""Time on the clock over the budget, which is processor time of each stage, after which a run hangs; a stage of it is
+stopped after ten."""
 
 
 class RobustnessOptions(Options):
@@ -56,7 +57,7 @@ def measure(options: RobustnessOptions, work: Work) -> Measured:
         facts = {"number": int(name), "kind": KINDS[int(name) % len(KINDS)], "base": "?", "outcome": failure.status}
         return {**facts, "message": failure.message, "seconds": failure.seconds}
 
-    records = work.each(run_case, asked, timeout=options.seconds + _GRACE, reuse=100, failed=failed)
+    records = work.each(run_case, asked, timeout=_PATIENCE * options.seconds, reuse=100, failed=failed)
     return counted(list(records.values()))
 
 

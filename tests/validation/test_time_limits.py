@@ -1,0 +1,112 @@
+"""Time limits in real processes: what is not finished is said, with what finishes it, and is no fault of the model."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import time
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kinematify.cli.app import run
+from kinematify.config.validation import load_settings
+from kinematify.validation import run as validation
+from kinematify.validation.checks import checks_of
+from kinematify.validation.isolation import Stage, StageEnd, run_stages
+from kinematify.validation.plan import keys
+from kinematify.validation.stage import StageRequest
+from tests.validation.engine_models import cabinet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from kinematify.validation.stage import Recorder
+
+CHECKS_LEFT = keys(checks_of("KV34"))
+
+
+def spin(_request: StageRequest, _recorder: Recorder) -> None:
+    """Work without end."""
+    while True:
+        pass
+
+
+def sleep(_request: StageRequest, _recorder: Recorder) -> None:
+    """Wait for what never comes."""
+    time.sleep(600.0)
+
+
+def nap(_request: StageRequest, _recorder: Recorder) -> None:
+    """Wait as a process does whose machine is busy: longer on the clock than its processor time may be."""
+    time.sleep(1.5)
+
+
+def crash(_request: StageRequest, _recorder: Recorder) -> None:
+    """Die as an engine does."""
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def ends(folder: Path, work: Callable[[StageRequest, Recorder], None], *, seconds: float) -> tuple[StageEnd, StageEnd]:
+    """How a stage ends, and one that comes after it."""
+    request = StageRequest(
+        urdf=folder / "model.urdf",
+        package_dirs=(),
+        work=folder,
+        settings=load_settings(),
+        selected=frozenset(),
+        deadline=seconds,
+    )
+    stages = [Stage(name="first", run=work, checks=()), Stage(name="second", run=nap, checks=(), after=("first",))]
+    first, second = run_stages(stages, request, workers=2)
+    return first, second
+
+
+@pytest.mark.parametrize("work", [spin, sleep])
+def test_a_stage_out_of_time_is_late_and_so_is_what_comes_after_it(
+    work: Callable[[StageRequest, Recorder], None], tmp_path: Path
+) -> None:
+    first, second = ends(tmp_path, work, seconds=0.1)
+    assert (first.late, second.late) == (True, True)
+    assert "was stopped" in (first.failure or "")
+    assert "did not run, because the stage first was stopped" in (second.failure or "")
+
+
+def test_time_on_the_clock_alone_stops_nothing(tmp_path: Path) -> None:
+    first, second = ends(tmp_path, nap, seconds=1.0)
+    assert (first.failure, second.failure) == (None, None)
+    assert first.seconds < second.seconds < 1.0
+
+
+def test_a_crash_is_not_late(tmp_path: Path) -> None:
+    first, second = ends(tmp_path, crash, seconds=1.0)
+    assert (first.failure, first.late, second.late) == ("crashed with SIGSEGV", False, False)
+
+
+@pytest.mark.parametrize(("work", "status"), [(spin, 3), (crash, 0)])
+def test_what_was_not_finished_is_no_finding_and_ends_with_3(
+    work: Callable[[StageRequest, Recorder], None],
+    status: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    stage = Stage(name="evidence", run=work, checks=CHECKS_LEFT)
+    monkeypatch.setattr(validation, "later_stages", lambda _engines: [stage])
+    model = cabinet().write(tmp_path)
+    words = ["validate", str(model), "--engines", "none", "--checks", "KV34*", "--budget", "4"]
+    assert run([*words, "--json", str(tmp_path / "report.json")]) == status
+    report = json.loads((tmp_path / "report.json").read_text())
+    blamed = [item["message"] for item in report["findings"] if item["severity"] != "note"]
+    left = [item for item in report["checks"] if (item["check"], item["engine"]) in CHECKS_LEFT]
+    if status == 0:
+        assert "crashed with SIGSEGV" in blamed[0]
+        assert {item["status"] for item in left} == {"blocked"}
+        return
+    assert blamed == []
+    assert {item["status"] for item in left} == {"skipped"}
+    assert all(item["reason"].startswith("not finished: the stage evidence was stopped") for item in left)
+    assert all(f"to finish: kinematify validate {model} --budget 8" in item["reason"] for item in left)
+    assert f"{len(CHECKS_LEFT)} checks not finished, exit status 3" in capsys.readouterr().out
