@@ -27,7 +27,7 @@ def evidence_before_blame(results: Sequence[CheckResult]) -> list[CheckResult]:
     facts = {finding.joint for finding in _findings(results, opinion=False) if _proves(finding)}
     spoken: dict[str | None, list[Finding]] = {}
     for finding in _findings(results, opinion=True):
-        if finding.joint not in facts:
+        if finding.joint not in facts and finding.blame is not Blame.ENGINE:  # a crash of the stage is no opinion
             spoken.setdefault(finding.joint, []).append(finding)
     notes = {id(group[0]): _note(group) for group in spoken.values()}
     folded = {id(finding) for group in spoken.values() for finding in group}
@@ -56,5 +56,6 @@ def _note(group: Sequence[Finding]) -> Finding:
 def _without_blame(result: CheckResult, notes: dict[int, Finding], folded: set[int]) -> CheckResult:
     kept = tuple(notes.get(id(item), item) for item in result.findings if id(item) in notes or id(item) not in folded)
     counted = any(finding.severity is not Severity.NOTE for finding in kept)
-    status = Status.PASS if result.status is Status.FAIL and not counted else result.status
-    return replace(result, findings=kept, status=status)
+    if result.status is not Status.FAIL or counted:
+        return replace(result, findings=kept)
+    return replace(result, findings=kept, status=Status.SKIPPED if result.unfinished else Status.PASS)
