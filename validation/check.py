@@ -41,12 +41,13 @@ FAMILIES = dict(
             "KV3": "kinematics by geometry",
             "KV6": "agreement",
             "KV7": "task of a robot",
+            "KV8": "file as loaded",
             **{family: ENGINES[name].title for name, family in ENGINE_FAMILIES.items()},
         }.items()
     )
 )
 """Title of each family, keyed by the beginning of its ids."""
-_NOT_OURS = ("KV1", "KV2", "KV6")
+_NOT_OURS = ("KV1", "KV2", "KV6", "KV8")
 """Families whose findings no choice of a joint can mend."""
 
 
@@ -143,6 +144,7 @@ class OpenCheck:
         limit: float | None = None,
         unit: str | None = None,
         line: int | None = None,
+        reproduction: str | None = None,
         harmless: bool = False,
     ) -> None:
         """Add a finding.
@@ -168,6 +170,7 @@ class OpenCheck:
                 limit=None if limit is None else float(limit),
                 unit=unit,
                 line=line,
+                reproduction=reproduction,
             )
         )
 

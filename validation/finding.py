@@ -80,6 +80,8 @@ class Finding:
     unit: str | None = None
     line: int | None = None
     """Line of the URDF that it is about."""
+    reproduction: str | None = None
+    """Plain Python that shows it in the engine, without Kinematify."""
     suppressed: str | None = None
     """Reason given by the user for not counting it; it is still reported."""
 

@@ -57,6 +57,7 @@ _PRELOADED = (
     "kinematify.validation.evidence.measure",
     "kinematify.validation.engine_context",
     "kinematify.validation.engine_results",
+    "kinematify.validation.as_loaded_context",
 )
 """What requests hold and stages need, imported once for all of them; not the libraries of engines, one for each."""
 

@@ -5,18 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.isolation import Stage
-from kinematify.validation.stages import agreement, asset, engine, evidence, geometry, prepare, task
+from kinematify.validation.stages import agreement, as_loaded, asset, engine, evidence, geometry, prepare, task
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
     from kinematify.validation.check import Check
-
-DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
-"""Engines that every installation has; FCL and the exact geometry are always there."""
 
 CheckKey = tuple[str, str | None]
 """Id of a check and the engine it runs in."""
@@ -35,9 +31,22 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
         Stage(name="evidence", run=evidence.run, checks=keys(checks_of("KV34"))),
     ]
     for name in chosen:
-        checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith("KV7"))
+        checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
         stages.append(Stage(name=name, run=partial(engine.run, engine=name), checks=checks, after=("prepare",)))
     return stages
+
+
+def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
+    """The untouched file in each engine; they come after the geometry, which tells how far every joint is free."""
+    return [
+        Stage(
+            name=f"{name} as loaded",
+            run=partial(as_loaded.run, engine=name),
+            checks=tuple(key for key in keys(checks_of("KV8")) if key[1] == name),
+        )
+        for name in chosen
+        if any(name in check.engines for check in checks_of("KV8"))
+    ]
 
 
 def agreement_stage() -> Stage:

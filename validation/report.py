@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import ExitStatus
+from kinematify.validation.as_loaded import as_loaded_words
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 
@@ -62,6 +63,11 @@ class ValidationReport:
         return tuple(check for check in self.checks if check.unfinished)
 
     @property
+    def as_loaded(self) -> str:
+        """How many joints move in the untouched file, by engine; empty if no engine loaded it."""
+        return as_loaded_words(self.checks)
+
+    @property
     def exit_status(self) -> int:
         """1 with an error, else 3 if a check was not finished, else 0."""
         if self.verdict == "fail":
@@ -74,6 +80,7 @@ class ValidationReport:
             "schema": SCHEMA,
             "model": self.model,
             "verdict": self.verdict,
+            "as_loaded": self.as_loaded or None,
             "checks": [_check_json(check) for check in self.checks],
             "findings": [_finding_json(finding) for finding in self.findings],
             "joints": [_joint_json(joint) for joint in self.joints],
@@ -110,6 +117,7 @@ def _finding_json(finding: Finding) -> dict[str, Any]:
         "message": finding.message,
         "remedy": finding.remedy,
         "line": finding.line,
+        "reproduction": finding.reproduction,
         "suppressed": finding.suppressed,
     }
 

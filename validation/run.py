@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
 from kinematify.manipulation.request import Suspicion
-from kinematify.simulation.engines import ENGINES, require_engine
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
+from kinematify.validation.as_loaded import across_engines
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
@@ -23,8 +24,8 @@ from kinematify.validation.inferred import inferred_beside, with_next_best
 from kinematify.validation.isolation import run_stages, start_server
 from kinematify.validation.opinions import evidence_before_blame
 from kinematify.validation.plan import (
-    DEFAULT_ENGINES,
     agreement_stage,
+    as_loaded_stages,
     asset_stage,
     keys,
     later_stages,
@@ -191,9 +192,22 @@ class _Run:
             Status.SKIPPED,
             "the engine was not asked for",
         )
+        self._load_plainly(request, workers)
         self._compare(request, self.engines)
         if self.task is not None:
             self._use(request, self.engines)
+
+    def _load_plainly(self, request: StageRequest, workers: int) -> None:
+        """Look at the untouched file in engines; what the exact geometry knows of the joints is known by now."""
+        free = {name: joint.free_travel for name, joint in self._joints.items() if joint.free_travel is not None}
+        stages = [
+            stage
+            for stage in as_loaded_stages(self.engines)
+            if any(name in request.selected for name, _ in stage.checks)
+        ]
+        for end in run_stages(stages, replace(request, free_travel=free), workers=workers):
+            self._take_end(end)
+            self._progress(end.stage.name, 0.95)
 
     def _compare(self, request: StageRequest, engines: Sequence[str]) -> None:
         """Hold the engines against each other; it is quick, and runs even where no time is left."""
@@ -237,7 +251,8 @@ class _Run:
         if self.interrupted:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
-        results = evidence_before_blame([self._result(key) for key in keys(list(self.checks.values()))])
+        told = [self._result(key) for key in keys(list(self.checks.values()))]
+        results = evidence_before_blame(across_engines(told, self.engines))
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines

@@ -49,6 +49,8 @@ class StageRequest:
     """What a robot is to do with the object."""
     task_engines: tuple[str, ...] = ()
     """Engines in which its plans are executed."""
+    free_travel: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Range around rest in which nothing collides by exact geometry, of joints where it was measured [rad or m]."""
     suspects: Mapping[str, Suspicion] = field(default_factory=dict)
     """Joints that earlier stages doubt, for the stage of the task."""
 

@@ -10,7 +10,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
-from kinematify.cli.inferred import confidences, describe
+from kinematify.cli.inferred import as_loaded, confidences, describe
 from kinematify.cli.options import collision_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
@@ -87,6 +87,7 @@ if TYPE_CHECKING:
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
+@click.option("--no-validation", is_flag=True, help="Do not load the model into engines to count the joints that move.")
 @json_option
 def command(
     *,
@@ -105,6 +106,7 @@ def command(
     collision: str | None,
     force: bool,
     no_preview: bool,
+    no_validation: bool,
     json_to: str | None,
 ) -> int:
     """Infer the mechanism of ASSEMBLY and write it to OUT as a URDF with everything that belongs to it.
@@ -119,7 +121,7 @@ def command(
     """
     from kinematify.assembly.load import load_assembly
     from kinematify.config import load_config
-    from kinematify.model.output import check_output
+    from kinematify.model.output import MODEL_FILE, check_output
     from kinematify.pipeline import infer, write_inference
     from kinematify.refinement.hints import parse_hints, with_hints
 
@@ -133,16 +135,19 @@ def command(
         told = parse_hints(hints, given.names, base=base)
         inference = infer(given, config=settings, base=base, progress=progress)
         inference, heard = _with_votes(inference, vlm, progress)
-        status = 0
+        status, loaded = 0, ""
         if rounds is not None:
             inference, status = _refined(inference, rounds, tier, base, progress)
         inference = with_hints(inference, told) if told else inference
         progress("writing the model", 1.0)
         write_inference(inference, out, overwrite=force, preview=not no_preview)
+        if not no_validation:
+            progress("loading the model into engines", 1.0)
+            loaded = as_loaded(out / MODEL_FILE)
     if json_to:
-        write_answer(_as_answer(inference, out), json_to)
+        write_answer({**_as_answer(inference, out), "as_loaded": loaded or None}, json_to)
     if json_to != "-":
-        blocks = (heard, describe_refinement(inference), describe(inference, out))
+        blocks = (heard, describe_refinement(inference), describe(inference, out), loaded)
         click.echo("\n\n".join(block for block in blocks if block))
     return status
 

@@ -39,6 +39,15 @@ def describe(inference: Inference, out: Path) -> str:
     return "\n".join(lines)
 
 
+def as_loaded(urdf: Path) -> str:
+    """Return how many joints move in the written file by engine, measured; empty if no engine could be asked."""
+    from kinematify.validation.checks import checks_of
+    from kinematify.validation.run import validate
+
+    free_travel = "KV310"  # its stage measures how far every joint is free
+    return validate(urdf, selected={free_travel, *(check.id for check in checks_of("KV8"))}).as_loaded
+
+
 def _describe_joint(joint: Joint, confidence: float) -> tuple[str, ...]:
     return (
         joint.name,

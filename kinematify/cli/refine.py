@@ -9,7 +9,7 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
-from kinematify.cli.inferred import describe
+from kinematify.cli.inferred import as_loaded, describe
 from kinematify.cli.options import collision_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
@@ -53,6 +53,7 @@ TIERS = ("geometry", "engines", "task")
 )
 @collision_option
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
+@click.option("--no-validation", is_flag=True, help="Do not load the model into engines to count the joints that move.")
 @json_option
 def command(
     *,
@@ -64,6 +65,7 @@ def command(
     html: Path | None,
     collision: str | None,
     no_preview: bool,
+    no_validation: bool,
     json_to: str | None,
 ) -> int:
     """Simulate the model in OUT, feed its failures back into the search, and keep the best round.
@@ -79,6 +81,7 @@ def command(
     Ends with 0 if the model that is kept has no error about its motion, with 1 if it has. Ctrl-C keeps the best round
     so far and ends with 130.
     """
+    from kinematify.model.output import MODEL_FILE
     from kinematify.pipeline import infer
     from kinematify.refinement import refine
     from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
@@ -101,13 +104,18 @@ def command(
         )
         progress("writing the model", 0.9)
         write_refined(refinement.inference, folder, preview=not no_preview)
+        loaded = ""
+        if not (no_validation or refinement.interrupted):
+            progress("loading the model into engines", 0.94)
+            loaded = as_loaded(folder / MODEL_FILE)
         if files is not None:
             progress("validating the result", 0.95)
             _write_report(files, folder)
     if json_to:
-        write_answer(as_answer(refinement, folder), json_to)
+        write_answer({**as_answer(refinement, folder), "as_loaded": loaded or None}, json_to)
     if json_to != "-":
-        click.echo(f"{describe_refinement(refinement.inference)}\n\n{describe(refinement.inference, folder)}")
+        blocks = (describe_refinement(refinement.inference), describe(refinement.inference, folder), loaded)
+        click.echo("\n\n".join(block for block in blocks if block))
     return exit_status(refinement)
 
 

@@ -58,7 +58,7 @@ def describe(outcome: Outcome) -> str:
     if isinstance(outcome, Unusable):
         return f"{_verdict_line(outcome)}\n{_wrapped(printable(outcome.message))}"
     blocks = [
-        _verdict_line(outcome),
+        "\n".join(_first_lines(outcome)),
         format_table(FAMILY_HEADINGS, family_rows(outcome)),
         "\n".join(_reasons(outcome)),
         *(_group_text(group) for group in _groups(outcome.findings)),
@@ -83,7 +83,7 @@ def describe_briefly(report: ValidationReport) -> str:
     for item in report.counted:
         if item.severity is Severity.WARNING:
             warnings.setdefault((item.check, item.engine), []).append(item)
-    lines = [_verdict_line(report), *map(_group_line, errors)]
+    lines = [*_first_lines(report), *map(_group_line, errors)]
     lines += [f"  {_heading(group[0])}{_times(len(group))}" for group in warnings.values()]
     return "\n".join(lines)
 
@@ -94,6 +94,11 @@ def describe_unused(rules: Iterable[Suppression]) -> str:
     if not names:
         return ""
     return _wrapped(f"Note: these suppressions cover no finding and can go: {', '.join(names)}.")
+
+
+def _first_lines(report: ValidationReport) -> list[str]:
+    """The verdict, and what the file does as it is loaded."""
+    return [_verdict_line(report), *([report.as_loaded] if report.as_loaded else [])]
 
 
 def _verdict_line(outcome: Outcome) -> str:
@@ -160,6 +165,7 @@ def _group_text(group: Sequence[Finding]) -> str:
         _heading(first, f", {len(group)} times"),
         _wrapped(f"For example: {printable(first.message)}", 2, 2),
         _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
+        *_reproduction(first),
         *_suppressed(first),
         textwrap.indent(table, "  "),
     ]
@@ -185,6 +191,7 @@ def _finding_text(finding: Finding) -> str:
         *([_wrapped(printable(shown), 2, 2)] if shown else []),
         _wrapped(printable(finding.message), 2, 2),
         _wrapped(f"Remedy: {printable(finding.remedy)}", 2, 2),
+        *_reproduction(finding),
         *_suppressed(finding),
     ]
     return "\n".join(lines)
@@ -193,6 +200,13 @@ def _finding_text(finding: Finding) -> str:
 def _heading(finding: Finding, more: str = "") -> str:
     severity = click.style(finding.severity.value, fg=_SEVERITY_COLORS[finding.severity], bold=True)
     return f"{severity} {title(finding)} (blames {finding.blame.value}){more}"
+
+
+def _reproduction(finding: Finding) -> list[str]:
+    """The code that shows it, as it can be copied: no line is broken."""
+    if finding.reproduction is None:
+        return []
+    return ["  To see it:", textwrap.indent(printable(finding.reproduction.rstrip("\n")), "    ")]
 
 
 def _suppressed(finding: Finding) -> list[str]:
@@ -217,7 +231,7 @@ def _next_best(report: ValidationReport) -> str:
 def _brief(outcome: Outcome) -> str:
     if isinstance(outcome, Unusable):
         return describe(outcome)
-    lines = [_verdict_line(outcome)]
+    lines = _first_lines(outcome)
     for group in _groups([finding for finding in outcome.counted if finding.severity is not Severity.NOTE]):
         lines.append(_group_line(group))
     return "\n".join(lines)

@@ -355,6 +355,33 @@ class EngineSettings(StageConfig):
     """Difference between the two motions, fraction of the larger one."""
 
 
+class AsLoadedSettings(StageConfig):
+    """KV8xx: the untouched file in engines with their defaults."""
+
+    overlap: float
+    """Depth of an overlap at rest that is worth a warning, fraction of the model's size."""
+    overlap_length: float
+    """The same, at least [m]."""
+    seconds: float
+    """For which joints are left alone [s]."""
+    still: float
+    """How far a joint may go that nothing moves, fraction of its range."""
+    still_angle: float
+    """The same, at least [rad]."""
+    still_length: float
+    """The same of slides [m]."""
+    torque: float
+    """Of a hand at a turning part [N m]."""
+    force: float
+    """Of a hand at a sliding part [N]."""
+    turning_speed: float
+    """At which a hand turns a part, at least [rad/s]."""
+    sliding_speed: float
+    """The same of slides [m/s]."""
+    reach: float
+    """Share of what exact geometry leaves free that a pushed joint has to reach."""
+
+
 class AgreementSettings(StageConfig):
     """KV6xx: agreement of engines."""
 
@@ -394,6 +421,7 @@ class ValidationSettings(StageConfig):
     geometry: GeometrySettings
     evidence: EvidenceSettings
     engines: EngineSettings
+    as_loaded: AsLoadedSettings
     agreement: AgreementSettings
     task: TaskSettings
 

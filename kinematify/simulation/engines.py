@@ -54,11 +54,13 @@ _ENTRIES = (
         keeps_energy=False,
         stops_late=True,
     ),
-    EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV8"),
+    EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
     EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
 )
 ENGINES = {entry.name: entry for entry in _ENTRIES}
 """Keyed by name."""
+DEFAULT_ENGINES = tuple(name for name, engine in ENGINES.items() if engine.extra is None)
+"""Engines that every installation has; FCL and the exact geometry are always there."""
 
 
 def require_engine(name: str) -> None:

@@ -24,8 +24,8 @@ from kinematify.validation.plan import keys
 from kinematify.validation.report import ValidationReport
 from tests.reports import add_checks, finding, full_report, report, result
 
-USUAL = [check for check in CHECKS.values() if not check.id.startswith(("KV7", "KV8"))]
-"""KV7 is told only with --task, KV8 only with Drake."""
+USUAL = [check for check in CHECKS.values() if not check.id.startswith(("KV7", "KV9"))]
+"""KV7 is told only with --task, KV9 only with Drake."""
 INERTIAL = """<inertial><origin xyz="{x} 0 {z}"/><mass value="2"/>
       <inertia ixx="0.05" iyy="0.05" izz="0.08" ixy="0" ixz="0" iyz="0"/></inertial>"""
 SHAPE = '<{tag}><origin xyz="{x} 0 {z}"/><geometry><box size="0.4 0.4 {high}"/></geometry></{tag}>'

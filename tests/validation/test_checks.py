@@ -8,11 +8,12 @@ import sys
 
 import pytest
 
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, OpenCheck, check, engine_check
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, Severity, Status
 from kinematify.validation.isolation import _PRELOADED
-from kinematify.validation.plan import ENGINES, agreement_stage, asset_stage, keys, later_stages, task_stage
+from kinematify.validation.plan import agreement_stage, as_loaded_stages, asset_stage, keys, later_stages, task_stage
 from kinematify.validation.stage import Recorder
 from tests.places import ROOT
 
@@ -53,7 +54,13 @@ def test_every_check_has_all_its_texts() -> None:
 
 
 def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
-    stages = [asset_stage(), *later_stages(ENGINES), agreement_stage(), task_stage()]
+    stages = [
+        asset_stage(),
+        *later_stages(ENGINES),
+        *as_loaded_stages(ENGINES),
+        agreement_stage(),
+        task_stage(),
+    ]
     told = [key for stage in stages for key in stage.checks]
     text = keys(checks_of("KV10", "KV11", "KV12", "KV13", "KV14"))
     assert sorted(map(str, (*told, *text))) == sorted(map(str, keys(CHECKS.values())))

@@ -19,7 +19,7 @@ from tests.validation.engine_models import Box, Model, Part, Told, cabinet, prep
 
 pytest.importorskip("pydrake.multibody.plant", reason="Drake is not installed: pip install 'kinematify[drake]'")
 
-IDS = {check.id for check in checks_of("KV8")}
+IDS = {check.id for check in checks_of("KV9")}
 run = partial(engine_stage.run, engine="drake")
 
 
@@ -46,7 +46,7 @@ def test_good_cabinet_passes_every_check(tmp_path: Path) -> None:
     result = told(cabinet(), tmp_path)
     assert set(result.results) == IDS
     assert {check: r.reason for check, r in result.results.items() if r.status is not Status.PASS} == {}
-    assert result.results["KV805"].measured["arrived"] == 4
+    assert result.results["KV905"].measured["arrived"] == 4
 
 
 def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_path: Path) -> None:
@@ -66,7 +66,7 @@ def test_leaves_poses_inertias_and_torques_that_agree_with_the_kinematics(tmp_pa
 
 def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> None:
     result = told(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
-    (finding,) = result.results["KV805"].findings
+    (finding,) = result.results["KV905"].findings
     assert (finding.severity, finding.blame) == (Severity.ERROR, Blame.KINEMATICS)
     assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
     assert finding.value == pytest.approx(0.005, abs=0.005)  # the room behind it
@@ -75,17 +75,17 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
 def test_pair_that_touches_at_rest_stops_a_joint_although_it_does_not_act(tmp_path: Path) -> None:
     model = cabinet().with_part("drawer", boxes=(Box(size=(0.402, 0.27, 0.38)),), axis=(-1.0, 0.0, 0.0))
     result = told(model, tmp_path)
-    assert result.results["KV803"].measured["switched_off_pairs"] == 1.0
-    assert {(f.joint, f.pair) for f in result.results["KV805"].findings} == {("drawer_joint", ("body", "drawer"))}
+    assert result.results["KV903"].measured["switched_off_pairs"] == 1.0
+    assert {(f.joint, f.pair) for f in result.results["KV905"].findings} == {("drawer_joint", ("body", "drawer"))}
 
 
 def test_weak_joint_does_not_hold_and_falls_to_its_limit(tmp_path: Path) -> None:
     result = told(pendulum(effort=0.5), tmp_path)
-    (finding,) = result.results["KV804"].findings
+    (finding,) = result.results["KV904"].findings
     assert (finding.joint, finding.limit) == ("rod_joint", 0.5)
     assert finding.value == pytest.approx(2.0 * 9.81 * 0.2, rel=1e-3)
-    assert result.results["KV804"].measured["drift_rad"] == pytest.approx(1.0, abs=0.05)
-    assert result.results["KV808"].status is Status.PASS
+    assert result.results["KV904"].measured["drift_rad"] == pytest.approx(1.0, abs=0.05)
+    assert result.results["KV908"].status is Status.PASS
 
 
 def test_follower_goes_along(tmp_path: Path) -> None:
@@ -93,7 +93,7 @@ def test_follower_goes_along(tmp_path: Path) -> None:
     other = replace(cabinet().parts[1], name="other", at=(1.0, 0.155, 0.0), limits=(-0.3, 0.0), extra=mimic)
     parts = tuple(part for part in cabinet().parts if part.name != "door")
     result = told(Model(parts=(*parts, other)), tmp_path)
-    assert result.results["KV805"].measured == {"drives": 2.0, "arrived": 2.0}
+    assert result.results["KV905"].measured == {"drives": 2.0, "arrived": 2.0}
 
 
 def test_link_called_world_is_a_link(tmp_path: Path) -> None:
@@ -106,6 +106,6 @@ def test_refused_model_blocks_the_rest(tmp_path: Path) -> None:
     request = prepared_request(cabinet(), tmp_path)
     (tmp_path / URDF_FILE).write_text("<robot name='x'><link")
     result = tell(run, request)
-    assert [f.severity for f in result.results["KV801"].findings] == [Severity.ERROR]
-    assert {r.status for check, r in result.results.items() if check != "KV801"} == {Status.BLOCKED}
+    assert [f.severity for f in result.results["KV901"].findings] == [Severity.ERROR]
+    assert {r.status for check, r in result.results.items() if check != "KV901"} == {Status.BLOCKED}
     assert set(result.results) == IDS

@@ -8,6 +8,7 @@ from kinematify.errors import InputError
 from kinematify.validation.check import REGISTRY, Check
 from kinematify.validation.checks import (  # noqa: F401 - each registers its checks
     agreement,
+    as_loaded,
     collision,
     contact_agreement,
     drives,

@@ -8,6 +8,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import not_finished
 
 if TYPE_CHECKING:
+    from kinematify.validation.as_loaded_context import AsLoadedContext
     from kinematify.validation.asset.bodies import Physics
     from kinematify.validation.engine_context import EngineContext
 
@@ -43,7 +44,7 @@ def no_geometry(context: EngineContext) -> str | None:
     return None if any(link.pieces for link in context.prepared.links) else "no link has geometry"
 
 
-def late(context: EngineContext) -> str | None:
+def late(context: AsLoadedContext | EngineContext) -> str | None:
     """In an engine, time for one more run."""
     return not_finished("time ran out before it") if context.request.remaining <= 0.0 else None
 

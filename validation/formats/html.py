@@ -113,6 +113,7 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         return f"<section>{heading}<p>{text(outcome.message)}</p></section>"
     parts = [
         heading,
+        *([f"<p>{text(outcome.as_loaded)}</p>"] if outcome.as_loaded else []),
         f"<p>{text(_summary(outcome))}</p>",
         _picture(picture),
         viewer(index, scene),
@@ -204,6 +205,7 @@ def _finding(finding: Finding, anchor: str, button: str) -> str:
         f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
         f'<p class="faint">{text("; ".join(fact for fact in facts if fact))}</p>'
         f"<p>{text(finding.message)}</p><p>Remedy: {text(finding.remedy)}</p>"
+        + (f"<pre>{text(finding.reproduction)}</pre>" if finding.reproduction else "")
         + (f"<p>Suppressed: {text(finding.suppressed or '')}</p>" if shut else "")
         + button
         + "</div>"

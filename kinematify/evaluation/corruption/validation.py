@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.corruption.cases import write_case
+from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
@@ -21,7 +22,6 @@ from kinematify.validation.formats.json_lines import as_json_text
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
 from kinematify.validation.outcome import Unusable
-from kinematify.validation.plan import DEFAULT_ENGINES
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:

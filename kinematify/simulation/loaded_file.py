@@ -1,0 +1,170 @@
+"""A file in an engine as its users load it: untouched, with the engine's own defaults, and what it does there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.robot.arrays import FloatArray
+
+_PROPORTIONAL, _INTEGRAL, _MOST_INTEGRAL = 0.3, 0.05, 0.4
+"""Of the velocity error that a push takes away in one step: well below what the step can follow."""
+_START_SECONDS = 0.5
+"""In which a push at least brings a heavy part up to speed."""
+_STALL_SECONDS = 0.8
+"""Without a hundredth of the way a part is stuck; a push has grown to its full force long before."""
+
+
+class Unloadable(Exception):
+    """An engine does not open a file; the message is the engine's."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Overlap:
+    """Two links whose collision geometry the engine finds in each other."""
+
+    links: tuple[str, str]
+    depth: float
+    """[m]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RestRun:
+    """What joints do when nothing is done."""
+
+    values: FloatArray
+    """Of the joints in the order in which they were asked for [rad or m], shape (steps, joints)."""
+    complaint: str | None
+    """What the engine says of the run; None if nothing."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Push:
+    """A joint moved by a hand: a speed is kept with a limited force, on top of what balances gravity."""
+
+    joint: str
+    target: float
+    """[rad or m]."""
+    speed: float
+    """Towards the target, with its sign [rad/s or m/s]."""
+    proportional: float
+    """Force per error of the speed [N s/m or N m s/rad]."""
+    integral: float
+    """The same, added up in each step."""
+    force: float
+    """At most [N or N m]."""
+    steps: int
+    """At most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pushed:
+    """How far a push got."""
+
+    farthest: float
+    """[rad or m]."""
+    steps: int
+    """After which it arrived, was stuck or was given up."""
+    overlaps: tuple[Overlap, ...]
+    """Where it ended, the deepest first."""
+
+
+class LoadedFile(Protocol):
+    """A file in an engine. Every joint that the engine moves is known by its name."""
+
+    joints: Sequence[str]
+    time_step: float
+    """[s]."""
+
+    def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
+        """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
+
+    def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
+        """Let go at `values`, with or without contacts among the links."""
+
+    def inertia(self, joint: str, values: Mapping[str, float]) -> float:
+        """What a force at a joint moves while the engine computes a step of a push [kg or kg m^2]."""
+
+    def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
+        """Push a joint from `values`, the others held there."""
+
+    def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
+        """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
+
+    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
+        """Return plain code of the engine that repeats `push` and prints where the joint ends."""
+
+
+def hand(
+    joint: str,
+    way: tuple[float, float],
+    *,
+    inertia: float,
+    force: float,
+    speed: float,
+    resistance: float,
+    damping: float,
+    time_step: float,
+) -> Push:
+    """Return the push of a hand.
+
+    Args:
+        joint: Its name.
+        way: From where to where [rad or m].
+        inertia: From `LoadedFile.inertia`.
+        force: Of the hand [N or N m]; more is given where a heavy part would take long to start.
+        speed: At least [rad/s or m/s]; long ways are gone faster.
+        resistance: Declared friction [N or N m].
+        damping: Declared [N s/m or N m s/rad].
+        time_step: Of the engine [s].
+    """
+    length, inertia = abs(way[1] - way[0]), max(inertia, 1e-9)
+    speed = max(speed, 0.5 * length)
+    force = max(force, inertia * speed / _START_SECONDS) + resistance + damping * speed
+    whole = force * time_step / (speed * _START_SECONDS)  # grows to the full force in that time
+    return Push(
+        joint=joint,
+        target=way[1],
+        speed=float(np.copysign(speed, way[1] - way[0])),
+        proportional=_PROPORTIONAL * inertia / time_step,
+        integral=float(np.clip(whole, _INTEGRAL * inertia / time_step, _MOST_INTEGRAL * inertia / time_step)),
+        force=force,
+        steps=int((2.0 + 2.0 * length / speed) / time_step),
+    )
+
+
+@dataclass(kw_only=True)
+class Progress:
+    """How far a push has got, and whether it goes on."""
+
+    start: float
+    push: Push
+    time_step: float
+    farthest: float = 0.0
+    _marked: float = 0.0
+    _since: int = 0
+
+    def goes_on(self, value: float, step: int) -> bool:
+        """Take in the joint's value [rad or m] after a step; False once it has arrived or is stuck."""
+        way = self.push.target - self.start
+        gone = float((value - self.start) * np.sign(way))
+        self.farthest = max(self.farthest, gone) if np.isfinite(gone) else self.farthest
+        if self.farthest > self._marked + 0.01 * abs(way):
+            self._marked, self._since = self.farthest, step
+        return self.farthest < abs(way) and (step - self._since) * self.time_step < _STALL_SECONDS
+
+    @property
+    def value(self) -> float:
+        """The joint's value where it got farthest [rad or m]."""
+        return float(self.start + np.copysign(self.farthest, self.push.target - self.start))
+
+
+def deepest_first(depths: Mapping[tuple[str, str], float]) -> tuple[Overlap, ...]:
+    """Return the overlaps of pairs, keyed by their links [m]."""
+    pairs = sorted(depths.items(), key=lambda item: (-item[1], item[0]))
+    return tuple(Overlap(links=links, depth=depth) for links, depth in pairs if depth > 0.0)

@@ -1,0 +1,146 @@
+"""KV8xx: the untouched file in plain engines; quiet on what works, and what is said can be seen without Kinematify."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from kinematify.config.validation import load_settings
+from kinematify.simulation.engines import DEFAULT_ENGINES
+from kinematify.validation.as_loaded import across_engines, as_loaded_words
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
+from kinematify.validation.run import validate
+from kinematify.validation.stage import StageRequest
+from kinematify.validation.stages import as_loaded
+from tests.validation.engine_models import Box, Model, Told, cabinet, tell
+
+ENGINES = ("mujoco", "pybullet")
+each_engine = pytest.mark.parametrize("engine", ENGINES)
+WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
+"""In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
+
+
+def told(model: Model, folder: Path, engine: str) -> Told:
+    request = StageRequest(
+        urdf=model.write(folder),
+        package_dirs=(),
+        work=folder,
+        settings=load_settings(),
+        selected=frozenset(CHECKS),
+        deadline=time.time() + 100.0,
+    )
+    return tell(partial(as_loaded.run, engine=engine), request)
+
+
+def collision(model: Model, name: str, *boxes: Box) -> Model:
+    (part,) = (part for part in model.parts if part.name == name)
+    return model.with_part(name, collision=(*part.boxes, *boxes))
+
+
+def printed(code: str | None) -> list[float]:
+    """What the code of a report prints, run as it was copied."""
+    assert code is not None
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return [float(word) for word in done.stdout.splitlines()[-1].split()]
+
+
+@each_engine
+def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
+    result = told(cabinet(), tmp_path, engine)
+    assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
+    assert result.results["KV804"].measured == {"joints": 2.0, "right": 2.0}
+
+
+@pytest.mark.parametrize("engine", ["mujoco"])  # PyBullet lets no link collide with its parent
+def test_a_drawer_that_jams_is_seen_by_the_code_of_the_report(tmp_path: Path, engine: str) -> None:
+    result = told(collision(cabinet(), "body", WALL), tmp_path, engine)
+    (finding,) = (item for item in result.results["KV804"].findings if item.joint == "drawer_joint")
+    assert (finding.severity, finding.blame, finding.pair) == (Severity.ERROR, Blame.PHYSICS, ("body", "drawer"))
+    assert finding.value == pytest.approx(0.145, abs=0.01)
+    assert "mm deep in each other" in finding.message
+    assert printed(finding.reproduction) == pytest.approx([0.145], abs=0.01)
+    assert len((finding.reproduction or "").splitlines()) <= 5 + 7, "five lines, of which the loop is folded"
+
+
+@each_engine
+def test_siblings_that_jam_are_named_in_both_engines(tmp_path: Path, engine: str) -> None:
+    before_the_door = Box(size=(0.02, 0.1, 0.1), at=(0.24, 0.25, 0.0))
+    result = told(collision(cabinet(), "drawer", before_the_door), tmp_path, engine)
+    (finding,) = (item for item in result.results["KV804"].findings if item.joint == "door_joint")
+    assert set(finding.pair or ()) == {"drawer", "door"}
+    (reached,) = printed(finding.reproduction)
+    assert reached == pytest.approx(finding.value, abs=0.1)
+    assert reached < 0.95 * 1.5
+    assert result.results["KV804"].measured["right"] == 1.0
+
+
+def test_a_drawer_that_is_thrown_out_is_seen_by_the_code_of_the_report(tmp_path: Path) -> None:
+    behind = Box(size=(0.1, 0.2, 0.2), at=(-0.16, -0.155, 0.0))
+    result = told(collision(cabinet(), "body", behind), tmp_path, "mujoco")
+    (finding,) = result.results["KV803"].findings
+    assert (finding.joint, finding.pair) == ("drawer_joint", ("body", "drawer"))
+    least, largest = printed(finding.reproduction)
+    assert max(-least, largest) == pytest.approx(finding.value)
+    assert [item.pair for item in result.results["KV802"].findings] == [("body", "drawer")]
+
+
+def test_what_an_engine_does_not_open_is_told_with_its_own_words(tmp_path: Path) -> None:
+    result = told(cabinet().with_part("drawer", mass=1e-20), tmp_path, "mujoco")
+    (finding,) = result.results["KV801"].findings
+    assert "mass" in finding.message
+    assert {r.status for name, r in result.results.items() if name != "KV801"} == {Status.SKIPPED}
+
+
+def test_a_joint_moves_as_far_as_exact_geometry_leaves_free(tmp_path: Path) -> None:
+    model = collision(cabinet(), "body", WALL)
+    request = StageRequest(
+        urdf=model.write(tmp_path),
+        package_dirs=(),
+        work=tmp_path,
+        settings=load_settings(),
+        selected=frozenset(CHECKS),
+        deadline=time.time() + 100.0,
+        free_travel={"drawer_joint": (0.0, 0.14), "door_joint": (0.0, 0.3)},
+    )
+    result = tell(partial(as_loaded.run, engine="mujoco"), request)
+    assert result.results["KV804"].status is Status.PASS
+
+
+def jam(engine: str) -> CheckResult:
+    finding = Finding(
+        check="KV804",
+        severity=Severity.ERROR,
+        blame=Blame.PHYSICS,
+        message="It jams.",
+        remedy="Mend it.",
+        joint="drawer_joint",
+        engine=engine,
+    )
+    measured = {"joints": 2.0, "right": 1.0}
+    return CheckResult(check="KV804", engine=engine, status=Status.FAIL, findings=(finding,), measured=measured)
+
+
+def test_what_works_in_another_engine_is_a_warning_unless_the_engine_was_named() -> None:
+    opened = [CheckResult(check="KV801", engine=engine, status=Status.PASS) for engine in ENGINES]
+    right = replace(jam("pybullet"), status=Status.PASS, findings=(), measured={"joints": 2.0, "right": 2.0})
+    one = [*opened, jam("mujoco"), right]
+    (finding,) = across_engines(one, DEFAULT_ENGINES)[2].findings
+    assert (finding.severity, finding.message) == (Severity.WARNING, "It jams. It works in PyBullet.")
+    assert across_engines(one, ENGINES) == one
+    both = [*opened, jam("mujoco"), jam("pybullet")]
+    assert across_engines(both, DEFAULT_ENGINES) == both
+    assert as_loaded_words(one) == "as loaded: MuJoCo 1 of 2 joints move, PyBullet 2 of 2"
+
+
+def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:
+    report = validate(cabinet().write(tmp_path), selected={"KV801", "KV802", "KV803", "KV804"})
+    assert report.verdict == "pass"
+    assert report.as_loaded == "as loaded: MuJoCo 2 of 2 joints move, PyBullet 2 of 2"
+    assert report.as_json()["as_loaded"] == report.as_loaded

@@ -1,0 +1,72 @@
+"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
+from kinematify.validation.finding import Severity, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.validation.finding import CheckResult, Finding
+
+_FAMILY, _OPENS, _MOVES = "KV8", "KV801", "KV804"
+
+
+def as_loaded_words(checks: Sequence[CheckResult]) -> str:
+    """Return how many joints move in the untouched file, by engine; empty if no engine was asked.
+
+    A joint moves if a hand moves it over its free range and nothing throws it, e.g.
+    ``as loaded: MuJoCo 5 of 5 joints move, PyBullet 5 of 5``.
+    """
+    opened = {check.engine: check for check in checks if check.check == _OPENS and check.engine is not None}
+    moved = {check.engine: check for check in checks if check.check == _MOVES}
+    parts = []
+    for engine, opening in opened.items():
+        title, found = ENGINES[engine].title, moved.get(engine)
+        if any(finding.joint is None for finding in opening.findings):
+            parts.append(f"{title} does not open the file")
+        elif found is not None and "right" in found.measured:
+            joints = "" if parts and "joints move" in parts[0] else " joints move"
+            parts.append(f"{title} {found.measured['right']:.0f} of {found.measured['joints']:.0f}{joints}")
+    return f"as loaded: {', '.join(parts)}" if parts else ""
+
+
+def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
+    """Make errors of the untouched file warnings where another engine has none, and say which.
+
+    Args:
+        checks: All results.
+        engines: That were asked for. Where they are not the default ones a user has named them, and errors stay.
+    """
+    if tuple(engines) != DEFAULT_ENGINES:
+        return list(checks)
+    ran = {
+        check.engine
+        for check in checks
+        if check.check == _OPENS and check.engine is not None and check.status in (Status.PASS, Status.FAIL)
+    }
+    errors = [
+        finding
+        for check in checks
+        if check.check.startswith(_FAMILY)
+        for finding in check.findings
+        if finding.severity is Severity.ERROR
+    ]
+    return [
+        replace(check, findings=tuple(_across(finding, errors, ran) for finding in check.findings))
+        if check.check.startswith(_FAMILY)
+        else check
+        for check in checks
+    ]
+
+
+def _across(finding: Finding, errors: Sequence[Finding], ran: set[str]) -> Finding:
+    failing = {other.engine for other in errors if other.joint in (None, finding.joint)}
+    works = [entry.title for name, entry in ENGINES.items() if name in ran - failing]
+    if finding.severity is not Severity.ERROR or not works:
+        return finding
+    return replace(finding, severity=Severity.WARNING, message=f"{finding.message} It works in {' and '.join(works)}.")

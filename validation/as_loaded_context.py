@@ -1,0 +1,193 @@
+"""What the checks of the untouched file look at in one engine, computed when one of them first asks for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.read import read_robot
+from kinematify.simulation.engines import ENGINES
+from kinematify.simulation.loaded_file import Unloadable, hand
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from pathlib import Path
+
+    from kinematify.config.validation import AsLoadedSettings
+    from kinematify.robot.mechanism import Travel
+    from kinematify.robot.robot import Robot
+    from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, RestRun
+    from kinematify.validation.stage import StageRequest
+
+_LEAST_SIZE = 0.01
+"""Smaller models are looked at as if they had it [m]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandRun:
+    """A joint pushed by a hand from rest to one end of what is free."""
+
+    travel: Travel
+    push: Push
+    pushed: Pushed
+    without_contacts: float | None = None
+    """Where it gets where nothing touches [rad or m], if it was tried."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AsLoadedContext:
+    """The untouched file in an engine, and its runs."""
+
+    request: StageRequest
+    engine: str
+
+    @property
+    def title(self) -> str:
+        """Of the engine."""
+        return ENGINES[self.engine].title
+
+    @property
+    def settings(self) -> AsLoadedSettings:
+        """Thresholds, forces and times."""
+        return self.request.settings.as_loaded
+
+    @cached_property
+    def robot(self) -> Robot:
+        """The file without its geometry."""
+        return read_robot(self.request.urdf, geometry="none")
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The tree."""
+        return Mechanism(robot=self.robot)
+
+    @cached_property
+    def loading(self) -> LoadedFile | Unloadable:
+        """The file in the engine, or what the engine says against it."""
+        mechanism = self.mechanism
+        try:
+            return _file_class(self.engine)(self.request.urdf, mechanism.links[self._root])
+        except Unloadable as error:
+            return error
+
+    @property
+    def _root(self) -> int:
+        return int(np.flatnonzero(self.mechanism.body_of_link == 0)[0])
+
+    @property
+    def loaded(self) -> LoadedFile:
+        """The file in the engine, once it is there."""
+        assert not isinstance(self.loading, Unloadable)
+        return self.loading
+
+    @cached_property
+    def lost(self) -> tuple[str, ...]:
+        """Joints of the file that do not move in the engine."""
+        return tuple(name for name in self.mechanism.joints if name not in self.loaded.joints)
+
+    @cached_property
+    def travels(self) -> tuple[Travel, ...]:
+        """Of the joints that lead and that the engine moves."""
+        return tuple(travel for travel in self.mechanism.travels if travel.joint not in self.lost)
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """Every joint at rest [rad or m]."""
+        row = self.mechanism.all_values(self.mechanism.rest[None])[0]
+        return {**dict.fromkeys(self.loaded.joints, 0.0), **dict(zip(self.mechanism.joints, row.tolist(), strict=True))}
+
+    @cached_property
+    def size(self) -> float:
+        """Distance of the farthest link frames at zero and rest [m]; what stands in each other is measured by it."""
+        from kinematify.robot.robot import forward_kinematics  # noqa: PLC0415 - for this only
+
+        poses = forward_kinematics(self.robot, dict(self.values))
+        points = np.array([pose[:3, 3] for pose in poses.values()])
+        return max(float(np.linalg.norm(np.ptp(points, axis=0))), _LEAST_SIZE)
+
+    @cached_property
+    def overlaps(self) -> tuple[Overlap, ...]:
+        """At rest, the deepest first."""
+        return self.loaded.overlaps(self.values)
+
+    @cached_property
+    def left_alone(self) -> RestRun:
+        """Nothing is done."""
+        return self.loaded.rest(self.values, self.settings.seconds, contacts=True)
+
+    @cached_property
+    def left_without_contacts(self) -> RestRun:
+        """The same where no links touch each other: what gravity does alone."""
+        return self.loaded.rest(self.values, self.settings.seconds, contacts=False)
+
+    def way(self, run: RestRun, travel: Travel) -> np.ndarray:
+        """Return the values of a joint in a run [rad or m], shape (steps,)."""
+        return run.values[:, list(self.loaded.joints).index(travel.joint)]
+
+    def still(self, travel: Travel) -> float:
+        """How far a joint may go that nothing moves [rad or m]."""
+        settings = self.settings
+        return max(settings.still * travel.range, settings.still_angle if travel.turns else settings.still_length)
+
+    def free(self, travel: Travel) -> tuple[float, float] | None:
+        """Return the part of the range that exact geometry leaves free, the range itself where it is not known.
+
+        None where it leaves nothing.
+        """
+        lower, upper = self.request.free_travel.get(travel.joint, (travel.lower, travel.upper))
+        lower, upper = min(max(lower, travel.lower), travel.rest), max(min(upper, travel.upper), travel.rest)
+        return (lower, upper) if max(travel.rest - lower, upper - travel.rest) > self.still(travel) else None
+
+    def between(self, travel: Travel, overlaps: Iterable[Overlap]) -> Overlap | None:
+        """Return the deepest of the overlaps that a joint moves apart or together; None without any."""
+        leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
+        body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
+        moved = self.mechanism.moved[leader]
+        return next((item for item in overlaps if moved[body[item.links[0]]] != moved[body[item.links[1]]]), None)
+
+    @cached_property
+    def hands(self) -> tuple[HandRun, ...]:
+        """Every joint pushed to both ends of what is free, of its range where nothing is, the others held."""
+        return tuple(
+            self._by_hand(travel, end)
+            for travel in self.travels
+            for end in self.free(travel) or (travel.lower, travel.upper)
+            if abs(end - travel.rest) > self.still(travel)
+        )
+
+    def _by_hand(self, travel: Travel, end: float) -> HandRun:
+        settings, joint = self.settings, self.robot.joint_by_name[travel.joint]
+        push = hand(
+            travel.joint,
+            (travel.rest, end),
+            inertia=self.loaded.inertia(travel.joint, self.values),
+            force=settings.torque if travel.turns else settings.force,
+            speed=settings.turning_speed if travel.turns else settings.sliding_speed,
+            resistance=joint.friction or 0.0,
+            damping=joint.damping or 0.0,
+            time_step=self.loaded.time_step,
+        )
+        pushed = self.loaded.push(push, self.values, contacts=True)
+        if self.arrives(travel, end, pushed.farthest):
+            return HandRun(travel=travel, push=push, pushed=pushed)
+        free = self.loaded.push(push, self.values, contacts=False).farthest
+        return HandRun(travel=travel, push=push, pushed=pushed, without_contacts=free)
+
+    def arrives(self, travel: Travel, end: float, farthest: float) -> bool:
+        """Whether a push got so far that the joint counts as moving to that end [rad or m]."""
+        return abs(farthest - travel.rest) >= self.settings.reach * abs(end - travel.rest)
+
+
+def _file_class(engine: str) -> Callable[[Path, str], LoadedFile]:
+    """What loads a file into an engine; the engine's library is imported here, one in a process."""
+    if engine == "mujoco":
+        from kinematify.simulation.mujoco_file import MujocoFile  # noqa: PLC0415 - see above
+
+        return MujocoFile
+    from kinematify.simulation.pybullet_file import PybulletFile  # noqa: PLC0415 - see above
+
+    return PybulletFile

@@ -1,0 +1,254 @@
+"""KV8xx: the untouched file in engines with their defaults, as everybody loads it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.simulation.loaded_file import Unloadable
+from kinematify.validation.check import OpenCheck, check
+from kinematify.validation.checks.needs import late
+from kinematify.validation.finding import Blame, Severity
+
+if TYPE_CHECKING:
+    from kinematify.robot.mechanism import Travel
+    from kinematify.simulation.loaded_file import Overlap
+    from kinematify.validation.as_loaded_context import AsLoadedContext, HandRun
+
+_ENGINES = ("mujoco", "pybullet")
+_PIECES = (
+    "Write convex pieces as collision geometry of {0} and {1} that keep clear of each other along the motion; "
+    "kinematify fix MODEL.urdf -o OUT does so."
+)
+
+
+def not_loaded(context: AsLoadedContext) -> str | None:
+    """The engine has the file."""
+    return f"{context.title} does not open the file (KV801)" if isinstance(context.loading, Unloadable) else None
+
+
+def nothing_moves(context: AsLoadedContext) -> str | None:
+    """A joint that the engine moves."""
+    return None if context.travels else "no joint moves"
+
+
+@check(
+    "KV801",
+    title="as loaded: the engine opens the file",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+    engines=_ENGINES,
+)
+def opens(result: OpenCheck, context: AsLoadedContext) -> None:
+    """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
+    base), is there with every joint that moves. Like all of KV8xx it is an error if it fails in every engine, or in one
+    of those that `--engines` names, else a warning.
+
+    Why it matters: Everything else is said of a prepared copy; this is what users load.
+
+    Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
+    looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` stands in it.
+    """
+    if isinstance(context.loading, Unloadable):
+        result.find(
+            f"{context.title} does not open the file as it is: {context.loading}.",
+            _remedy_of_loading(context, str(context.loading)),
+        )
+        return
+    result.measured["joints"] = float(len(context.loaded.joints))
+    for name in context.lost:
+        result.find(
+            f"The joint {name} of the file does not move in {context.title}, which has lost it or taken it for fixed.",
+            f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
+            joint=name,
+        )
+
+
+def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
+    text = context.request.urdf.read_text(encoding="utf-8", errors="replace").lower()
+    if context.engine == "mujoco" and ("package://" in text or ".dae" in text):
+        return (
+            "The file is not broken: MuJoCo resolves no package:// and reads no DAE. Give the meshes as OBJ or STL by "
+            'paths relative to the file, with <mujoco><compiler strippath="false"/></mujoco> in it.'
+        )
+    if context.engine == "mujoco" and "strippath" not in text and "error opening file" in message.lower():
+        return 'Add <mujoco><compiler strippath="false"/></mujoco>: MuJoCo drops the folders of mesh files else.'
+    return f"Do what the message of {context.title} asks for."
+
+
+@check(
+    "KV802",
+    title="as loaded: nothing overlaps at rest",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    engines=_ENGINES,
+    needs=(not_loaded,),
+)
+def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
+    """In the untouched file at rest, no two links that the engine lets touch are in each other by more than
+    as_loaded.overlap of the model's size, at least as_loaded.overlap_length. PyBullet is asked with
+    `URDF_USE_SELF_COLLISION`.
+
+    Why it matters: Engines push such links apart: parts jump, jam, or tremble.
+
+    Remedy: Write convex pieces as collision geometry; engines take the hull of every mesh.
+    """
+    limit = max(context.settings.overlap * context.size, context.settings.overlap_length)
+    result.measured["deepest"] = max((item.depth for item in context.overlaps), default=0.0)
+    for overlap in context.overlaps:
+        if overlap.depth > limit:
+            result.find(
+                f"At rest {overlap.links[0]} and {overlap.links[1]} are {overlap.depth * 1e3:.3g} mm deep in each "
+                f"other as {context.title} loads the file.",
+                _PIECES.format(*overlap.links),
+                pair=overlap.links,
+                value=overlap.depth,
+                limit=limit,
+                unit="m",
+            )
+
+
+@check(
+    "KV803",
+    title="as loaded: left alone, joints stay in range and are not thrown",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    engines=_ENGINES,
+    needs=(not_loaded, nothing_moves, late),
+)
+def stays(result: OpenCheck, context: AsLoadedContext) -> None:
+    """For as_loaded.seconds under gravity nothing is done to the untouched file. No joint that would stay where it is
+    without contacts is moved by them by more than as_loaded.still of its range (at least as_loaded.still_angle or
+    as_loaded.still_length), none ends beyond its range by more, and all values stay numbers. What gravity moves may
+    move: an arm without servos sags. PyBullet is asked with `URDF_USE_SELF_COLLISION`, and its motors are as they are.
+
+    Why it matters: A drawer that jumps out of its cabinet when a scene is loaded is of no use.
+
+    Remedy: Write convex pieces as collision geometry that keep clear of each other, and plausible masses and limits.
+    """
+    complaint = context.left_alone.complaint
+    if complaint is not None:
+        result.find(
+            f"Left alone, the model comes apart in {context.title}: {complaint}.",
+            "Give every moving link a plausible mass and inertia, and mend overlaps at rest first.",
+            reproduction=context.loaded.lines_of_rest(
+                context.travels[0].joint, context.values, context.settings.seconds
+            ),
+        )
+        return
+    for travel in context.travels:
+        if _leaves(context, travel):
+            _find_leaving(result, context, travel)
+
+
+def _leaves(context: AsLoadedContext, travel: Travel) -> bool:
+    """Whether contacts move a joint that nothing else moves, or it ends beyond its range."""
+    return _thrown_by(context, travel) is not None or _beyond(context, travel) > context.still(travel)
+
+
+def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
+    """Return the overlap at rest that moves a joint which stays where it is without contacts."""
+    limit = context.still(travel)
+    touching, alone = (context.way(run, travel) for run in (context.left_alone, context.left_without_contacts))
+    way, by_gravity = (float(np.abs(values - travel.rest).max()) for values in (touching, alone))
+    return context.between(travel, context.overlaps) if way > limit >= by_gravity else None
+
+
+def _beyond(context: AsLoadedContext, travel: Travel) -> float:
+    """How far beyond its range a joint ends that was left alone [rad or m]; 0 without limits."""
+    last = float(context.way(context.left_alone, travel)[-1])
+    return max(travel.lower - last, last - travel.upper) if travel.limited else 0.0
+
+
+def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -> None:
+    overlap, beyond = _thrown_by(context, travel), _beyond(context, travel)
+    way = float(np.abs(context.way(context.left_alone, travel) - travel.rest).max())
+    if overlap is not None:
+        said = (
+            f"contacts move it by {way:.3g} {travel.unit}, without them it rests; {overlap.links[0]} and "
+            f"{overlap.links[1]} are {overlap.depth * 1e3:.3g} mm deep in each other"
+        )
+        remedy = _PIECES.format(*overlap.links)
+    else:
+        said = f"it ends {beyond:.3g} {travel.unit} beyond its range {travel.lower:.4g} to {travel.upper:.4g}"
+        remedy = "Write masses that the limits can hold, and collision geometry that is clear of other links at rest."
+    result.find(
+        f"Left alone for {context.settings.seconds:g} s in {context.title}, joint {travel.joint} does not stay: "
+        f"{said}.",
+        remedy,
+        joint=travel.joint,
+        pair=None if overlap is None else overlap.links,
+        value=beyond if overlap is None else way,
+        limit=context.still(travel),
+        unit=travel.unit,
+        reproduction=context.loaded.lines_of_rest(travel.joint, context.values, context.settings.seconds),
+    )
+
+
+@check(
+    "KV804",
+    title="as loaded: a hand moves each joint over its range",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    engines=_ENGINES,
+    needs=(not_loaded, nothing_moves, late),
+)
+def moves(result: OpenCheck, context: AsLoadedContext) -> None:
+    """In the untouched file each joint is pushed from rest to both ends by as_loaded.force or as_loaded.torque on top
+    of what balances gravity and declared friction and damping, the others held. It has to reach as_loaded.reach of what
+    exact geometry leaves free of its range, of the whole range where that is not known. What does not get there
+    without contacts either, or has no free way at all (KV31x), is a note. PyBullet is asked with
+    `URDF_USE_SELF_COLLISION`: without it links pass through each other.
+
+    Why it matters: A drawer that jams in the simulator is of no use, whatever its surfaces would allow.
+
+    Remedy: Write convex pieces as collision geometry of the links that are named, clear of each other along the motion.
+    """
+    short = [run for run in context.hands if not context.arrives(run.travel, run.push.target, run.pushed.farthest)]
+    jammed = [run for run in short if _free_without_contacts(context, run)]
+    right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in jammed}
+    right -= {travel.joint for travel in context.travels if context.left_alone.complaint or _leaves(context, travel)}
+    result.measured["joints"] = float(len(context.mechanism.travels))
+    result.measured["right"] = float(len(right))
+    for run in short:
+        _find_short(result, context, run, jammed=run in jammed)
+
+
+def _free_without_contacts(context: AsLoadedContext, run: HandRun) -> bool:
+    """Whether a push that fell short gets to the end where nothing touches."""
+    alone = run.without_contacts
+    return alone is not None and context.arrives(run.travel, run.push.target, alone)
+
+
+def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, jammed: bool) -> None:
+    travel, push, stop = run.travel, run.push, run.pushed.farthest
+    overlap = context.between(travel, run.pushed.overlaps)
+    unit = "N m" if travel.turns else "N"
+    said = (
+        f"Pushed with up to {push.force:.3g} {unit} from {travel.rest:.4g} towards {push.target:.4g} {travel.unit} in "
+        f"{context.title}, gravity balanced and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+    )
+    result.find(
+        f"{said}: {_cause(overlap, jammed=jammed)}.",
+        _PIECES.format(*overlap.links)
+        if overlap is not None and jammed
+        else f"Check damping, friction, mass and limits of {travel.joint}.",
+        joint=travel.joint,
+        pair=overlap.links if overlap is not None and jammed else None,
+        severity=None if jammed and context.free(travel) is not None else Severity.NOTE,
+        q={travel.joint: stop},
+        value=stop,
+        limit=push.target,
+        unit=travel.unit,
+        reproduction=context.loaded.lines_of_push(push, context.values, run.pushed.steps),
+    )
+
+
+def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
+    if not jammed:
+        return "contacts are not the reason, without them it gets no farther"
+    if overlap is None:
+        return "without contacts it gets to the end"
+    first, second = overlap.links
+    return f"there {first} and {second} are {overlap.depth * 1e3:.3g} mm deep in each other"
