@@ -127,7 +127,8 @@ def _planes(triangles: FloatArray, heights: FloatArray, axis: FloatArray) -> Ite
     areas = lengths_of(normals)
     across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
     levels = heights[across].mean(axis=1)
-    places = np.round((levels - low) / (_SAME * extent)).astype(np.int64)
+    # The mean of three equal heights may lie below them by a rounding, which counts where there is hardly any extent.
+    places = np.maximum(np.round((levels - low) / (_SAME * extent)).astype(np.int64), 0)
     total = np.bincount(places, weights=areas[across])
     for place in np.argsort(-total, kind="stable")[:_FACES]:
         if total[place] <= 0.0:

@@ -329,7 +329,7 @@ def _offsets(triangles: FloatArray, heights: FloatArray, axis: FloatArray, *, cl
     areas = lengths_of(normals)
     across = (np.abs(normals @ axis) > _ALONG * areas) & (areas > 0.0)
     levels = heights[across].mean(axis=1)
-    places = np.round((levels - low) / rind).astype(np.int64)
+    places = np.maximum(np.round((levels - low) / rind).astype(np.int64), 0)  # means of equal heights are rounded
     total = np.bincount(places, weights=areas[across])
     largest = [place for place in np.argsort(-total, kind="stable")[:_FACE_PLANES] if total[place] > 0.0]
     exact = np.array([np.median(levels[places == place]) for place in largest])
