@@ -8,7 +8,8 @@ import numpy as np
 
 from kinematify.generate.procedural.pieces.bearings import ALONG_X, at, barrel, fork, room
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, hull, rod, tray, union
-from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, rotation, sliding, turning, varied
+from kinematify.robot.transforms import rotation_about
+from tests.known import KnownJoint, KnownObject, fixed, known_object, moved, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -179,10 +180,10 @@ def scissors(
     plate = union(hull(tip, heel), shank, ring) - hole
     rivet = cylinder(pin, (0, 0, 0.5 * thick), (0, 0, layer + thick + 2 * clearance))
     head = cylinder(1.8 * pin, (0, 0, layer + thick + clearance), (0, 0, layer + 1.6 * thick + clearance))
-    lower = union(plate, rivet, head).transform(at((0, 0, 0), rotation(UP, 0.5 * opening)))
+    lower = union(plate, rivet, head).transform(at((0, 0, 0), rotation_about(UP, 0.5 * opening)))
     upper = plate.mirror((1, 0, 0)).translate((0, 0, layer))
     upper = (upper - bore(pin, clearance, (0, 0, -thick), (0, 0, 4 * thick))).transform(
-        at((0, 0, 0), rotation(UP, -0.5 * opening))
+        at((0, 0, 0), rotation_about(UP, -0.5 * opening))
     )
     joint = turning("lower_blade", "upper_blade", (0, 0, -1), (0, 0, 0), (-opening, 0.9))
     return known_object("scissors", {"lower_blade": lower, "upper_blade": upper}, joint)

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.robot.arrays import read_only
+from kinematify.generate.procedural.blueprint import BlueprintJoint
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -25,38 +26,13 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class KnownJoint:
+class KnownJoint(BlueprintJoint):
     """The truth about one joint, in world coordinates."""
 
-    parent: str
-    child: str
-    kind: JointType
-    axis: FloatArray
-    """Unit direction, shape (3,); positive motion follows the right hand rule or goes along it."""
-    pivot: FloatArray
-    """A point on the axis [m], shape (3,)."""
-    lower: float
-    """[rad] or [m]; 0 for fixed, -inf for continuous."""
-    upper: float
     stops: tuple[bool, bool] = (False, False)
     """Whether the geometry itself blocks motion a little below `lower` and a little above `upper`."""
     freedom: int = 1
     """1, or 3 for a ball joint: every axis through `pivot` is then right and `axis` is one of them."""
-
-    def __post_init__(self) -> None:
-        axis = np.asarray(self.axis, dtype=np.float64)
-        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
-        object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
-
-    def motion(self, value: float) -> FloatArray:
-        """Return the world transform, shape (4, 4), of the child's subtree when the joint moves by `value`."""
-        transform = np.eye(4)
-        if self.kind is JointType.PRISMATIC:
-            transform[:3, 3] = value * self.axis
-        elif self.kind.turns:
-            transform[:3, :3] = rotation(self.axis, value)
-            transform[:3, 3] = self.pivot - transform[:3, :3] @ self.pivot
-        return transform
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,7 +75,7 @@ def posed(known: KnownObject, transform: FloatArray) -> KnownObject:
 def with_yaw(known: KnownObject, angle: float) -> KnownObject:
     """Return the object turned about the world's up axis by `angle` [rad]."""
     transform = np.eye(4)
-    transform[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), angle)
+    transform[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), angle)
     return posed(known, transform)
 
 
@@ -135,13 +111,6 @@ def shuffled(known: KnownObject, seed: int) -> KnownObject:
     """Return the object with its parts listed in a random order."""
     order = np.random.default_rng(seed).permutation(len(known.parts))
     return replace(known, parts=tuple(known.parts[k] for k in order))
-
-
-def rotation(axis: FloatArray, angle: float) -> FloatArray:
-    """Return the rotation matrix, shape (3, 3), by `angle` [rad] about a unit `axis` (Rodrigues)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
 
 
 def known_object(name: str, solids: Mapping[str, Manifold], *joints: KnownJoint) -> KnownObject:

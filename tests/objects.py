@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests import household, robots
-from tests.known import KnownJoint, KnownObject, moved, posed, rotation, shuffled, with_yaw
+from tests.known import KnownJoint, KnownObject, moved, posed, shuffled, with_yaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = ["BUILDERS", "KnownJoint", "KnownObject", "build_all", "moved", "posed", "rotation", "shuffled", "with_yaw"]
+__all__ = ["BUILDERS", "KnownJoint", "KnownObject", "build_all", "moved", "posed", "shuffled", "with_yaw"]
 
 BUILDERS: Mapping[str, Callable[..., KnownObject]] = {
     builder.__name__: builder

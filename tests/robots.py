@@ -9,13 +9,14 @@ import numpy as np
 from kinematify.generate.procedural.pieces.bearings import at, fork, room, stub
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import bore, box, cylinder, off, rod, union
-from tests.known import KnownJoint, KnownObject, known_object, moved, rotation, sliding, turning, varied
+from kinematify.robot.transforms import rotation_about
+from tests.known import KnownJoint, KnownObject, known_object, moved, sliding, turning, varied
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
 UP = np.array([0.0, 0.0, 1.0])
-QUARTER = rotation(UP, 0.5 * np.pi)
+QUARTER = rotation_about(UP, 0.5 * np.pi)
 """Turns a fork about x into a fork about y."""
 
 

@@ -12,7 +12,8 @@ import trimesh
 from trimesh.collision import CollisionManager
 
 from kinematify.robot.joint_type import JointType
-from tests.objects import BUILDERS, KnownJoint, KnownObject, build_all, moved, posed, rotation, shuffled, with_yaw
+from kinematify.robot.transforms import rotation_about
+from tests.objects import BUILDERS, KnownJoint, KnownObject, build_all, moved, posed, shuffled, with_yaw
 
 STEPS = 11
 LOOSE = {"gapped_pair": {"door"}}
@@ -93,7 +94,7 @@ def wrong_motions(joint: KnownJoint, size: float) -> dict[str, list[np.ndarray]]
         turns, slides = [], []
         for amount in (0.03, 0.06, 0.12, 0.25):
             turn, slide = np.eye(4), np.eye(4)
-            turn[:3, :3] = rotation(direction, amount)
+            turn[:3, :3] = rotation_about(direction, amount)
             turn[:3, 3] = joint.pivot - turn[:3, :3] @ joint.pivot
             slide[:3, 3] = 0.2 * amount * size * direction
             turns.append(turn)
@@ -121,7 +122,7 @@ def test_ball_in_socket_turns_about_any_axis() -> None:
     rng = np.random.default_rng(5)
     for direction in rng.normal(size=(20, 3)):
         motion = np.eye(4)
-        motion[:3, :3] = rotation(direction / np.linalg.norm(direction), 0.3)
+        motion[:3, :3] = rotation_about(direction / np.linalg.norm(direction), 0.3)
         motion[:3, 3] = joint.pivot - motion[:3, :3] @ joint.pivot
         assert sweep.touches(motion) == []
 
@@ -157,11 +158,11 @@ def test_joints_form_one_tree_with_sound_limits(name: str) -> None:
 def test_posing_carries_the_truth_along(name: str) -> None:
     known = built(name, None)
     transform = np.eye(4)
-    transform[:3, :3] = rotation(np.array([0.6, 0.0, 0.8]), 1.1)
+    transform[:3, :3] = rotation_about(np.array([0.6, 0.0, 0.8]), 1.1)
     transform[:3, 3] = (0.3, -0.2, 0.9)
     turned = with_yaw(posed(known, transform), 0.7)
     whole = np.eye(4)
-    whole[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), 0.7)
+    whole[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), 0.7)
     whole = whole @ transform
     values = {joint.child: 0.5 * min(joint.upper, 1.0) for joint in known.joints}
     there = posed(moved(known, values), whole)

@@ -17,7 +17,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph, exact_gap, find_bridges, near_pairs
 from kinematify.geometry.surface import part_surfaces
-from tests.known import rotation
+from kinematify.robot.transforms import rotation_about
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -237,7 +237,7 @@ def test_size_and_place_do_not_matter(scale: float, shift: float) -> None:
 
 def test_turning_the_object_keeps_contacts_and_gaps() -> None:
     """Tolerances follow the upright box of the assembly, which turning changes; exact distances stay."""
-    turn = rotation(np.array([0.0, 0.0, 1.0]), 0.6)
+    turn = rotation_about(np.array([0.0, 0.0, 1.0]), 0.6)
     parts = tuple(Part(name=part.name, vertices=part.vertices @ turn.T, faces=part.faces) for part in OBJECT.parts)
     first, second = graph_of(OBJECT), graph_of(Assembly(parts=parts, source="test"))
     assert first.by_pair.keys() == second.by_pair.keys()

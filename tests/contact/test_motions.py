@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.contact.motions import motions_between
-from tests.known import rotation
+from kinematify.robot.transforms import rotation_about
 
 MIRROR = np.diag([1.0, -1.0, 1.0])
 
@@ -22,7 +22,7 @@ def hook(count: int = 500, seed: int = 0) -> np.ndarray:
 
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_the_motion_of_a_chiral_shape_is_found(mirrored: bool) -> None:
-    turn = rotation(np.array([0.6, 0.0, 0.8]), 1.1) @ (MIRROR if mirrored else np.eye(3))
+    turn = rotation_about(np.array([0.6, 0.0, 0.8]), 1.1) @ (MIRROR if mirrored else np.eye(3))
     shift = np.array([0.3, -2.0, 0.7])
     found = motions_between(hook(), hook(seed=1) @ turn.T + shift, tolerance=0.025)
     assert len(found) == 1

@@ -13,7 +13,7 @@ from kinematify.contact.symmetry import aligned_chamfer, find_clusters
 from kinematify.evaluation.voxels import voxel_remeshed
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
-from tests.known import rotation
+from kinematify.robot.transforms import rotation_about
 
 CONFIG = load_config()
 MIRROR = np.diag([1.0, -1.0, 1.0])
@@ -46,13 +46,13 @@ def clusters_of(*parts: Part) -> tuple[tuple[int, ...], ...]:
 def test_turned_and_mirrored_copies_cluster(seed: int, mirrored: bool) -> None:
     rng = np.random.default_rng(seed)
     axis = rng.normal(size=3)
-    turn = rotation(axis / np.linalg.norm(axis), rng.uniform(0, np.pi)) @ (MIRROR if mirrored else np.eye(3))
+    turn = rotation_about(axis / np.linalg.norm(axis), rng.uniform(0, np.pi)) @ (MIRROR if mirrored else np.eye(3))
     copy = placed(hook(), "copy", turn, tuple(rng.uniform(-3, 3, 3)))
     assert clusters_of(hook(), copy) == ((0, 1),)
 
 
 def test_copies_remeshed_on_a_coarse_grid_still_cluster() -> None:
-    turn = rotation(np.ones(3) / np.sqrt(3), np.radians(45))
+    turn = rotation_about(np.ones(3) / np.sqrt(3), np.radians(45))
     copies = [voxel_remeshed(part, 0.14) for part in (hook(), placed(hook(), "copy", turn, (3.03, 0, 0)))]
     areas = sorted(part.area for part in copies)
     assert areas[0] < (1 - 4 * CONFIG.contact.cluster_tolerance) * areas[1]  # the tolerance of smooth parts
@@ -63,7 +63,7 @@ def test_groups_are_ascending_and_singletons_are_left_out() -> None:
     def bar(name: str, x: float) -> Part:
         return placed(hook(arm=0.9), name, np.eye(3), (x, 0, 0))
 
-    quarter = rotation(np.array([0.0, 0.0, 1.0]), np.pi / 2)
+    quarter = rotation_about(np.array([0.0, 0.0, 1.0]), np.pi / 2)
     parts = (
         hook(), bar("b", 2.0), placed(hook(), "c", quarter, (4, 0, 0)), hook(knob=0.6), bar("e", 8.0),
         placed(hook(), "f", MIRROR, (10, 0, 0)),
@@ -113,7 +113,7 @@ def test_aligned_chamfer_ignores_axes_and_signs_and_sees_differences() -> None:
     rng = np.random.default_rng(1)
     cloud = rng.normal(size=(400, 3)) * [3.0, 2.0, 1.0]
     cloud -= cloud.mean(axis=0)
-    turned = cloud @ (rotation(np.array([0.0, 0.6, 0.8]), 2.0) @ MIRROR).T
+    turned = cloud @ (rotation_about(np.array([0.0, 0.6, 0.8]), 2.0) @ MIRROR).T
     assert aligned_chamfer(cloud, turned) == pytest.approx(0.0, abs=1e-9)
     assert aligned_chamfer(cloud, cloud * [1.0, 1.0, 1.5]) > 0.05
 

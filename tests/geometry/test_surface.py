@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.geometry.surface import PartSurface, part_surfaces
-from tests.known import rotation
+from kinematify.robot.transforms import rotation_about
 
 CREASE = np.deg2rad(30.0)
 AXIS = np.array([1.0, 2.0, 2.0]) / 3.0
-TURN = rotation(np.array([0.6, 0.0, 0.8]), 0.7)
+TURN = rotation_about(np.array([0.6, 0.0, 0.8]), 0.7)
 SHIFT = np.array([0.3, -2.0, 5.0])
 
 

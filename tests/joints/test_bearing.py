@@ -22,7 +22,8 @@ from kinematify.joints.hypotheses.bearing_fit import across_axis, circle_rows, m
 from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines
 from kinematify.joints.hypotheses.bearing_scores import circle_support, line_support, surface_support
 from kinematify.joints.hypotheses.line import Line, Lines, join
-from tests.known import known_object, posed, rotation, shuffled, turning
+from kinematify.robot.transforms import rotation_about
+from tests.known import known_object, posed, shuffled, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
@@ -290,7 +291,7 @@ def test_refinement_returns_from_one_degree(seed: int, name: str) -> None:
     joint = BUILDERS[name]().joints[0]
     rng = np.random.default_rng(seed)
     tilt, way = rng.normal(size=(2, 3))
-    axis = rotation(tilt / np.linalg.norm(tilt), np.deg2rad(1.0)) @ joint.axis
+    axis = rotation_about(tilt / np.linalg.norm(tilt), np.deg2rad(1.0)) @ joint.axis
     centre = Line(axis=joint.axis, point=joint.pivot).foot(contact_centroid(sides))
     start = Line(axis=axis, point=centre + 2e-4 * way / np.linalg.norm(way))
     tolerances = np.geomspace(BEARING.normal_tolerance_sine, BEARING.fine_tolerance_sine, 8)
@@ -337,7 +338,7 @@ def transform(turn: np.ndarray, shift: np.ndarray, scale: float) -> np.ndarray:
 def test_lines_move_turn_and_grow_with_the_object(seed: int, scale: float) -> None:
     rng = np.random.default_rng(seed)
     axis = rng.normal(size=3)
-    turn = rotation(axis / np.linalg.norm(axis), rng.uniform(0, np.pi))
+    turn = rotation_about(axis / np.linalg.norm(axis), rng.uniform(0, np.pi))
     shift = scale * rng.normal(size=3)
     known = BUILDERS["hinge_pin"]()
     placed = posed(known, transform(turn, shift, scale))

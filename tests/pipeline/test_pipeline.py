@@ -17,8 +17,9 @@ from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.pipeline.record import inference_record
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.transforms import rotation_about
 from tests.engines import read_pinocchio
-from tests.objects import BUILDERS, KnownObject, posed, rotation, shuffled, with_yaw
+from tests.objects import BUILDERS, KnownObject, posed, shuffled, with_yaw
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -125,7 +126,7 @@ def test_the_order_of_the_parts_does_not_matter(name: str) -> None:
 @pytest.mark.parametrize("angle", [37.0, 180.0])
 def test_a_turn_about_the_vertical_turns_the_answer(name: str, angle: float) -> None:
     turned = infer(with_yaw(built(name), np.radians(angle)).assembly, config=DEFAULT)
-    assert_same(turned, inferred(name), rotation(np.array([0.0, 0.0, 1.0]), np.radians(angle)), np.zeros(3))
+    assert_same(turned, inferred(name), rotation_about(np.array([0.0, 0.0, 1.0]), np.radians(angle)), np.zeros(3))
 
 
 @pytest.mark.parametrize("name", LAWFUL)
@@ -145,7 +146,7 @@ def test_lengths_have_no_unit(name: str, scale: float) -> None:
 
 
 def test_a_law_that_does_not_hold_is_seen() -> None:
-    quarter = rotation(np.array([0.0, 0.0, 1.0]), np.pi / 2)
+    quarter = rotation_about(np.array([0.0, 0.0, 1.0]), np.pi / 2)
     with pytest.raises(AssertionError):
         assert_same(inferred("drawer"), inferred("drawer"), quarter, np.zeros(3))
     with pytest.raises(AssertionError):

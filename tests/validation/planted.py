@@ -14,13 +14,14 @@ from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import rotation_about
 from kinematify.topology.tree import KinematicTree
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
 from kinematify.validation.stage import Recorder, StageRequest
 from kinematify.validation.stages.evidence import run
 from kinematify.validation.summary import JointSummary
-from tests.known import KnownJoint, KnownObject, rotation
+from tests.known import KnownJoint, KnownObject
 
 SELECTED = frozenset(CHECKS)
 Told = list[CheckResult | JointSummary]
@@ -92,7 +93,9 @@ def joint_of(known: KnownObject, child: str) -> KnownJoint:
 def turned(known: KnownObject, child: str, degrees: float, about: tuple[float, float, float]) -> KnownObject:
     """The object with the axis of the joint above `child` turned."""
     axis = joint_of(known, child).axis
-    return with_joint(known, child, axis=rotation(np.array(about) / np.linalg.norm(about), np.radians(degrees)) @ axis)
+    return with_joint(
+        known, child, axis=rotation_about(np.array(about) / np.linalg.norm(about), np.radians(degrees)) @ axis
+    )
 
 
 def shifted(known: KnownObject, child: str, direction: tuple[float, float, float], share: float = 0.2) -> KnownObject:

@@ -10,6 +10,7 @@ import pytest
 
 from kinematify.generate.procedural.solids import box, union
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, CheckResult, Severity, Status
 from kinematify.validation.run import validate
@@ -26,7 +27,7 @@ from tests.household import (
     nested_drawer,
     sliding_lid,
 )
-from tests.known import KnownObject, known_object, posed, rotation, sliding, turning, with_yaw
+from tests.known import KnownObject, known_object, posed, sliding, turning, with_yaw
 from tests.robots import aligned_arm
 from tests.validation.planted import (
     findings,
@@ -209,7 +210,7 @@ def test_only_the_broken_joint_of_a_chain_is_named(tmp_path: Path) -> None:
 def test_the_answer_does_not_depend_on_where_the_object_stands(tmp_path: Path) -> None:
     bad = turned(edge_door(), "door", 20.0, (1.0, 1.0, 0.0))
     shift = np.eye(4)
-    shift[:3, :3] = rotation(np.array([0.0, 0.0, 1.0]), 0.7)
+    shift[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), 0.7)
     shift[:3, 3] = (12.0, -3.0, 0.4)
     here, there = found(bad, tmp_path / "here"), found(posed(bad, shift), tmp_path / "there")
     assert here == there == {"KV342"}
