@@ -148,7 +148,7 @@ def _start(stage: Stage, request: StageRequest, before: float) -> tuple[Connecti
     context = multiprocessing.get_context("forkserver")
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_work, args=(sender, stage, request), daemon=True)
-    with _without_main():
+    with _without_main(), _deaf():  # an interrupt amid the request would make the server print a traceback
         process.start()
     sender.close()  # only the worker may hold the sending end: its death is then the end of the stream
     patience = _PATIENCE * request.deadline + _GRACE

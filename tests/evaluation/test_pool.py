@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -78,10 +79,12 @@ def test_a_hang_is_stopped_with_all_that_it_started(tmp_path: Path) -> None:
     assert all(gone(int(pid)) for pid in (tmp_path / "pids").read_text().split())
 
 
-@pytest.mark.parametrize(("reuse", "processes"), [(1, 6), (3, 2)])
-def test_a_process_takes_as_many_tasks_as_allowed(reuse: int, processes: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("reuse", "most"), [(1, 6), (3, 3)])
+def test_a_process_takes_as_many_tasks_as_allowed(reuse: int, most: int, tmp_path: Path) -> None:
     tasks = {str(number): partial(process_of_worker, number) for number in range(6)}
-    assert len(set(results(tasks, tmp_path, reuse=reuse).values())) == processes
+    taken = Counter(results(tasks, tmp_path, reuse=reuse).values())
+    assert max(taken.values()) <= reuse
+    assert 6 / reuse <= len(taken) <= most  # one that has taken all it may is replaced while another is still busy
 
 
 _CALLER = """
