@@ -1,0 +1,612 @@
+"""What is measured of every hypothesis of a joint: one row of continuous numbers each, which the fitted choice reads.
+
+A measurement is pure: it reads geometry alone, no verdict of another one, and no kind of object. Motion is measured
+relative to the overlap at rest, because solids that stand in each other are a way of modelling: a point of the child
+that lies inside the parent at rest may stay there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import igl
+import numpy as np
+
+from kinematify.joints.hypotheses.frames import UP
+from kinematify.robot.vectors import crossed, lengths_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kinematify.joints.measure.scene import JointScene
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+FIXED, TURN, SLIDE = range(3)
+
+_POINTS = 90  # of a part, in tests of motion
+_CONTACT_POINTS = 50
+_TURNS = np.radians([3.0, 10.0, 30.0, 75.0])
+_SLIDES = np.array([0.03, 0.1, 0.25, 0.6])  # of the child's diagonal
+_OPEN = 2  # the step at which what a motion opens is measured
+_TINY = 1e-12
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Hypotheses:
+    """Every joint that one edge may have."""
+
+    kinds: IntArray
+    """FIXED, TURN or SLIDE, shape (h,)."""
+    axes: FloatArray
+    """Unit directions, world frame, shape (h, 3); zero for fixed."""
+    pivots: FloatArray
+    """Points on the lines [m], shape (h, 3)."""
+    sources: tuple[str, ...]
+    """What proposed each."""
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+
+class Measured:
+    """One edge with its hypotheses, and what several measurements share."""
+
+    def __init__(self, scene: JointScene, hypotheses: Hypotheses) -> None:
+        """Keep both."""
+        self.scene = scene
+        self.hypotheses = hypotheses
+        cache = scene.cache
+        self.unit = max(scene.frame.diagonal, _TINY)
+        """Diagonal of the child's box, the unit of most lengths [m]."""
+        self.child = cache.samples(scene.child)
+        self.parent = cache.samples(scene.parent)
+        rng = np.random.default_rng([scene.parent, scene.child, 7])
+        self.few = rng.permutation(len(self.child.points))[:_POINTS]
+        near = self._near_child(self.parent.points)
+        self.few_parent = rng.permutation(near)[:_POINTS]
+        contact = scene.contact
+        self.few_contact = (
+            rng.choice(len(contact.points), _CONTACT_POINTS, p=contact.weights)
+            if len(contact.points)
+            else np.empty(0, dtype=np.int64)
+        )
+
+    def _near_child(self, points: FloatArray) -> IntArray:
+        low, high = self.scene.cache.assembly.parts[self.scene.child].bounds
+        slack = 0.25 * self.unit
+        return np.flatnonzero(np.all((points > low - slack) & (points < high + slack), axis=1))
+
+    @cached_property
+    def anchor(self) -> FloatArray:
+        """Centroid of the contact, the child's centre without one [m], shape (3,)."""
+        return self.scene.contact.centroid if len(self.scene.contact.points) else self.scene.centre
+
+    @cached_property
+    def arms(self) -> FloatArray:
+        """From each line to the child's centre, across the line [m], shape (h, 3)."""
+        return self._across(self.scene.centre)
+
+    def _across(self, point: FloatArray) -> FloatArray:
+        offset = point - self.hypotheses.pivots
+        axes = self.hypotheses.axes
+        return np.asarray(offset - np.einsum("hk,hk->h", offset, axes)[:, None] * axes)
+
+    def velocity(self, points: FloatArray) -> FloatArray:
+        """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""
+        h = self.hypotheses
+        turned = crossed(h.axes[:, None], points[None] - h.pivots[:, None])
+        straight = np.broadcast_to(h.axes[:, None], turned.shape)
+        return np.where((h.kinds == TURN)[:, None, None], turned, straight)
+
+    def amounts(self) -> FloatArray:
+        """Size of every step of every hypothesis [rad or m], shape (h, steps)."""
+        turns = (self.hypotheses.kinds == TURN)[:, None]
+        return np.where(turns, _TURNS, _SLIDES * self.unit)
+
+    def moved(self, points: FloatArray, amounts: FloatArray) -> FloatArray:
+        """Points (n, 3) or (h, n, 3) after each hypothesis has moved by its amount (h,), shape (h, n, 3)."""
+        h = self.hypotheses
+        given = np.broadcast_to(points, (len(h), *points.shape[-2:]))
+        offset = given - h.pivots[:, None]
+        along = np.einsum("hnk,hk->hn", offset, h.axes)[..., None] * h.axes[:, None]
+        radial = offset - along
+        cosine, sine = np.cos(amounts)[:, None, None], np.sin(amounts)[:, None, None]
+        turned = h.pivots[:, None] + along + cosine * radial + sine * crossed(h.axes[:, None], radial)
+        straight = given + amounts[:, None, None] * h.axes[:, None]
+        kinds = h.kinds[:, None, None]
+        return np.where(kinds == TURN, turned, np.where(kinds == SLIDE, straight, given))
+
+    @cached_property
+    def steps(self) -> list[tuple[int, int, FloatArray]]:
+        """Side (0 forward, 1 backward), step and amounts (h,) of every pose that is tried."""
+        amounts = self.amounts()
+        return [(side, k, sign * amounts[:, k]) for side, sign in enumerate((1.0, -1.0)) for k in range(len(_TURNS))]
+
+    @cached_property
+    def blocked(self) -> dict[str, FloatArray]:
+        """Share of points that enter a solid which they were not in at rest, by obstacle, shape (h, 2, steps)."""
+        scene = self.scene
+        own = self.child.points[self.few] - 0.01 * self.unit * self.child.normals[self.few]
+        result = {
+            "parent": self._entered(own, self._mesh((scene.parent,)), 1.0),
+            "others": self._entered(own, self._mesh(self._near_others()), 1.0),
+        }
+        theirs = self.parent.points[self.few_parent] - 0.01 * self.unit * self.parent.normals[self.few_parent]
+        result["back"] = self._entered(theirs, self._mesh((scene.child,)), -1.0)
+        return result
+
+    def _near_others(self) -> tuple[int, ...]:
+        parts = self.scene.cache.assembly.parts
+        low, high = parts[self.scene.child].bounds
+        slack = 0.6 * self.unit
+        return tuple(
+            k
+            for k in self.scene.others
+            if (parts[k].bounds[0] < high + slack).all() and (parts[k].bounds[1] > low - slack).all()
+        )
+
+    def _mesh(self, parts: Sequence[int]) -> tuple[FloatArray, IntArray]:
+        meshes = [self.scene.cache.assembly.parts[k] for k in parts]
+        if not meshes:
+            return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
+        starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+        vertices = np.concatenate([mesh.vertices for mesh in meshes])
+        faces = np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)])
+        return vertices, faces.astype(np.int64)
+
+    def _entered(self, points: FloatArray, mesh: tuple[FloatArray, IntArray], sense: float) -> FloatArray:
+        count = len(self.hypotheses)
+        result = np.zeros((count, 2, len(_TURNS)))
+        if len(points) == 0 or len(mesh[1]) == 0:
+            return result
+        poses = np.stack([self.moved(points, sense * amounts) for _, _, amounts in self.steps])
+        queries = np.concatenate([points, poses.reshape(-1, 3)])
+        inside = _inside(mesh, queries)
+        at_rest, then = inside[: len(points)], inside[len(points) :].reshape(poses.shape[:3])
+        entered = (then & ~at_rest).mean(axis=2)
+        for (side, k, _), share in zip(self.steps, entered, strict=True):
+            result[:, side, k] = share
+        return result
+
+    @cached_property
+    def better(self) -> IntArray:
+        """The side on which less is in the way, shape (h,)."""
+        total = sum(self.blocked.values()).sum(axis=2)
+        return np.asarray(np.argmin(total, axis=1))
+
+
+def _inside(mesh: tuple[FloatArray, IntArray], points: FloatArray) -> FloatArray:
+    """Whether points (n, 3) lie inside a mesh, by winding number, shape (n,)."""
+    vertices, faces = mesh
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    result = np.zeros(len(points), dtype=bool)
+    near = np.flatnonzero(np.all((points > low) & (points < high), axis=1))
+    if len(near):
+        result[near] = np.abs(igl.fast_winding_number(vertices, faces, np.ascontiguousarray(points[near]))) > 0.5
+    return result
+
+
+# ---- measurements --------------------------------------------------------------------------------------------------
+
+Values = dict[str, "FloatArray"]
+
+
+def motion(m: Measured) -> Values:
+    """Free travel each way, by what newly overlaps: the parent, the rest, and the parent's own points in the child."""
+    rows = np.arange(len(m.hypotheses))
+    result: Values = {}
+    for name, shares in m.blocked.items():
+        best, worst = shares[rows, m.better], shares[rows, 1 - m.better]
+        for k in range(best.shape[1]):
+            result[f"enter_{name}_{k}"] = best[:, k]
+            result[f"stop_{name}_{k}"] = worst[:, k]
+    return result
+
+
+def contact_motion(m: Measured) -> Values:
+    """How much of the contact is kept, and what gap opens, after a small and a larger step either way."""
+    h, scene = m.hypotheses, m.scene
+    own = m.child.points[m.few]
+    touching = scene.contact.points[m.few_contact]
+    points = np.concatenate([own, touching])
+    before = scene.cache.distances(scene.parent, points)
+    tolerance = 0.01 * m.unit
+    result: Values = {}
+    values = np.zeros((len(h), 2, 2, 3))
+    for side, k, amounts in m.steps:
+        if k not in (1, _OPEN):
+            continue
+        moved = m.moved(points, amounts)
+        gap = scene.cache.distances(scene.parent, moved.reshape(-1, 3)).reshape(moved.shape[:2])
+        kept = gap < before + tolerance
+        values[:, side, int(k == _OPEN), 0] = (gap[:, : len(own)].min(axis=1) - before[: len(own)].min()) / m.unit
+        values[:, side, int(k == _OPEN), 1] = kept[:, len(own) :].mean(axis=1) if len(touching) else 0.0
+        values[:, side, int(k == _OPEN), 2] = (gap[:, : len(own)] - before[: len(own)]).mean(axis=1) / m.unit
+    rows = np.arange(len(h))
+    for k, step in enumerate(("small", "large")):
+        for j, name in enumerate(("gap", "kept", "leaving")):
+            result[f"{name}_{step}"] = values[rows, m.better, k, j]
+            result[f"{name}_{step}_back"] = values[rows, 1 - m.better, k, j]
+    return result
+
+
+def sliding_surface(m: Measured) -> Values:
+    """Share of the contact, and of the whole child, that slides along itself under the first motion."""
+    contact = m.scene.contact
+    everything = m.child
+    stride = max(1, len(everything.points) // 400)
+    ones = np.ones(len(contact.parent_points)) / max(len(contact.parent_points), 1)
+    return {
+        **_slips(m, "contact", contact.points, contact.normals, contact.weights),
+        **_slips(m, "parent_contact", contact.parent_points, contact.parent_normals, ones),
+        **_slips(
+            m,
+            "child",
+            everything.points[::stride],
+            everything.normals[::stride],
+            np.ones(len(everything.points[::stride])),
+        ),
+        **_slips(
+            m,
+            "near",
+            m.parent.points[m.few_parent],
+            m.parent.normals[m.few_parent],
+            np.ones(len(m.few_parent)),
+        ),
+    }
+
+
+def _slips(m: Measured, name: str, points: FloatArray, normals: FloatArray, weights: FloatArray) -> Values:
+    if len(points) == 0:
+        return {f"slip_{name}": np.ones(len(m.hypotheses)), f"slide_share_{name}": np.zeros(len(m.hypotheses))}
+    if len(points) > 400:
+        stride = len(points) // 400
+        points, normals, weights = points[::stride], normals[::stride], weights[::stride]
+    velocity = m.velocity(points)
+    speed = np.maximum(lengths_of(velocity), _TINY)
+    across = np.abs(np.einsum("hnk,nk->hn", velocity, normals))
+    weights = weights / max(float(weights.sum()), _TINY)
+    rms = np.sqrt((across**2 @ weights) / np.maximum((speed**2) @ weights, _TINY))
+    share = (across < np.sin(np.radians(10.0)) * speed) @ weights
+    # Round surface alone: flat area across the axis turns into itself about every line along the axis.
+    lateral = np.abs(m.hypotheses.axes @ normals.T) < 0.7
+    round_share = ((across < np.sin(np.radians(6.0)) * speed) & lateral) @ weights
+    return {f"slip_{name}": rms, f"slide_share_{name}": share, f"lateral_{name}": round_share}
+
+
+def bearing(m: Measured) -> Values:
+    """Support of the bearing that proposed the line, or lies nearest to it, and of the rail along it."""
+    h, scene = m.hypotheses, m.scene
+    count = len(h)
+    names = ("score", "surface", "circles", "surface_least", "circles_least")
+    values = {f"bearing_{name}": np.zeros(count) for name in names}
+    values["bearing_axis"] = np.zeros(count)
+    best = 0.0
+    found = scene.bearing.lines if scene.bearing is not None else ()
+    for line in found:
+        cosine = np.abs(h.axes @ line.axis)
+        apart = lengths_of(np.cross(line.pivot - h.pivots, line.axis)) / m.unit
+        same = (cosine > np.cos(np.radians(2.0))) & ((apart < 0.02) | (h.kinds == SLIDE))
+        numbers = (
+            line.score,
+            line.surface,
+            line.circles,
+            min(line.surface_a, line.surface_b),
+            min(line.circles_a, line.circles_b),
+        )
+        for name, number in zip(names, numbers, strict=True):
+            values[f"bearing_{name}"] = np.maximum(values[f"bearing_{name}"], same * number)
+        values["bearing_axis"] = np.maximum(values["bearing_axis"], line.score * (cosine > 0.999))
+        best = max(best, line.score)
+    rail = scene.bearing.rail if scene.bearing is not None else None
+    along = np.abs(h.axes @ rail.axis) > 0.999 if rail is not None else np.zeros(count, dtype=bool)
+    score = rail.score if rail is not None else 0.0
+    return {
+        **values,
+        "bearing_best": np.full(count, best),
+        "rail_best": np.full(count, score),
+        "rail_along": along * score,
+        "rail_lead": np.full(count, scene.lead),
+        "journal": np.full(count, 0.0 if scene.journal is None else scene.journal.coverage),
+    }
+
+
+def place(m: Measured) -> Values:
+    """The line in the boxes of child and parent: along which side, how far from the middle, near what."""
+    h, scene = m.hypotheses, m.scene
+    frame = scene.frame
+    order = np.argsort(frame.extents)
+    along = np.abs(h.axes @ frame.axes[order].T)
+    half = np.maximum(0.5 * frame.extents[order], 0.01 * m.unit)
+    offset = -(m.arms @ frame.axes[order].T) / half
+    across = 1.0 - along > 0.5
+    offset = np.where(across, offset, 0.0)
+    result = {f"along_{name}": along[:, k] for k, name in enumerate(("short", "middle", "long"))}
+    result |= {f"off_{name}": np.abs(offset[:, k]) for k, name in enumerate(("short", "middle", "long"))}
+    result["off_most"] = np.abs(offset).max(axis=1)
+    result["off_least"] = np.where(across, np.abs(offset), 9.0).min(axis=1)
+    points = m.child.points[:: max(1, len(m.child.points) // 300)]
+    radius = lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None]))
+    reach = np.maximum(radius.max(axis=1), _TINY)
+    result["mean_radius"] = radius.mean(axis=1) / reach
+    result["least_radius"] = radius.min(axis=1) / reach
+    result["eccentric"] = lengths_of(np.cross(points.mean(axis=0) - h.pivots, h.axes)) / reach
+    result["reach"] = reach / m.unit
+    result["length"] = (np.abs(h.axes @ frame.axes.T) @ frame.extents) / m.unit
+    body = scene.body_box
+    size = np.maximum(body[1] - body[0], 0.01 * m.unit)
+    foot = scene.centre - m.arms
+    in_body = (foot @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
+    in_body = np.where(np.abs(h.axes @ frame.axes.T) < 0.7, np.abs(in_body), 0.0)
+    result["body_off_most"] = in_body.max(axis=1)
+    result["body_off_sum"] = in_body.sum(axis=1)
+    centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
+    outer = -m.arms @ frame.axes.T
+    side = np.argmax(np.abs(outer), axis=1)
+    rows = np.arange(len(h))
+    result["hinge_outward"] = np.sign(outer[rows, side]) * centre[side]
+    low, high = frame.slab_lower - body[0], body[1] - frame.slab_upper
+    towards = outer[rows, side] > 0
+    near, far = np.where(towards, high[side], low[side]), np.where(towards, low[side], high[side])
+    result["margin_here"] = near / m.unit
+    result["margin_opposite"] = far / m.unit
+    steps = np.linspace(-0.9, 0.9, 7)
+    span = 0.5 * result["length"] * m.unit
+    probes = foot[:, None] + steps[None, :, None] * (span[:, None] * h.axes)[:, None]
+    to_parent = scene.cache.distances(scene.parent, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
+    to_child = scene.cache.distances(scene.child, probes.reshape(-1, 3)).reshape(len(h), -1) / m.unit
+    result["line_to_parent"] = to_parent.mean(axis=1)
+    result["line_to_parent_least"] = to_parent.min(axis=1)
+    result["line_to_child"] = to_child.mean(axis=1)
+    return result
+
+
+def contact_place(m: Measured) -> Values:
+    """Where the contact lies about the line."""
+    h, contact = m.hypotheses, m.scene.contact
+    count = len(h)
+    names = ("radius", "radius_least", "radius_most", "share_near", "spread_along", "offset", "along_contact")
+    if len(contact.points) == 0:
+        return {f"contact_{name}": np.full(count, np.nan) for name in names}
+    points = contact.points[m.few_contact]
+    radius = lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])) / m.unit
+    along = (points - contact.centroid) @ h.axes.T
+    values, vectors = np.linalg.eigh(np.cov((points - points.mean(axis=0)).T) + _TINY * np.eye(3))
+    reach = np.maximum(radius.max(axis=1), _TINY)
+    normals = contact.normals[m.few_contact]
+    return {
+        "contact_radius": radius.mean(axis=1),
+        "contact_radius_least": radius.min(axis=1),
+        "contact_radius_most": reach,
+        "contact_share_near": (radius < 0.06).mean(axis=1),
+        "contact_spread_along": np.ptp(along, axis=0) / m.unit,
+        "contact_offset": lengths_of(np.cross(contact.centroid - h.pivots, h.axes)) / m.unit,
+        "contact_along": np.abs(h.axes @ vectors[:, 2]),
+        "contact_across": np.abs(h.axes @ vectors[:, 0]),
+        "contact_flatness": np.full(count, np.sqrt(max(values[0], 0.0) / values[2])),
+        "contact_slimness": np.full(count, np.sqrt(max(values[1], 0.0) / values[2])),
+        "contact_spread": np.full(count, np.sqrt(values.sum()) / m.unit),
+        "contact_normals_along": np.abs(normals @ h.axes.T).mean(axis=0),
+    }
+
+
+def child_shape(m: Measured) -> Values:
+    """Sides of the child, how boxy and how round it is, and its size beside parent and whole."""
+    scene, count = m.scene, len(m.hypotheses)
+    sides = np.sort(scene.frame.extents)
+    sides = np.maximum(sides, 1e-4 * sides[2])
+    facing = np.abs(m.child.normals @ scene.frame.axes.T) > np.cos(np.radians(12.0))
+    parent_sides = np.sort(scene.parent_frame.extents)
+    shares = np.sort(facing.mean(axis=0))
+    facts = {
+        "thin": np.log(sides[0] / sides[1]),
+        "slim": np.log(sides[1] / sides[2]),
+        "boxy": facing.any(axis=1).mean(),
+        "boxy_least": shares[0],
+        "boxy_most": shares[2],
+        "disc": scene.disc,
+        "size_parent": np.log(scene.frame.diagonal / max(scene.parent_frame.diagonal, _TINY)),
+        "size_whole": np.log(scene.frame.diagonal / scene.diagonal),
+        "longest_parent": np.log(sides[2] / max(float(parent_sides[2]), _TINY)),
+        "parent_thin": np.log(max(float(parent_sides[0] / max(parent_sides[1], _TINY)), 1e-4)),
+        "parent_slim": np.log(max(float(parent_sides[1] / max(parent_sides[2], _TINY)), 1e-4)),
+        "sticking_out": scene.frame.diagonal / max(float(np.linalg.norm(scene.frame.extents)), _TINY),
+        "contact_share_of_child": len(scene.contact.points) / max(len(m.child.points), 1),
+        "gap": _gap(scene) / m.unit,
+    }
+    return {name: np.full(count, float(value)) for name, value in facts.items()}
+
+
+def _gap(scene: JointScene) -> float:
+    edge = scene.cache.graph.by_pair.get((min(scene.parent, scene.child), max(scene.parent, scene.child)))
+    return scene.diagonal if edge is None else edge.gap
+
+
+def where(m: Measured) -> Values:
+    """The child in its parent and in the whole: inside, in front, on top, covered, overlapping, facing up."""
+    scene, h = m.scene, m.hypotheses
+    count = len(h)
+    frame, body = scene.frame, scene.body_box
+    size = np.maximum(body[1] - body[0], 1e-3 * m.unit)
+    centre = (scene.centre @ frame.axes.T - body.mean(axis=0)) / (0.5 * size)
+    along = np.abs(h.axes @ frame.axes.T)
+    thin = frame.thin
+    low, high = scene.cache.assembly.bounds
+    whole = (scene.centre - low) / np.maximum(high - low, _TINY)
+    at_rest = _inside(m._mesh((scene.parent,)), m.child.points[m.few] - 0.01 * m.unit * m.child.normals[m.few])
+    reaching = np.abs(scene.cache.assembly.parts[scene.child].bounds - scene.cache.assembly.parts[scene.parent].bounds)
+    facts = {
+        "inside_box": scene.inside,
+        "inside_solid": at_rest.mean(),
+        "enclosed": scene.enclosed,
+        "thin_up": abs(float(frame.axes[thin] @ UP)),
+        "long_up": abs(float(frame.axes[int(np.argmax(frame.extents))] @ UP)),
+        "centre_thin": abs(float(centre[thin])),
+        "centre_most": float(np.abs(centre).max()),
+        "centre_up": float((scene.centre - scene.cache.assembly.parts[scene.parent].bounds.mean(axis=0)) @ UP)
+        / max(float(np.ptp(scene.cache.assembly.parts[scene.parent].bounds[:, 2])), 1e-3 * m.unit),
+        "height": float(whole[2]),
+        "to_floor": float(scene.cache.assembly.parts[scene.child].bounds[0, 2] - low[2]) / m.unit,
+        "flush_count": float((reaching < 0.02 * m.unit).sum()),
+        "filling": float(np.prod(np.minimum(frame.extents / size, 1.0))),
+        "filling_most": float(np.sort(frame.extents / size)[2]),
+        "filling_middle": float(np.sort(frame.extents / size)[1]),
+        "handle": float(scene.handle is not None),
+    }
+    result = {name: np.full(count, float(value)) for name, value in facts.items()}
+    result["axis_up"] = np.abs(h.axes @ UP)
+    result["centre_along"] = along @ np.abs(centre)
+    result["filling_along"] = along @ (frame.extents / size)
+    own_low, own_high = frame.lower, frame.upper
+    ahead = np.minimum(np.abs(own_low - body[0]), np.abs(body[1] - own_high)) / m.unit
+    result["flush_along"] = along @ ahead
+    return result
+
+
+def gravity(m: Measured) -> Values:
+    """Where the line lies above or below the child, and whether the free motion lifts it."""
+    arms = -m.arms
+    length = np.maximum(lengths_of(arms), 1e-9 * m.unit)
+    sign = np.where(m.better == 0, 1.0, -1.0)
+    velocity = m.velocity(m.scene.centre[None])[:, 0] * sign[:, None]
+    speed = np.maximum(lengths_of(velocity), 1e-9 * m.unit)
+    out = (m.scene.centre - m.scene.cache.assembly.parts[m.scene.parent].bounds.mean(axis=0)) / m.unit
+    whole = m.scene.centre - m.scene.cache.assembly.bounds.mean(axis=0)
+    away = m.scene.outward
+    return {
+        "line_above": arms[:, 2] / length,
+        "line_above_far": arms[:, 2] / m.unit,
+        "rises": velocity[:, 2] / speed,
+        "leaves_parent": (velocity / speed[:, None]) @ out / max(float(np.linalg.norm(out)), _TINY),
+        "leaves_whole": (velocity / speed[:, None]) @ whole / max(float(np.linalg.norm(whole)), _TINY),
+        "leaves_panel": (velocity / speed[:, None]) @ away,
+        "along_outward": np.abs(m.hypotheses.axes @ away),
+        "along_out": np.abs(m.hypotheses.axes @ out) / max(float(np.linalg.norm(out)), _TINY),
+    }
+
+
+def handle(m: Measured) -> Values:
+    """Where a hand pulls: far from the line, and along what it moves."""
+    h, held = m.hypotheses, m.scene.handle
+    if held is None:
+        missing = np.full(len(h), np.nan)
+        return {"handle_far": missing, "handle_parallel": missing, "handle_pull": missing, "handle_off": missing}
+    arm = lengths_of(m._across(held.centre)) / m.unit
+    velocity = m.velocity(held.centre[None])[:, 0]
+    pull = np.abs(velocity @ m.scene.frame.axes[m.scene.frame.thin]) / np.maximum(lengths_of(velocity), 1e-9 * m.unit)
+    frame = m.scene.frame
+    off = np.abs((held.centre - m.scene.centre) @ frame.axes.T) / np.maximum(0.5 * frame.extents, 0.02 * m.unit)
+    towards = (held.centre - m.scene.centre) / m.unit
+    length = np.maximum(lengths_of(m.arms), 1e-9 * m.unit)
+    return {
+        "handle_far": arm,
+        "handle_parallel": np.abs(h.axes @ held.direction),
+        "handle_pull": pull,
+        "handle_off": np.full(len(h), float(np.delete(off, frame.thin).max())),
+        "handle_opposite": np.einsum("hk,k->h", m.arms, towards) / length,
+    }
+
+
+def opening(m: Measured) -> Values:
+    """What the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
+    scene, h = m.scene, m.hypotheses
+    rng = np.random.default_rng([scene.parent, scene.child, 11])
+    reach = 2.0 * scene.diagonal
+    amounts = np.where(m.better == 0, 1.0, -1.0) * m.amounts()[:, _OPEN]
+    starts, rays = _outward_rays(m.child.points[m.few], m.child.normals[m.few], 0.01 * m.unit, rng)
+    turned = m.moved(starts, amounts), m.moved(starts + rays, amounts)
+    blocked = _blocked(m, (scene.parent, *m._near_others()), *turned, reach)
+    before = _blocked(m, (scene.parent, *m._near_others()), starts[None], (starts + rays)[None], reach)
+    seen_before = 1.0 - float(before.mean())
+    result = {
+        "seen": np.full(len(h), seen_before),
+        "seen_more": (1.0 - blocked.mean(axis=1)) - seen_before,
+    }
+    covered = m.few_parent
+    if len(covered) == 0:
+        return {**result, "covers": np.zeros(len(h)), "uncovers": np.zeros(len(h))}
+    starts, rays = _outward_rays(m.parent.points[covered], m.parent.normals[covered], 0.01 * m.unit, rng)
+    free = ~_blocked(m, (scene.parent, *m._near_others()), starts[None], (starts + rays)[None], reach)[0]
+    starts, rays = starts[free], rays[free]
+    if len(starts) == 0:
+        return {**result, "covers": np.zeros(len(h)), "uncovers": np.zeros(len(h))}
+    rest = float(_blocked(m, (scene.child,), starts[None], (starts + rays)[None], reach).mean())
+    then = _blocked(m, (scene.child,), m.moved(starts, -amounts), m.moved(starts + rays, -amounts), reach)
+    return {
+        **result,
+        "covers": np.full(len(h), rest),
+        "uncovers": rest - then.mean(axis=1),
+        "open_share": np.full(len(h), float(free.mean())),
+    }
+
+
+def _outward_rays(
+    points: FloatArray, normals: FloatArray, lift: float, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Four rays from each point into the half space that its normal shows, starts and unit directions, (4 n, 3)."""
+    directions = rng.normal(size=(4, *points.shape))
+    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    directions = directions + 1.05 * normals
+    directions /= np.maximum(np.linalg.norm(directions, axis=2), _TINY)[..., None]
+    starts = np.broadcast_to(points + lift * normals, directions.shape)
+    return starts.reshape(-1, 3), directions.reshape(-1, 3)
+
+
+def _blocked(m: Measured, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float) -> FloatArray:
+    """Whether rays from starts through ends (c, n, 3 each) meet any of the parts within `reach` [m], shape (c, n)."""
+    result = np.zeros(starts.shape[:2], dtype=bool)
+    flat, steps = starts.reshape(-1, 3), (ends - starts).reshape(-1, 3) * reach
+    for part in parts:
+        left = np.flatnonzero(~result.reshape(-1))
+        if len(left):
+            hit = np.isfinite(m.scene.cache.first_hits(part, flat[left], steps[left]))
+            result.reshape(-1)[left[hit]] = True
+    return result
+
+
+def neighbours(m: Measured) -> Values:
+    """Congruent parts, in which direction they stand, and what else the child touches or carries."""
+    scene, h = m.scene, m.hypotheses
+    graph, count = scene.cache.graph, len(h)
+    label = graph.cluster_of[scene.child]
+    twins = [part for part in graph.clusters[label] if part != scene.child] if label >= 0 else []
+    touched = [edge for edge in graph.edges if scene.child in (edge.a, edge.b) and not edge.bridge]
+    result = {
+        "twins": np.full(count, float(len(twins))),
+        "touches": np.full(count, float(len(touched))),
+        "parts": np.full(count, np.log(len(scene.cache.assembly.parts))),
+        "parent_moves": np.full(count, float(scene.parent_moves)),
+        "serial": np.full(count, float(scene.serial)),
+        "carries": np.full(count, float(len(scene.cache.assembly.parts) - len(scene.others) - 2)),
+    }
+    if not twins:
+        missing = np.full(count, np.nan)
+        return result | {"twin_along": missing, "twin_near": missing, "twin_thin": missing}
+    centres = np.array([scene.cache.samples(part).points.mean(axis=0) for part in twins])
+    offset = centres - m.child.points.mean(axis=0)
+    nearest = offset[int(np.argmin(lengths_of(offset)))]
+    direction = nearest / max(float(np.linalg.norm(nearest)), _TINY)
+    return result | {
+        "twin_along": np.abs(h.axes @ direction),
+        "twin_near": np.full(count, float(np.linalg.norm(nearest)) / m.unit),
+        "twin_thin": np.full(count, abs(float(direction @ scene.frame.axes[scene.frame.thin]))),
+        "twin_towards": -np.einsum("hk,k->h", m.arms, direction) / m.unit,
+    }
+
+
+GROUPS: dict[str, Callable[[Measured], Values]] = {
+    "motion": motion,
+    "contact_motion": contact_motion,
+    "sliding_surface": sliding_surface,
+    "bearing": bearing,
+    "place": place,
+    "contact_place": contact_place,
+    "child_shape": child_shape,
+    "where": where,
+    "gravity": gravity,
+    "handle": handle,
+    "opening": opening,
+    "neighbours": neighbours,
+}
