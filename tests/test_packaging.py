@@ -118,7 +118,7 @@ def test_every_import_of_the_package_is_declared() -> None:
     providers |= {"pinocchio": {"pin"}, "coal": {"coal"}}  # they live behind a .pth file, which the metadata ignores
     providers |= {"pydrake": {"drake"}}  # the name of its module is not its own
     providers |= {"manifold3d": {"manifold3d"}}  # a bare extension module, which the metadata does not list
-    allowed = {normalised(name) for extra in (None, "bench", "view", "drake", "rl") for name in declared(extra)}
+    allowed = {normalised(name) for extra in (None, "bench", "fit", "view", "drake", "rl") for name in declared(extra)}
     missing = set()
     for folder, _, files in os.walk(ROOT / "kinematify", followlinks=True):
         for path in (Path(folder, file) for file in files if file.endswith(".py")):

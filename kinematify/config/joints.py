@@ -344,12 +344,10 @@ class RailsConfig(StageConfig):
 
 
 class ConfidenceConfig(StageConfig):
-    """How likely a joint is right, from the margins of what was decided (`kinematify bench calibration`)."""
+    """How likely a joint is right (`results/choice.md`, `kinematify bench calibration`)."""
 
-    kind_slope: float
-    """Log odds that the type is right, per log odds of sliding against turning."""
-    without_bearing: float
-    """Factor for what turns in a chain of links where no bearing holds it."""
+    cues_lead: float
+    """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
     parent_margin: float
     """Lead in reward over trees with another parent at which that parent is e times less likely."""
 

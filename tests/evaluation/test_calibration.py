@@ -90,4 +90,4 @@ def test_trees_that_are_nearly_as_good_and_close_types_cost_confidence() -> None
     usual = said()
     assert 0.6 < usual < 1.0
     assert said(parent_margin=1e3) == pytest.approx(0.5 * said(parent_margin=1e-6), rel=0.01)
-    assert said(kind_slope=0.0) < usual < said(kind_slope=100.0)
+    assert said(cues_lead=0.0) < usual < said(cues_lead=100.0)

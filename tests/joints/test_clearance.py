@@ -49,8 +49,8 @@ def test_a_lid_with_a_skirt_all_round_is_lifted_and_a_hinged_one_turns() -> None
     assert hinged.kind.turns
 
 
-def test_a_plate_across_the_seam_of_lid_and_body_is_a_catch_and_one_beside_it_a_button() -> None:
-    def kind_of(low: float) -> JointType:
+def test_a_plate_across_the_seam_of_lid_and_body_is_rather_a_catch_than_one_beside_it() -> None:
+    def plate_at(low: float) -> JointEstimate:
         solids = {
             "body": tray((0, 0, 0), (0.4, 0.3, 0.2), 0.01),
             "lid": box((0, 0, 0.2005), (0.4, 0.3, 0.23)),
@@ -65,10 +65,12 @@ def test_a_plate_across_the_seam_of_lid_and_body_is_a_catch_and_one_beside_it_a_
             KnownJoint(parent="body", child="lid", pivot=np.array([0, 0.3, 0.2]), **at),
             KnownJoint(parent="body", child="plate", pivot=np.array([0, 0, low]), **at),
         )
-        return infer_joints(KnownObject(name="chest", root="body", parts=parts, joints=joints))["plate"].kind
+        return infer_joints(KnownObject(name="chest", root="body", parts=parts, joints=joints))["plate"]
 
-    assert kind_of(0.19).turns
-    assert kind_of(0.1) is JointType.PRISMATIC
+    catch, beside = plate_at(0.19), plate_at(0.1)
+    assert catch.kind.turns
+    assert catch.evidence["latch"] > beside.evidence["latch"] == 0.0
+    assert beside.evidence["odds_prismatic"] > catch.evidence["odds_prismatic"]
 
 
 def test_knobs_in_a_row_turn_although_buttons_in_a_row_are_pressed() -> None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import JointsConfig
     from kinematify.config.validation import EvidenceSettings
-    from kinematify.joints.choice.decide import WeighedJoints
+    from kinematify.joints.choice.weighed import WeighedJoints
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies, Pair
 

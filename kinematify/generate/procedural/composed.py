@@ -255,11 +255,11 @@ def _bail(seat: _Seat, rng: np.random.Generator, wall: float) -> _Fitted:
     low = float(rng.uniform(-0.3, 0.1)) * min(seat.depth, seat.width)
     gap = _gap(rng)
     out = 0.5 * seat.width + gap if rng.random() < 0.5 else w
-    legs = [seat.block(sorted_pair(s * out, s * (out + thick)), (-0.5 * thick, 0.5 * thick), (low, high)) for s in (1, -1)]
+    legs = [
+        seat.block(sorted_pair(s * out, s * (out + thick)), (-0.5 * thick, 0.5 * thick), (low, high)) for s in (1, -1)
+    ]
     top = seat.block((-out - thick, out + thick), (-0.5 * thick, 0.5 * thick), (high - thick, high))
-    return _Fitted(
-        child=union(*legs, top), turns=True, axis=seat.u, pivot=seat.at(0, 0, low + 0.5 * thick), reach=1.5
-    )
+    return _Fitted(child=union(*legs, top), turns=True, axis=seat.u, pivot=seat.at(0, 0, low + 0.5 * thick), reach=1.5)
 
 
 def _flap(seat: _Seat, rng: np.random.Generator, wall: float) -> _Fitted:
@@ -341,7 +341,9 @@ def _pane(seat: _Seat, rng: np.random.Generator, wall: float) -> _Fitted:
     if rng.random() < 0.6:
         lips = [
             seat.block(
-                (-0.5 * seat.width, 0.5 * seat.width), sorted_pair(s * (h + gap), s * (h + gap + thick)), (-1e-4, 1.8 * thick)
+                (-0.5 * seat.width, 0.5 * seat.width),
+                sorted_pair(s * (h + gap), s * (h + gap + thick)),
+                (-1e-4, 1.8 * thick),
             )
             for s in (1.0, -1.0)
         ]

@@ -33,7 +33,10 @@ def remodelled(blueprint: Blueprint, way: str, *, rng: np.random.Generator) -> B
     """
     solids = {part.name: _solid(part) for part in blueprint.parts}
     changed = WAYS[way](blueprint, solids, rng)
-    parts = tuple(_with_mesh(part, changed[part.name]) for part in blueprint.parts)
+    parts = tuple(
+        part if changed[part.name] is solids[part.name] else _with_mesh(part, changed[part.name])
+        for part in blueprint.parts
+    )
     return replace(blueprint, parts=parts, parameters={**blueprint.parameters, "modelled": way})
 
 

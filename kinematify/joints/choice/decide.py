@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.kind import Siblings, decide_kind
 from kinematify.joints.choice.limits import find_range
+from kinematify.joints.choice.weighed import WeighedJoints
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
 from kinematify.joints.measure.scene import joint_scene, part_frames
@@ -19,14 +20,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
-    from kinematify.config import ConfidenceConfig, JointsConfig
+    from kinematify.config import JointsConfig
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.choice.kind import KindDecision
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.joints.hypotheses.frames import BoxFrame
     from kinematify.joints.hypotheses.line import Line
-    from kinematify.joints.hypotheses.panels import RankedTurns
-    from kinematify.joints.hypotheses.slides import RankedSlides
     from kinematify.joints.measure.scene import JointScene
     from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray
@@ -69,9 +67,11 @@ def _estimate(
     config: JointsConfig,
 ) -> JointEstimate:
     weighed = weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
-    scene, turns, slides, decision = weighed.scene, weighed.turns, weighed.slides, weighed.decision
-    axis, pivot = _chosen_line(scene, decision.kind, turns, slides)
-    found = find_range(scene, decision.kind, axis, pivot, config)
+    scene, decision = weighed.scene, weighed.decision
+    judged = judge(weighed, lead=config.confidence.cues_lead)
+    kind = JointType.FIXED if decision.kind is JointType.FIXED else judged.kind(judged.best)
+    axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
+    found = find_range(scene, kind, axis, pivot, config)
     return JointEstimate(
         parent=scene.parent,
         child=scene.child,
@@ -80,11 +80,11 @@ def _estimate(
         pivot=pivot,
         lower=found.lower,
         upper=found.upper,
-        confidence=_confidence(weighed, config.confidence),
-        alternatives=_alternatives(scene, decision, turns, slides, config),
+        confidence=judged.confidence,
+        alternatives=judged.alternatives(config.alternatives),
         evidence={
             **decision.cues,
-            "odds_prismatic": decision.odds,
+            "odds_prismatic": judged.odds_prismatic,
             "bearing_gate": float(scene.has_bearing),
             "smallness": scene.smallness,
             "mechanism": scene.mechanism,
@@ -92,16 +92,6 @@ def _estimate(
             "free_backward": found.free_backward,
         },
     )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class WeighedJoints:
-    """Every joint that one tree edge may have, weighed, before one is chosen."""
-
-    scene: JointScene
-    turns: RankedTurns
-    slides: RankedSlides
-    decision: KindDecision
 
 
 def weigh_joints(
@@ -196,78 +186,3 @@ def _twin_directions(scene: JointScene, frames: Mapping[int, BoxFrame], twins: t
     offsets = [frames[twin].centre - scene.centre for twin in twins]
     long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * scene.diagonal]
     return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
-
-
-# ---- the result ----------------------------------------------------------------------------------------------------
-
-
-def _chosen_line(
-    scene: JointScene, kind: JointType, turns: RankedTurns, slides: RankedSlides
-) -> tuple[FloatArray, FloatArray]:
-    """Axis and a point on it: the foot of the contact centroid for turns, the centroid itself for slides."""
-    if kind is JointType.PRISMATIC:
-        anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
-        return slides.axes[0], anchor
-    return turns.lines.axes[0], turns.lines.pivots[0]
-
-
-def _confidence(weighed: WeighedJoints, config: ConfidenceConfig) -> float:
-    """How likely type and direction are right, by their margins; the parent is taken for granted."""
-    scene, turns, slides, decision = weighed.scene, weighed.turns, weighed.slides, weighed.decision
-    if decision.kind is JointType.PRISMATIC:
-        axes, scores = slides.axes, slides.scores
-    else:
-        axes, scores = turns.lines.axes, turns.scores
-    other = np.abs(axes @ axes[0]) < np.cos(np.radians(10.0))
-    margin = float(scores[0] - scores[other].max()) if other.any() else np.inf
-    direction = 1.0 / (1.0 + np.exp(-2.0 * margin - 0.5))
-    kind = 1.0 / (1.0 + np.exp(-config.kind_slope * abs(decision.odds)))
-    unborne = decision.kind is JointType.REVOLUTE and scene.mechanism > 0.5 and not scene.has_bearing
-    return float(direction * kind * (config.without_bearing if unborne else 1.0))
-
-
-def _alternatives(
-    scene: JointScene, decision: KindDecision, turns: RankedTurns, slides: RankedSlides, config: JointsConfig
-) -> tuple[JointCandidate, ...]:
-    """Distinct candidates of both kinds on one scale: the score within the kind plus the odds of the kind."""
-    lean = 0.5 * decision.odds
-    anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
-    found = [
-        JointCandidate(
-            kind=JointType.REVOLUTE,
-            axis=turns.lines.axes[i],
-            pivot=turns.lines.pivots[i],
-            score=float(turns.scores[i] - turns.scores[0]) - lean,
-            source=turns.lines.sources[i],
-            evidence={name: float(value[i]) for name, value in turns.cues.items()},
-        )
-        for i in _distinct_lines(turns, 0.01 * scene.diagonal, config.alternatives)
-    ]
-    found += [
-        JointCandidate(
-            kind=JointType.PRISMATIC,
-            axis=slides.axes[i],
-            pivot=anchor,
-            score=float(slides.scores[i] - slides.scores[0]) + lean,
-            source=slides.sources[i],
-            evidence={name: float(value[i]) for name, value in slides.cues.items()},
-        )
-        for i in range(min(len(slides.axes), config.alternatives))
-    ]
-    return tuple(sorted(found, key=lambda candidate: -candidate.score))
-
-
-def _distinct_lines(turns: RankedTurns, distance: float, count: int) -> list[int]:
-    """Best lines that differ by 5 deg or by `distance` [m] at the contact."""
-    kept: list[int] = []
-    for i in range(len(turns.scores)):
-        axis, pivot = turns.lines.axes[i], turns.lines.pivots[i]
-        if all(
-            abs(float(axis @ turns.lines.axes[k])) < np.cos(np.radians(5.0))
-            or float(np.linalg.norm(pivot - turns.lines.pivots[k])) > distance
-            for k in kept
-        ):
-            kept.append(i)
-        if len(kept) == count:
-            break
-    return kept

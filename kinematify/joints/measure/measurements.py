@@ -20,8 +20,12 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from numpy.typing import NDArray
+
     from kinematify.joints.measure.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
+
+    BoolArray = NDArray[np.bool_]
 
 FIXED, TURN, SLIDE = range(3)
 
@@ -62,7 +66,7 @@ class Measured:
         """Diagonal of the child's box, the unit of most lengths [m]."""
         self.child = cache.samples(scene.child)
         self.parent = cache.samples(scene.parent)
-        rng = np.random.default_rng([scene.parent, scene.child, 7])
+        rng = np.random.default_rng(7)
         self.few = rng.permutation(len(self.child.points))[:_POINTS]
         near = self._near_child(self.parent.points)
         self.few_parent = rng.permutation(near)[:_POINTS]
@@ -173,11 +177,11 @@ class Measured:
     @cached_property
     def better(self) -> IntArray:
         """The side on which less is in the way, shape (h,)."""
-        total = sum(self.blocked.values()).sum(axis=2)
+        total = np.sum([shares.sum(axis=2) for shares in self.blocked.values()], axis=0)
         return np.asarray(np.argmin(total, axis=1))
 
 
-def _inside(mesh: tuple[FloatArray, IntArray], points: FloatArray) -> FloatArray:
+def _inside(mesh: tuple[FloatArray, IntArray], points: FloatArray) -> BoolArray:
     """Whether points (n, 3) lie inside a mesh, by winding number, shape (n,)."""
     vertices, faces = mesh
     low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -281,7 +285,7 @@ def bearing(m: Measured) -> Values:
     h, scene = m.hypotheses, m.scene
     count = len(h)
     names = ("score", "surface", "circles", "surface_least", "circles_least")
-    values = {f"bearing_{name}": np.zeros(count) for name in names}
+    values: Values = {f"bearing_{name}": np.zeros(count) for name in names}
     values["bearing_axis"] = np.zeros(count)
     best = 0.0
     found = scene.bearing.lines if scene.bearing is not None else ()
@@ -307,8 +311,8 @@ def bearing(m: Measured) -> Values:
         **values,
         "bearing_best": np.full(count, best),
         "rail_best": np.full(count, score),
-        "rail_along": along * score,
-        "rail_lead": np.full(count, scene.lead),
+        "rail_along": along * float(score),
+        "rail_lead": np.full(count, scene.rail_lead),
         "journal": np.full(count, 0.0 if scene.journal is None else scene.journal.coverage),
     }
 
@@ -512,7 +516,7 @@ def handle(m: Measured) -> Values:
 def opening(m: Measured) -> Values:
     """What the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
     scene, h = m.scene, m.hypotheses
-    rng = np.random.default_rng([scene.parent, scene.child, 11])
+    rng = np.random.default_rng(11)
     reach = 2.0 * scene.diagonal
     amounts = np.where(m.better == 0, 1.0, -1.0) * m.amounts()[:, _OPEN]
     starts, rays = _outward_rays(m.child.points[m.few], m.child.normals[m.few], 0.01 * m.unit, rng)
@@ -554,7 +558,7 @@ def _outward_rays(
     return starts.reshape(-1, 3), directions.reshape(-1, 3)
 
 
-def _blocked(m: Measured, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float) -> FloatArray:
+def _blocked(m: Measured, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float) -> BoolArray:
     """Whether rays from starts through ends (c, n, 3 each) meet any of the parts within `reach` [m], shape (c, n)."""
     result = np.zeros(starts.shape[:2], dtype=bool)
     flat, steps = starts.reshape(-1, 3), (ends - starts).reshape(-1, 3) * reach
@@ -594,6 +598,12 @@ def neighbours(m: Measured) -> Values:
         "twin_thin": np.full(count, abs(float(direction @ scene.frame.axes[scene.frame.thin]))),
         "twin_towards": -np.einsum("hk,k->h", m.arms, direction) / m.unit,
     }
+
+
+def measure(scene: JointScene, hypotheses: Hypotheses) -> Values:
+    """Everything that is measured of the hypotheses of an edge, (h,) each; NaN or absent where it does not apply."""
+    measured = Measured(scene, hypotheses)
+    return {name: value for group in GROUPS.values() for name, value in group(measured).items()}
 
 
 GROUPS: dict[str, Callable[[Measured], Values]] = {

@@ -1,0 +1,63 @@
+"""`kinematify fit`: the choice of joints, fitted anew and judged on what was left out."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.progress import progress_reporter
+
+
+@click.command(
+    "fit",
+    short_help="Fit the choice of joints, and judge it on what was left out.",
+    epilog=examples(
+        "kinematify fit -o fitted",
+        "kinematify fit models/everyday models/robots --rounds 8 --composed 400 -o fitted",
+        "kinematify fit --rounds 1 --composed 20 -o reduced",
+    ),
+)
+@click.argument("folders", nargs=-1, type=click.Path(path_type=Path))
+@click.option("-o", "--out", type=click.Path(path_type=Path), required=True, help="Folder of weights and tables.")
+@click.option("--rounds", type=click.IntRange(min=0), default=4, show_default=True, help="Objects of every family.")
+@click.option("--composed", type=click.IntRange(min=0), default=150, show_default=True, help="Random mechanisms.")
+@click.option("--seed", type=int, default=0, show_default=True, help="Draws the generated objects.")
+@click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
+@json_option
+def command(
+    *,
+    folders: tuple[Path, ...],
+    out: Path,
+    rounds: int,
+    composed: int,
+    seed: int,
+    jobs: int | None,
+    json_to: str | None,
+) -> None:
+    """Fit the choice of joints to generated objects and to the objects in FOLDERS.
+
+    Each object has a model.urdf and a source.json, as those of `kinematify bench`; those whose licence is for research
+    alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
+    To ship new weights, copy weights.npz into kinematify/joints/choice.
+    """
+    from kinematify.evaluation.fitting.run import as_markdown, run_fit
+
+    with progress_reporter() as progress:
+        report = run_fit(
+            folders,
+            out,
+            rounds=rounds,
+            composed=composed,
+            seed=seed,
+            workers=jobs or os.cpu_count() or 1,
+            cache=out / "measured",
+            progress=progress,
+        )
+    if json_to != "-":
+        click.echo(as_markdown(report))
+    if json_to is not None:
+        write_answer(report, json_to)

@@ -1,0 +1,148 @@
+"""What the choice is fitted to and judged on: families in ways of modelling, random mechanisms, and real objects."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import zlib
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.erase import erase
+from kinematify.assembly.part import Assembly
+from kinematify.config import load_config
+from kinematify.errors import InputError, KinematifyError
+from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
+from kinematify.generate.procedural.composed import compose
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.modelling import WAYS, remodelled
+from kinematify.generate.procedural.truth import ground_truth
+from kinematify.robot.read import read_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kinematify.assembly.truth import GroundTruth
+    from kinematify.evaluation.fitting.examples import Example
+
+FAMILY, COMPOSED, REAL = "family", "composed", "real"
+_RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
+"""Words of licences under which an object judges and never enters weights that ship."""
+_MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
+_AJAR = 0.25  # of the generated objects
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """One object to measure; small and picklable."""
+
+    origin: str
+    """FAMILY, COMPOSED, or the name of the folder of real objects."""
+    name: str
+    number: int = 0
+    """Of a generated object."""
+    folder: Path | None = None
+    """Of a real one, with its ``model.urdf`` and ``source.json``."""
+
+
+def generated_sources(rounds: int, composed: int) -> list[Source]:
+    """`rounds` objects of every family, each in another way of modelling, and `composed` random mechanisms."""
+    families = [Source(origin=FAMILY, name=name, number=n) for n in range(rounds) for name in sorted(FAMILIES)]
+    return families + [Source(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
+
+
+def real_sources(folder: Path) -> list[Source]:
+    """Every object of a folder of objects, or of a folder of such folders.
+
+    Raises:
+        InputError: There is none.
+    """
+    found = [
+        Source(origin=path.parent.parent.name, name=path.parent.name, folder=path.parent)
+        for path in sorted([*folder.glob("*/model.urdf"), *folder.glob("*/*/model.urdf")])
+    ]
+    if not found:
+        raise InputError(f"{folder} holds no object: a folder with a model.urdf and a source.json. Give one that does.")
+    return found
+
+
+def gather_examples(
+    sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
+) -> list[Example]:
+    """Measure objects, or read what an earlier run has measured of them.
+
+    Args:
+        sources: The objects.
+        cache: Folder with one file per object that was measured.
+        seed: Draws the generated objects.
+        workers: Processes at a time.
+        progress: Told the object and the share done.
+    """
+    cache.mkdir(parents=True, exist_ok=True)
+    paths = [cache / f"{_key(source, seed)}.npz" for source in sources]
+    missing = [(source, path) for source, path in zip(sources, paths, strict=True) if not path.exists()]
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        running = {pool.submit(_measure, source, path, seed): source for source, path in missing}
+        for done, future in enumerate(as_completed(running), start=len(sources) - len(missing) + 1):
+            future.result()
+            progress(running[future].name, done / len(sources))
+    return [example for path in paths for example in read_examples(path)]
+
+
+def _key(source: Source, seed: int) -> str:
+    """Hash of what the measurements depend on, but not of the code: an emptied folder measures anew."""
+    files = [] if source.folder is None else sorted(source.folder.rglob("*.*"))
+    sizes = [(path.name, path.stat().st_size) for path in files]
+    facts = asdict(source) | {"folder": None}
+    return content_key(facts, sizes, seed, load_config().joints.model_dump(mode="json"))
+
+
+def _measure(source: Source, path: Path, seed: int) -> None:
+    """Measure one object; one that cannot be built or read gives no example."""
+    try:
+        parts, truth, category, fits = _opened(source, seed)
+    except (KinematifyError, ValueError):
+        write_examples(path, [])
+        return
+    assembly = Assembly(
+        parts=parts.parts, source=f"{source.name}_{source.number}" if source.folder is None else source.name
+    )
+    found = examples_of(assembly, truth, load_config(), category=category, origin=source.origin, fits=fits)
+    write_examples(path, found)
+
+
+def _opened(source: Source, seed: int) -> tuple[Assembly, GroundTruth, str, bool]:
+    if source.folder is None:
+        return _generated(source, seed)
+    facts = json.loads((source.folder / "source.json").read_text(encoding="utf-8"))
+    erased = erase(read_robot(source.folder / "model.urdf", geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
+    licence = str(facts.get("license", "research")).lower()
+    fits = not any(word in licence for word in _RESEARCH)
+    return erased.assembly, erased.truth, str(facts.get("category", "unknown")), fits
+
+
+def _generated(source: Source, seed: int) -> tuple[Assembly, GroundTruth, str, bool]:
+    number = seed + source.number
+    ways = list(WAYS)
+    if source.origin == COMPOSED:
+        rng = np.random.default_rng(number)
+        blueprint = compose(number)
+        way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
+    else:
+        rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
+        ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
+        drawn = int(rng.integers(2**31))
+        blueprint = build(FAMILIES[source.name], {"open": ajar}, seed=drawn, name=source.name)
+        way = ways[(number + zlib.crc32(source.name.encode())) % len(ways)]
+    if len(blueprint.joints) > _MOST_JOINTS:
+        raise ValueError(f"{source.name} has {len(blueprint.joints)} joints, more than {_MOST_JOINTS}.")
+    blueprint = remodelled(blueprint, way, rng=rng)
+    # Random mechanisms have nothing in common: each is a category of its own.
+    category = f"{source.name} {number}" if source.origin == COMPOSED else source.name
+    return blueprint.assembly, ground_truth(blueprint), category, True

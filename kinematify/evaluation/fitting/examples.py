@@ -1,0 +1,200 @@
+"""Examples for the fit: every hypothesis of every true edge of an object, measured, and how right each one is."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.contact.build import build_contact_graph
+from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.candidate import JointType
+from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.choice.judge import hypotheses_of, rule_scores
+from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
+from kinematify.joints.measure.scene import part_frames
+from kinematify.joints.measure.workspace import PartCache
+from kinematify.topology.tree import KinematicTree
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from kinematify.assembly.part import Assembly
+    from kinematify.assembly.truth import GroundTruth, TrueJoint
+    from kinematify.config import Config
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+_ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
+_DISTANCE = 0.05  # of the child's diagonal, the same for a line
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Example:
+    """One true edge."""
+
+    object: str
+    category: str
+    origin: str
+    """Of which corpus the object is."""
+    fits: bool
+    """It may enter weights that ship; objects whose licence is for research alone judge."""
+    hypotheses: Hypotheses
+    size: float
+    """Diagonal of the child [m]."""
+    measured: Mapping[str, FloatArray]
+    """Shape (h,) each."""
+    right: FloatArray
+    """How right each hypothesis is, in [0, 1], shape (h,)."""
+    angles: FloatArray
+    """Between each axis and that of the true joint which it fits best [deg]; 90 for fixed, shape (h,)."""
+    types_right: IntArray
+    """1 where the type is that of this joint, shape (h,)."""
+    by_cues: int
+    """Position of what the weighted cues alone would choose."""
+
+    @property
+    def kinds(self) -> IntArray:
+        """FIXED, TURN or SLIDE, shape (h,)."""
+        return self.hypotheses.kinds
+
+    @property
+    def target(self) -> FloatArray:
+        """Probabilities that the scorer should give, sum 1, shape (h,)."""
+        return self.right / max(float(self.right.sum()), 1e-12)
+
+
+def examples_of(
+    assembly: Assembly, truth: GroundTruth, config: Config, *, category: str, origin: str, fits: bool
+) -> list[Example]:
+    """Measure all hypotheses of the edges of the true tree of an object.
+
+    Args:
+        assembly: The parts, in the order of the truth.
+        truth: Exact joints, world frame.
+        config: Of the inference.
+        category: Of the object.
+        origin: Of which corpus it is.
+        fits: See `Example`.
+    """
+    surfaces = part_surfaces(assembly, config=config.surface)
+    graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
+    bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
+    tree = KinematicTree(parents=tuple(truth.parents))
+    cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
+    frames = part_frames(cache, tree, config.joints)
+    found = []
+    for edge in tree.edges():
+        joints = [joint for joint in truth.joints if (joint.parent, joint.child) == edge]
+        if not joints:
+            continue
+        bearing = bearings.get((min(edge), max(edge)))
+        weighed = weigh_joints(cache, tree, frames, edge, bearing, config=config.joints)
+        hypotheses = hypotheses_of(weighed)
+        size = weighed.scene.frame.diagonal
+        near = cache.samples(edge[1]).points.mean(axis=0)
+        judged = [_rightness(hypotheses, joint, near, size) for joint in joints]
+        best = np.argmax([right + 1e-3 * same for right, _, same in judged], axis=0)
+        rows = np.arange(len(hypotheses))
+        right, angles, same = (np.array([item[k] for item in judged])[best, rows] for k in range(3))
+        slides = weighed.decision.kind is JointType.PRISMATIC
+        stuck = weighed.decision.kind is JointType.FIXED
+        found.append(
+            Example(
+                object=assembly.source,
+                category=category,
+                origin=origin,
+                fits=fits,
+                hypotheses=hypotheses,
+                size=size,
+                measured={**measure(weighed.scene, hypotheses), **rule_scores(weighed)},
+                right=right,
+                angles=angles,
+                types_right=same.astype(np.int64),
+                by_cues=0 if stuck else 1 + (len(weighed.turns.scores) if slides else 0),
+            )
+        )
+    return found
+
+
+def _rightness(
+    h: Hypotheses, joint: TrueJoint, near: FloatArray, size: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """How right each hypothesis is, its angle to the true axis [deg], and 1 where the type is right, (h,) each."""
+    kind = TURN if joint.kind.turns else SLIDE if joint.kind is JointType.PRISMATIC else FIXED
+    same = (h.kinds == kind).astype(np.float64)
+    if kind == FIXED:
+        return same, np.where(h.kinds == FIXED, 0.0, 90.0), same
+    angles = np.degrees(np.arccos(np.clip(np.abs(h.axes @ joint.axis), 0.0, 1.0)))
+    right = same * np.exp(-((angles / _ANGLE) ** 2))
+    if kind == TURN:
+        foot = joint.pivot + joint.axis * float((near - joint.pivot) @ joint.axis)
+        apart = np.linalg.norm(np.cross(foot - h.pivots, h.axes), axis=1) / size
+        # The far term says which line is nearer where none is near.
+        right = right * (np.exp(-((apart / _DISTANCE) ** 2)) + 1e-3 * np.exp(-((apart / 0.3) ** 2)))
+    return right, angles, same
+
+
+# ---- files ---------------------------------------------------------------------------------------------------------
+
+
+def write_examples(path: Path, examples: Sequence[Example]) -> None:
+    """Write the examples of one object; the file appears whole or not at all."""
+    arrays: dict[str, Any] = {}
+    facts: list[dict[str, Any]] = []
+    for k, example in enumerate(examples):
+        names = sorted(example.measured)
+        arrays[f"values_{k}"] = np.array([example.measured[name] for name in names], dtype=np.float32)
+        labels = (example.kinds, example.right, example.angles, example.types_right)
+        arrays[f"labels_{k}"] = np.column_stack([*labels, example.hypotheses.axes, example.hypotheses.pivots])
+        facts.append(
+            {
+                "object": example.object,
+                "category": example.category,
+                "origin": example.origin,
+                "fits": example.fits,
+                "by_cues": example.by_cues,
+                "size": example.size,
+                "sources": example.hypotheses.sources,
+                "names": names,
+            }
+        )
+    aside = path.with_suffix(".part.npz")
+    np.savez_compressed(aside, facts=json.dumps(facts), **arrays)
+    aside.replace(path)
+
+
+def read_examples(path: Path) -> list[Example]:
+    """Read what `write_examples` wrote."""
+    found = []
+    with np.load(path) as stored:
+        for k, facts in enumerate(json.loads(str(stored["facts"]))):
+            table = stored[f"labels_{k}"]
+            kinds, right, angles, same = table[:, :4].T
+            hypotheses = Hypotheses(
+                kinds=kinds.astype(np.int64),
+                axes=table[:, 4:7],
+                pivots=table[:, 7:],
+                sources=tuple(facts.pop("sources")),
+            )
+            measured = dict(zip(facts.pop("names"), stored[f"values_{k}"], strict=True))
+            found.append(
+                Example(
+                    **facts,
+                    hypotheses=hypotheses,
+                    right=right,
+                    angles=angles,
+                    types_right=same.astype(np.int64),
+                    measured=measured,
+                )
+            )
+    return found
+
+
+def content_key(*facts: object) -> str:
+    """Name of a file of examples: equal only where nothing has changed that they depend on."""
+    return hashlib.sha256(json.dumps(facts, sort_keys=True, default=str).encode()).hexdigest()[:20]

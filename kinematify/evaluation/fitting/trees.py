@@ -1,0 +1,174 @@
+"""The fit itself: gradient-boosted trees with a listwise objective, written as arrays that need no LightGBM."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from kinematify.errors import EnvironmentFault, InputError
+from kinematify.joints.choice.scorer import FORMAT, Scorer, base_columns, stacked
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from kinematify.evaluation.fitting.examples import Example
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+_PARAMETERS = {
+    "learning_rate": 0.08,
+    "num_leaves": 10,
+    "min_data_in_leaf": 30,
+    "min_sum_hessian_in_leaf": 0.5,
+    "lambda_l2": 5.0,
+    "feature_fraction": 0.25,
+    "bagging_fraction": 0.7,
+    "bagging_freq": 1,
+    "max_bin": 63,
+    "num_threads": 1,
+    "deterministic": True,
+    "verbosity": -1,
+}
+_ROUNDS = 130
+_SHARE = {"family": 0.2, "composed": 0.02}
+"""Weight of an example of such an origin beside one of a real object."""
+
+
+def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
+    """Fit the scorer to examples; trees of several seeds are averaged.
+
+    Raises:
+        InputError: There is nothing to fit to.
+        EnvironmentFault: LightGBM is not installed.
+    """
+    usable = [example for example in examples if example.right.sum() > 1e-3]
+    if not usable:
+        raise InputError(
+            "There is no joint to fit to, or none is left where a category is left out. Give more objects: folders of "
+            "objects whose licence allows it, --rounds or --composed."
+        )
+    names = tuple(sorted({name for example in usable for name in example.measured}))
+    columns = np.concatenate([stacked(example.kinds, example.measured, names) for example in usable])
+    starts = np.cumsum([0, *(len(example.kinds) for example in usable)])
+    target = np.concatenate([example.target for example in usable])
+    weights = _weights(usable)[np.repeat(np.arange(len(usable)), np.diff(starts))]
+    begun = np.concatenate([base_columns(example.kinds, example.measured) for example in usable])
+    base = _fit_base(begun, starts, target, weights)
+    boosters = [_boost(columns, begun @ base, starts, target, weights, seed=seed) for seed in seeds]
+    return Scorer(measurements=names, base=base, temperature=1.0, provenance=dict(provenance), **_arrays(boosters))
+
+
+def write_scorer(scorer: Scorer, path: Path) -> None:
+    """Write the file that `scorer.shipped_scorer` reads."""
+    facts = {
+        "format": FORMAT,
+        "measurements": scorer.measurements,
+        "temperature": scorer.temperature,
+        "provenance": scorer.provenance,
+    }
+    arrays = {name: getattr(scorer, name) for name in (*_DTYPES, "base")}
+    np.savez_compressed(path, facts=json.dumps(facts), **arrays)
+
+
+def _weights(examples: Sequence[Example]) -> FloatArray:
+    """So that neither an object with many joints nor a category with many objects dominates, shape (n,)."""
+    of_object = Counter((example.origin, example.object) for example in examples)
+    of_category = Counter((example.origin, example.category) for example in examples)
+    weights = np.array(
+        [
+            _SHARE.get(example.origin, 1.0)
+            * of_object[example.origin, example.object] ** -0.5
+            * of_category[example.origin, example.category] ** -0.25
+            for example in examples
+        ]
+    )
+    return np.asarray(weights / weights.mean())
+
+
+def _likelihood(scores: FloatArray, starts: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Probability within each edge, and its logarithm, shape (rows,) each."""
+    edge = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    shifted = scores - np.maximum.reduceat(scores, starts[:-1])[edge]
+    logs = shifted - np.log(np.add.reduceat(np.exp(shifted), starts[:-1]))[edge]
+    return np.exp(logs), logs
+
+
+def _fit_base(begun: FloatArray, starts: IntArray, target: FloatArray, weights: FloatArray) -> FloatArray:
+    """How much the weighted cues are to be believed before any tree, shape (3,)."""
+
+    def loss(coefficients: FloatArray) -> tuple[float, FloatArray]:
+        likely, logs = _likelihood(begun @ coefficients, starts)
+        slope = -(begun * (weights * (target - likely))[:, None]).sum(axis=0) + 0.02 * coefficients
+        return float(-(weights * target * logs).sum() + 0.01 * coefficients @ coefficients), slope
+
+    return np.asarray(minimize(loss, np.array([1.0, 0.5, -2.0]), jac=True).x)
+
+
+def _boost(
+    columns: NDArray[Any], begun: FloatArray, starts: IntArray, target: FloatArray, weights: FloatArray, *, seed: int
+) -> Any:
+    try:
+        import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
+    except ImportError as error:
+        raise EnvironmentFault(
+            "The fit needs LightGBM, which is not installed. Install it with: pip install 'kinematify[fit]'"
+        ) from error
+
+    def objective(scores: FloatArray, data: object) -> tuple[FloatArray, FloatArray]:
+        likely, _ = _likelihood(scores, starts)
+        return (likely - target) * weights, np.maximum(likely * (1.0 - likely), 1e-3) * weights
+
+    data = lightgbm.Dataset(
+        columns, label=target, init_score=begun, params={"max_bin": _PARAMETERS["max_bin"], "verbosity": -1}
+    )
+    return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, _ROUNDS)
+
+
+_DTYPES = {
+    "feature": np.int16,
+    "threshold": np.float64,
+    "missing_left": np.uint8,
+    "left": np.uint8,
+    "right": np.uint8,
+    "value": np.float32,
+}
+
+
+def _arrays(boosters: Sequence[Any]) -> dict[str, NDArray[Any]]:
+    """Every tree as rows of nodes; the average of the boosters is the sum of trees with a share of their values."""
+    trees = [
+        _nodes(tree["tree_structure"], 1.0 / len(boosters))
+        for booster in boosters
+        for tree in booster.dump_model()["tree_info"]
+    ]
+    table = np.zeros((len(_DTYPES), len(trees), max(len(tree) for tree in trees)))
+    table[0] = -1
+    for k, tree in enumerate(trees):
+        table[:, k, : len(tree)] = np.array(tree).T
+    return {name: rows.astype(dtype) for (name, dtype), rows in zip(_DTYPES.items(), table, strict=True)}
+
+
+def _nodes(root: Mapping[str, Any], share: float) -> list[tuple[float, ...]]:
+    found: list[tuple[float, ...]] = []
+
+    def visit(node: Mapping[str, Any]) -> int:
+        place = len(found)
+        found.append(())
+        if "split_feature" not in node:
+            found[place] = (-1, 0.0, 0, 0, 0, share * node["leaf_value"])
+            return place
+        left, right = visit(node["left_child"]), visit(node["right_child"])
+        # Where no value was missing in the fit, LightGBM takes a missing one for zero.
+        known = node["missing_type"] != "NaN"
+        missing_left = node["threshold"] >= 0.0 if known else node["default_left"]
+        found[place] = (node["split_feature"], node["threshold"], int(missing_left), left, right, 0.0)
+        return place
+
+    visit(root)
+    return found

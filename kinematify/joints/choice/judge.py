@@ -1,0 +1,180 @@
+"""Which of the proposed joints of an edge is the right one: probabilities, the best one, and what else it may be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.joints.candidate import JointCandidate, JointType
+from kinematify.joints.choice.scorer import shipped_scorer
+from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kinematify.joints.choice.weighed import WeighedJoints
+    from kinematify.joints.measure.measurements import Values
+    from kinematify.robot.arrays import FloatArray
+
+_SAME_COSINE = float(np.cos(np.radians(5.0)))
+_SAME_LINE = 0.02
+_ODDS = 8.0  # what cues say of the type counts no more than this
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judgement:
+    """The hypotheses of one edge with their probabilities."""
+
+    hypotheses: Hypotheses
+    likely: FloatArray
+    """Sum 1, shape (h,)."""
+    by_cues: int
+    """Position of what the weighted cues alone would choose."""
+    support: FloatArray
+    """What the weighted cues say of each hypothesis among those of its type, shape (h,); NaN for fixed."""
+    size: float
+    """Diagonal of the child [m]."""
+    lead: float
+    """Log odds that what cues would choose keeps."""
+
+    @cached_property
+    def believed(self) -> FloatArray:
+        """Probabilities after the lead that what cues would choose has, shape (h,).
+
+        On what neither has seen, cues are right more often where the fit is not clearly surer (`results/choice.md`).
+        """
+        led = self.likely * np.exp(self.lead * self._same[self.by_cues])
+        return np.asarray(led / led.sum())
+
+    @cached_property
+    def scores(self) -> FloatArray:
+        """Log probability of each hypothesis with all that say the same, shape (h,); -inf for fixed.
+
+        The lead is in the choice alone: what it puts first stands level with the likeliest, so that votes and
+        simulations are not weighed against it twice.
+        """
+        moving = self.hypotheses.kinds != FIXED
+        found = np.where(moving, np.log(np.maximum(self._same @ self.likely, 1e-12)), -np.inf)
+        return np.where(self._same[self.best], found.max(), found)
+
+    @cached_property
+    def best(self) -> int:
+        """Position of the chosen hypothesis.
+
+        Among those that say the same it is the one that cues rank first: a bearing is exact, and an edge of the box
+        beside it is not.
+        """
+        moving = self.hypotheses.kinds != FIXED
+        first = int(np.argmax(np.where(moving, self._same @ self.believed, -1.0)))
+        return int(np.argmax(np.where(self._same[first], self.support, -np.inf)))
+
+    @cached_property
+    def _same(self) -> NDArray[np.bool_]:
+        """Which say the same: type, direction to 5 deg, and line to a fiftieth of the part, shape (h, h)."""
+        h = self.hypotheses
+        apart = np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2)
+        near = (apart < _SAME_LINE * self.size) | (h.kinds == SLIDE)[:, None]
+        return np.asarray(self._agree & near & near.T)
+
+    @cached_property
+    def _agree(self) -> NDArray[np.bool_]:
+        """Which agree in type and, to 5 deg, in direction, shape (h, h)."""
+        h = self.hypotheses
+        return np.asarray((h.kinds[:, None] == h.kinds) & (np.abs(h.axes @ h.axes.T) > _SAME_COSINE))
+
+    def kind(self, index: int) -> JointType:
+        """Type of a hypothesis."""
+        return JointType.PRISMATIC if self.hypotheses.kinds[index] == SLIDE else JointType.REVOLUTE
+
+    @property
+    def confidence(self) -> float:
+        """How likely type and direction are right: of all hypotheses that agree with the best one in both."""
+        return float(min(self.believed[self._agree[self.best]].sum(), 1.0))
+
+    @property
+    def odds_prismatic(self) -> float:
+        """Log odds of sliding against turning."""
+        slide, turn = (float(self.believed[self.hypotheses.kinds == kind].sum()) for kind in (SLIDE, TURN))
+        return float(np.log(max(slide, 1e-9) / max(turn, 1e-9)))
+
+    def alternatives(self, count: int) -> tuple[JointCandidate, ...]:
+        """The hypotheses that say different things, best first, `count` of either type at most."""
+        h = self.hypotheses
+        kept = [self.best]
+        for i in np.argsort(-self.scores, kind="stable"):
+            few = sum(h.kinds[k] == h.kinds[i] for k in kept) < count
+            if h.kinds[i] != FIXED and few and not self._same[i, kept].any():
+                kept.append(int(i))
+        return tuple(
+            JointCandidate(
+                kind=self.kind(i),
+                axis=h.axes[i],
+                pivot=h.pivots[i],
+                score=float(self.scores[i]),
+                source=h.sources[i],
+                evidence={"probability": float(self.believed[i])},
+            )
+            for i in kept
+        )
+
+
+def judge(weighed: WeighedJoints, *, lead: float) -> Judgement:
+    """Measure every proposed joint of an edge and score them together; what cues would choose has a lead [log odds]."""
+    hypotheses = hypotheses_of(weighed)
+    measured = {**measure(weighed.scene, hypotheses), **rule_scores(weighed)}
+    slides = weighed.decision.kind is JointType.PRISMATIC
+    return Judgement(
+        hypotheses=hypotheses,
+        likely=shipped_scorer().probabilities(hypotheses.kinds, measured),
+        by_cues=1 + (len(weighed.turns.scores) if slides else 0),
+        support=measured["rules_score"],
+        size=weighed.scene.frame.diagonal,
+        lead=lead,
+    )
+
+
+def hypotheses_of(weighed: WeighedJoints) -> Hypotheses:
+    """Fixed, every turn and every slide, in this order."""
+    scene, lines, slides = weighed.scene, weighed.turns.lines, weighed.slides
+    anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
+    return Hypotheses(
+        kinds=np.array([FIXED] + [TURN] * len(lines.axes) + [SLIDE] * len(slides.axes)),
+        axes=np.concatenate([np.zeros((1, 3)), lines.axes, slides.axes]),
+        pivots=np.concatenate([anchor[None], lines.pivots, np.tile(anchor, (len(slides.axes), 1))]),
+        sources=("fixed", *lines.sources, *slides.sources),
+    )
+
+
+def rule_scores(weighed: WeighedJoints) -> Values:
+    """The cues and what their weighted sums say, as measurements like others; NaN where they do not apply, (h,)."""
+    scene, turns, slides, decision = weighed.scene, weighed.turns, weighed.slides, weighed.decision
+    n, m = len(turns.scores), len(slides.scores)
+    odds = float(np.clip(decision.odds, -_ODDS, _ODDS))
+
+    def of_turns(value: FloatArray) -> FloatArray:
+        return np.concatenate([[np.nan], value, np.full(m, np.nan)])
+
+    def of_slides(value: FloatArray) -> FloatArray:
+        return np.concatenate([np.full(1 + n, np.nan), value])
+
+    facts = {
+        **{f"type_{name}": value for name, value in decision.cues.items()},
+        "has_bearing": float(scene.has_bearing),
+        "mechanism": scene.mechanism,
+        "smallness": scene.smallness,
+        "stuck": float(decision.kind is JointType.FIXED),
+    }
+    return {
+        "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
+        "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),
+        "turn_room": of_turns(turns.free.max(axis=1)),
+        "turn_room_parent": of_turns(turns.free_parent.max(axis=1)),
+        "slide_room": of_slides(slides.free.max(axis=1)),
+        "slide_room_parent": of_slides(slides.free_parent.max(axis=1)),
+        **{f"turn_{name}": of_turns(value) for name, value in turns.cues.items()},
+        **{f"slide_{name}": of_slides(value) for name, value in slides.cues.items()},
+        **{name: np.full(1 + n + m, float(value)) for name, value in facts.items()},
+    }

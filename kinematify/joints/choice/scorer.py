@@ -1,0 +1,162 @@
+"""The fitted choice: one score for every hypothesis of an edge, from what is measured of it.
+
+Gradient-boosted trees (Friedman 2001) that were fitted listwise: with scores s_i of the hypotheses of an edge, the
+probability of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the likelihood of the right ones. So
+type, line and confidence come out at once. Evaluated in numpy; what fitted them is not needed.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.errors import EnvironmentFault
+from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+WEIGHTS = "weights.npz"
+_ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
+FORMAT = 1
+"""Raised where the meaning of the file changes."""
+
+SUMMARIES = (
+    "enter_parent_1",
+    "enter_parent_2",
+    "enter_others_2",
+    "enter_back_2",
+    "stop_parent_2",
+    "kept_large",
+    "kept_small",
+    "slip_contact",
+    "slip_parent_contact",
+    "slip_child",
+    "bearing_score",
+    "contact_radius",
+    "uncovers",
+    "gap_large",
+)
+"""Measurements of which every hypothesis is also told the best and worst among all turns and among all slides."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scorer:
+    """Trees in arrays, with the names of what they read."""
+
+    measurements: tuple[str, ...]
+    """Names of the measurements, in the order of the columns."""
+    base: FloatArray
+    """Coefficients of `rules_score`, `rules_odds` and of being fixed, shape (3,)."""
+    feature: IntArray
+    """Column that each node asks for, -1 in leaves, shape (trees, nodes)."""
+    threshold: FloatArray
+    """Values up to this go left, shape (trees, nodes)."""
+    missing_left: IntArray
+    """1 where a missing value goes left, shape (trees, nodes)."""
+    left: IntArray
+    right: IntArray
+    value: FloatArray
+    """Of leaves, shape (trees, nodes)."""
+    temperature: float
+    """Scores are divided by it, so that probabilities hold on what was left out."""
+    provenance: Mapping[str, Any]
+
+    def probabilities(self, kinds: IntArray, measured: Mapping[str, FloatArray]) -> FloatArray:
+        """How likely each hypothesis of an edge is the right one.
+
+        Args:
+            kinds: FIXED, TURN or SLIDE, shape (h,).
+            measured: Name -> values, shape (h,) each; NaN or absent where a measurement does not apply.
+
+        Returns:
+            Shape (h,), sum 1.
+        """
+        columns = stacked(kinds, measured, self.measurements)
+        scores = (base_columns(kinds, measured) @ self.base + self._trees(columns)) / self.temperature
+        likely = np.exp(scores - scores.max())
+        return np.asarray(likely / likely.sum())
+
+    def _trees(self, columns: NDArray[Any]) -> FloatArray:
+        trees = np.arange(len(self.feature))[None]
+        node = np.zeros((len(columns), len(self.feature)), dtype=np.int64)
+        rows = np.arange(len(columns))[:, None]
+        while True:
+            feature = self.feature[trees, node]
+            inner = feature >= 0
+            if not inner.any():
+                return np.asarray(self.value[trees, node].sum(axis=1))
+            asked = columns[rows, np.maximum(feature, 0)]
+            left = np.where(np.isnan(asked), self.missing_left[trees, node] > 0, asked <= self.threshold[trees, node])
+            following = np.where(left, self.left[trees, node], self.right[trees, node])
+            node = np.where(inner, following, node)
+
+
+def base_columns(kinds: IntArray, measured: Mapping[str, FloatArray]) -> FloatArray:
+    """What the trees start from: the score within the kind, the odds of the kind, and being fixed, shape (h, 3)."""
+    score = np.nan_to_num(np.clip(measured["rules_score"], -6.0, 0.0))
+    return np.stack([score, np.clip(measured["rules_odds"], -6.0, 6.0), kinds == FIXED], axis=1)
+
+
+def stacked(kinds: IntArray, measured: Mapping[str, FloatArray], names: tuple[str, ...]) -> NDArray[Any]:
+    """Columns that the trees read: kinds, measurements, each of them beside its rivals, and the summaries, (h, f)."""
+    missing = np.full(len(kinds), np.nan)
+    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
+    values: NDArray[Any] = np.stack([measured.get(name, missing) for name in names], axis=1).astype(np.float32)
+    values[~np.isfinite(values)] = np.nan
+    beside = np.full_like(values, np.nan)
+    summaries = []
+    chosen = [names.index(name) for name in SUMMARIES]
+    for kind in (TURN, SLIDE):
+        rows = np.flatnonzero(kinds == kind)
+        known = values[rows]
+        low, high = _extreme(known, np.fmin), _extreme(known, np.fmax)
+        beside[rows] = (known - low) / np.maximum(high - low, np.float32(1e-6))
+        summaries += [np.stack([high[chosen], low[chosen]], axis=1).reshape(-1)]
+    every = np.broadcast_to(np.concatenate(summaries), (len(kinds), 4 * len(SUMMARIES)))
+    kind_columns = np.stack([kinds == kind for kind in (FIXED, TURN, SLIDE)], axis=1).astype(np.float32)
+    return np.concatenate([kind_columns, values, beside, every], axis=1)
+
+
+def _extreme(values: NDArray[Any], pick: np.ufunc) -> NDArray[Any]:
+    """Smallest or largest known value of each column; missing where none is known."""
+    if len(values) == 0:
+        return np.full(values.shape[1], np.nan, dtype=np.float32)
+    return np.asarray(pick.reduce(values, axis=0))
+
+
+@cache
+def shipped_scorer() -> Scorer:
+    """The scorer that comes with the package.
+
+    Raises:
+        EnvironmentFault: Its file is missing, damaged or of another version.
+    """
+    path = files("kinematify.joints.choice") / WEIGHTS
+    remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
+    try:
+        with path.open("rb") as file, np.load(file) as stored:
+            facts = json.loads(str(stored["facts"]))
+            arrays = {name: stored[name] for name in _ARRAYS}
+    except (OSError, ValueError, KeyError) as error:
+        raise EnvironmentFault(f"The weights of the choice of joints ({WEIGHTS}) cannot be read. {remedy}") from error
+    if facts.get("format") != FORMAT:
+        raise EnvironmentFault(
+            f"The weights of the choice of joints ({WEIGHTS}) have format {facts.get('format')}; this version of "
+            f"kinematify reads format {FORMAT}. {remedy}"
+        )
+    return Scorer(
+        measurements=tuple(facts["measurements"]),
+        temperature=float(facts["temperature"]),
+        provenance=facts["provenance"],
+        **arrays,
+    )

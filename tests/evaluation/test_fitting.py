@@ -1,0 +1,41 @@
+"""The fit of the choice: examples, trees and tables, on a few random mechanisms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from kinematify.evaluation.fitting.corpora import gather_examples, generated_sources
+from kinematify.evaluation.fitting.run import run_fit
+from kinematify.joints.choice.scorer import WEIGHTS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def silent(what: str, share: float) -> None:
+    """No progress."""
+
+
+def test_examples_know_which_hypothesis_is_right_and_are_measured_once(tmp_path: Path) -> None:
+    sources = generated_sources(0, 2)
+    first = gather_examples(sources, tmp_path, seed=0, workers=1, progress=silent)
+    written = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    second = gather_examples(sources, tmp_path, seed=0, workers=1, progress=silent)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == written
+    for a, b in zip(first, second, strict=True):
+        best = int(np.argmax(a.right))
+        assert a.types_right[best]
+        assert a.angles[best] < 5.0
+        assert a.target.sum() == pytest.approx(1.0)
+        np.testing.assert_array_equal(a.right, b.right)
+
+
+def test_a_small_fit_writes_weights_and_tables(tmp_path: Path) -> None:
+    pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
+    report = run_fit([], tmp_path, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", progress=silent)
+    assert (tmp_path / WEIGHTS).stat().st_size > 0
+    assert set(report["sets"]) == {"random mechanisms"}
+    assert "left out" in (tmp_path / "choice.md").read_text()

@@ -1,0 +1,85 @@
+"""The fitted scorer: probabilities of the hypotheses of an edge, and what is said of weights that cannot be used."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from kinematify.errors import EnvironmentFault
+from kinematify.joints.choice import scorer as scorer_module
+from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.choice.judge import hypotheses_of, judge, rule_scores
+from kinematify.joints.choice.scorer import shipped_scorer
+from kinematify.joints.measure.measurements import measure
+from kinematify.joints.measure.scene import part_frames
+from kinematify.joints.measure.workspace import PartCache
+from tests.joints.joint_scenes import CONFIG, evidence
+from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.joints.choice.weighed import WeighedJoints
+
+
+def weighed_joints(name: str) -> WeighedJoints:
+    """The first edge of a known object."""
+    known = BUILDERS[name]()
+    tree, graph, bearings = evidence(known)
+    cache = PartCache(known.assembly, graph, samples=CONFIG.joints.samples, seed=0)
+    frames = part_frames(cache, tree, CONFIG.joints)
+    edge = next(iter(tree.edges()))
+    return weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
+
+
+def test_probabilities_follow_the_hypotheses_in_any_order() -> None:
+    weighed = weighed_joints("drawer")
+    hypotheses = hypotheses_of(weighed)
+    measured = {**measure(weighed.scene, hypotheses), **rule_scores(weighed)}
+    likely = shipped_scorer().probabilities(hypotheses.kinds, measured)
+    assert likely.sum() == pytest.approx(1.0)
+    order = np.random.default_rng(0).permutation(len(likely))
+    shuffled = {name: value[order] for name, value in measured.items()}
+    np.testing.assert_allclose(shipped_scorer().probabilities(hypotheses.kinds[order], shuffled), likely[order])
+
+
+def test_what_is_not_finite_counts_as_not_known() -> None:
+    weighed = weighed_joints("drawer")
+    hypotheses = hypotheses_of(weighed)
+    measured = {**measure(weighed.scene, hypotheses), **rule_scores(weighed)}
+    broken = {**measured, "slip_contact": np.full(len(hypotheses), np.inf)}
+    missing = {name: value for name, value in measured.items() if name != "slip_contact"}
+    scorer = shipped_scorer()
+    found = scorer.probabilities(hypotheses.kinds, broken)
+    assert np.isfinite(found).all()
+    np.testing.assert_array_equal(found, scorer.probabilities(hypotheses.kinds, missing))
+
+
+def test_the_measurements_are_those_that_were_fitted() -> None:
+    weighed = weighed_joints("edge_door")
+    measured = {**measure(weighed.scene, hypotheses_of(weighed)), **rule_scores(weighed)}
+    assert set(measured) <= set(shipped_scorer().measurements)
+
+
+def test_the_choice_is_the_first_alternative() -> None:
+    judged = judge(weighed_joints("edge_door"), lead=CONFIG.joints.confidence.cues_lead)
+    first = judged.alternatives(CONFIG.joints.alternatives)[0]
+    np.testing.assert_array_equal(first.axis, judged.hypotheses.axes[judged.best])
+    assert 0.0 < judged.confidence <= 1.0
+
+
+@pytest.mark.parametrize("fault", ["missing", "damaged", "format"])
+def test_weights_that_cannot_be_used_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str) -> None:
+    path = tmp_path / scorer_module.WEIGHTS
+    if fault == "damaged":
+        path.write_bytes(b"PK no archive")
+    if fault == "format":
+        shipped = np.load(scorer_module.files("kinematify.joints.choice") / scorer_module.WEIGHTS)
+        facts = json.loads(str(shipped["facts"])) | {"format": 0}
+        np.savez(path, **{**{name: shipped[name] for name in shipped.files}, "facts": json.dumps(facts)})
+    monkeypatch.setattr(scorer_module, "files", lambda package: tmp_path)
+    with pytest.raises(EnvironmentFault, match="kinematify fit"):
+        shipped_scorer.__wrapped__()
