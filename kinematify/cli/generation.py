@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from kinematify.cli.progress import Reporter
     from kinematify.evaluation.metrics import ObjectScore
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.procedural.request import Request
     from kinematify.pipeline import Inference
     from kinematify.validation.report import ValidationReport

@@ -10,7 +10,7 @@ from kinematify.generate.procedural.truth import ground_truth
 
 if TYPE_CHECKING:
     from kinematify.evaluation.metrics import ObjectScore
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.pipeline import Inference
 
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.pipeline import Inference
     from kinematify.validation.finding import Finding
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
 

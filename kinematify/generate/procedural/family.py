@@ -18,7 +18,7 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
 
 Value = float | int | str
 

@@ -14,7 +14,7 @@ from kinematify.generate.procedural.language.understand import understand
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family, Value
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.assembly.truth import GroundTruth, TrueJoint
 
 if TYPE_CHECKING:
-    from kinematify.generate.procedural.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint
 
 
 def ground_truth(blueprint: Blueprint) -> GroundTruth:

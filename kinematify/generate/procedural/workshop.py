@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
-from kinematify.generate.procedural.blueprint import Blueprint, BlueprintJoint
+from kinematify.generate.blueprint import Blueprint, BlueprintJoint
 from kinematify.generate.procedural.materials import MATERIALS, color_of
 from kinematify.generate.procedural.solids import union
 from kinematify.generate.procedural.styles import styled

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.blueprint import Blueprint
+from kinematify.generate.blueprint import Blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.understand import understand
