@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Mimic
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +38,8 @@ class BlueprintJoint:
     """[rad or m]; +inf for continuous."""
     value: float = 0.0
     """How far it has moved from the pose in which it was designed [rad or m]; limits are counted from here."""
+    mimic: Mimic | None = None
+    """Its leader, named by the child part of that joint; offset 0, since all stand at zero."""
 
     def __post_init__(self) -> None:
         axis = np.asarray(self.axis, dtype=np.float64)
@@ -83,12 +86,14 @@ class Blueprint:
         """Move the joints; the new configuration is the zero of the result.
 
         Args:
-            values: Child part -> joint value [rad or m]; the others stay.
+            values: Child part -> joint value [rad or m]; the others stay, and those that follow another one follow.
         """
         T_new_old = {self.root: np.eye(4)}
         joints = []
         for joint in self.joints:
             above, value = T_new_old[joint.parent], values.get(joint.child, 0.0)
+            if joint.mimic is not None:
+                value = joint.mimic.multiplier * values.get(joint.mimic.joint, 0.0)
             T_new_old[joint.child] = above @ joint.motion(value)
             joints.append(
                 replace(

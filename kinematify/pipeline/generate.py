@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.truth import ground_truth
@@ -45,7 +46,12 @@ def true_model(blueprint: Blueprint, config: Config) -> KinematicModel:
     ]
     tree = KinematicTree(parents=tuple(parents))
     exact = config.model.model_copy(update={"play": 0.0, "play_travel": 0.0})  # what stands open knows how far
-    return build_model(blueprint.assembly, tree, joints, name=blueprint.name, config=exact)
+    model = build_model(blueprint.assembly, tree, joints, name=blueprint.name, config=exact)
+    names = {joint.child: joint.name for joint in model.joints}
+    followers = {
+        joint.child: replace(joint.mimic, joint=names[joint.mimic.joint]) for joint in blueprint.joints if joint.mimic
+    }
+    return replace(model, joints=tuple(replace(j, mimic=followers.get(j.child)) for j in model.joints))
 
 
 def write_parts(blueprint: Blueprint, folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.assembly.truth import GroundTruth, TrueJoint
@@ -30,6 +31,7 @@ def ground_truth(blueprint: Blueprint) -> GroundTruth:
                 lower=joint.lower,
                 upper=joint.upper,
                 value=joint.value,
+                mimic=joint.mimic and replace(joint.mimic, joint=f"{joint.mimic.joint}_joint"),
             )
             for joint in blueprint.joints
         ),
