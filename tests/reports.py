@@ -24,6 +24,7 @@ def add_checks(monkeypatch: pytest.MonkeyPatch) -> None:
         check = Check(
             id=name,
             title=f"Doors & drawers of {name}",
+            fails=f"Doors & drawers of {name} jam",
             severity=Severity.ERROR,
             blame=Blame.KINEMATICS,
             engines=engines,

@@ -1,6 +1,12 @@
 """The registry of checks: each is one function, and all that is told about it stands at that function.
 
-    @check("KV222", title="Zero lies within the limits", severity=Severity.NOTE, blame=Blame.KINEMATICS)
+    @check(
+        "KV222",
+        title="Zero lies within the limits",
+        fails="Zero lies outside the limits",
+        severity=Severity.NOTE,
+        blame=Blame.KINEMATICS,
+    )
     def zero_outside(result: OpenCheck, physics: Physics) -> None:
         '''Zero is a value that the joint may take.
 
@@ -78,7 +84,9 @@ class Check:
     id: str
     """``KVnnn``; the first digit is the family."""
     title: str
-    """A few words, as in a table."""
+    """A few words that are true where it passes, as in a table."""
+    fails: str
+    """A few words that are true where it finds something."""
     severity: Severity
     """The worst that it reports, and what it reports where nothing else is said."""
     blame: Blame
@@ -191,6 +199,7 @@ def check(
     id: str,
     *,
     title: str,
+    fails: str,
     severity: Severity,
     blame: Blame,
     engines: tuple[str, ...] = (),
@@ -210,6 +219,7 @@ def check(
         REGISTRY[id] = Check(
             id=id,
             title=title,
+            fails=fails,
             severity=severity,
             blame=blame,
             engines=engines,
@@ -229,6 +239,7 @@ def engine_check(
     number: str,
     *,
     title: str,
+    fails: str,
     severity: Severity,
     blame: Blame,
     feedback: FeedbackRow | None = None,
@@ -245,6 +256,7 @@ def engine_check(
             check(
                 family + number,
                 title=title,
+                fails=fails,
                 severity=severity,
                 blame=blame,
                 engines=(engine,),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import ExitStatus
 from kinematify.validation.as_loaded import as_loaded_words
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Severity
+from kinematify.validation.finding import Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -92,7 +92,7 @@ class ValidationReport:
 def _check_json(check: CheckResult) -> dict[str, Any]:
     return {
         "check": check.check,
-        "title": CHECKS[check.check].title,
+        "title": CHECKS[check.check].fails if check.status is Status.FAIL else CHECKS[check.check].title,
         "engine": check.engine,
         "status": check.status.value,
         "reason": check.reason,

@@ -106,7 +106,7 @@ def _section(check: Check) -> list[str]:
     return [
         f"### {check.id}",
         "",
-        f"**{check.title}**",
+        f"**{check.title}**; else: {check.fails}",
         "",
         f"- Verifies: {check.verifies}",
         f"- Why it matters: {check.matters}",
@@ -134,7 +134,9 @@ def _describe(check: Check) -> str:
         ("Why it matters", check.matters),
         ("Remedy", check.remedy),
     )
-    return "\n".join([f"{check.id}  {check.title}", *(_filled(f"{name}: {text}") for name, text in texts)])
+    return "\n".join(
+        [f"{check.id}  {check.title}; else: {check.fails}", *(_filled(f"{name}: {text}") for name, text in texts)]
+    )
 
 
 def _filled(text: str) -> str:
@@ -149,6 +151,7 @@ def _as_answer(check: Check) -> dict[str, Any]:
     return {
         "id": check.id,
         "title": check.title,
+        "fails": check.fails,
         "severity": check.severity.value,
         "blame": check.blame.value,
         "engines": list(check.engines),

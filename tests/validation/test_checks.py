@@ -50,7 +50,8 @@ def test_reading_the_checks_loads_no_engine() -> None:
 def test_every_check_has_all_its_texts() -> None:
     for name, entry in CHECKS.items():
         assert entry.id == name
-        assert all((entry.title, entry.verifies, entry.matters, entry.remedy)), name
+        assert entry.title != entry.fails, name
+        assert all((entry.title, entry.fails, entry.verifies, entry.matters, entry.remedy)), name
 
 
 def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
@@ -68,7 +69,7 @@ def test_every_check_but_those_of_the_text_is_told_by_one_stage() -> None:
 
 @pytest.mark.usefixtures("registry")
 def test_a_check_needs_its_three_paragraphs() -> None:
-    decorate = check("KV398", title="t", severity=Severity.NOTE, blame=Blame.ASSET)
+    decorate = check("KV398", title="t", fails="f", severity=Severity.NOTE, blame=Blame.ASSET)
     with pytest.raises(AssertionError, match="Why it matters"):
         decorate(documented)
     documented.__doc__ = (documented.__doc__ or "").replace("    It is about {engine}.\n\n", "")
@@ -90,7 +91,9 @@ def test_a_check_of_engines_is_registered_for_each_with_what_is_peculiar_to_it()
         Remedy: Mend it.
         """
 
-    engine_check("98", title="t", severity=Severity.NOTE, blame=Blame.ENGINE, feedback=FeedbackRow.EXPORTER)(loads)
+    engine_check("98", title="t", fails="f", severity=Severity.NOTE, blame=Blame.ENGINE, feedback=FeedbackRow.EXPORTER)(
+        loads
+    )
     assert REGISTRY["KV498"].verifies == "MuJoCo loads it."
     assert REGISTRY["KV598"].verifies == "PyBullet loads it. Without a message."
     assert (REGISTRY["KV598"].engines, REGISTRY["KV498"].matters) == (("pybullet",), "MuJoCo crashes.")

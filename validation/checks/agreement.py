@@ -24,7 +24,13 @@ REFERENCE = "pinocchio"
 _TINY = 1e-12
 
 
-@check("KV601", title="Links stand where they should, in every engine", severity=Severity.ERROR, blame=Blame.ENGINE)
+@check(
+    "KV601",
+    title="Links stand where they should, in every engine",
+    fails="Links stand elsewhere in an engine",
+    severity=Severity.ERROR,
+    blame=Blame.ENGINE,
+)
 def poses_differ(result: OpenCheck, left: EngineResults) -> None:
     """Forward kinematics of MuJoCo, PyBullet, Pinocchio and Kinematify in the same configurations: zero, rest, both
     ends of every joint and quasi-random ones. A joint whose child stands elsewhere relative to its parent by more
@@ -123,7 +129,13 @@ def _tell_pose(
     )
 
 
-@check("KV602", title="Mass matrix: MuJoCo and Pinocchio agree", severity=Severity.WARNING, blame=Blame.ENGINE)
+@check(
+    "KV602",
+    title="Mass matrix: MuJoCo and Pinocchio agree",
+    fails="Mass matrix: MuJoCo and Pinocchio differ",
+    severity=Severity.WARNING,
+    blame=Blame.ENGINE,
+)
 def mass_matrices_differ(result: OpenCheck, left: EngineResults) -> None:
     """The joint-space inertia of the tree in the same configurations, entry by entry, relative to the inertias of the
     two joints that it couples; more than agreement.mass_matrix is a warning at the joint where it begins.
@@ -154,7 +166,13 @@ def mass_matrices_differ(result: OpenCheck, left: EngineResults) -> None:
     left.say_absent(result, ("mujoco", REFERENCE), left.engines)
 
 
-@check("KV603", title="Gravity torques: MuJoCo and Pinocchio agree", severity=Severity.WARNING, blame=Blame.ENGINE)
+@check(
+    "KV603",
+    title="Gravity torques: MuJoCo and Pinocchio agree",
+    fails="Gravity torques: MuJoCo and Pinocchio differ",
+    severity=Severity.WARNING,
+    blame=Blame.ENGINE,
+)
 def gravity_differs(result: OpenCheck, left: EngineResults) -> None:
     """The torques and forces that hold the model still, relative to the largest that the joint sees; more than
     agreement.gravity is a warning at the joint farthest from the root that shows it.
@@ -235,7 +253,13 @@ def _tell_dynamics(
         )
 
 
-@check("KV605", title="The model weighs the same everywhere", severity=Severity.ERROR, blame=Blame.ENGINE)
+@check(
+    "KV605",
+    title="The model weighs the same everywhere",
+    fails="The model weighs something else in an engine",
+    severity=Severity.ERROR,
+    blame=Blame.ENGINE,
+)
 def masses_differ(result: OpenCheck, left: EngineResults) -> None:
     """The mass of each link and of the whole model in every engine against the file; a relative difference above
     agreement.mass_error is an error. Links without a mass in the file are left out.

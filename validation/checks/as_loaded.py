@@ -35,7 +35,8 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
 
 @check(
     "KV801",
-    title="as loaded: the engine opens the file",
+    title="As loaded: the engine opens the file",
+    fails="As loaded: the engine does not open the file as it is",
     severity=Severity.ERROR,
     blame=Blame.ASSET,
     engines=_ENGINES,
@@ -79,7 +80,8 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
 
 @check(
     "KV802",
-    title="as loaded: nothing overlaps at rest",
+    title="As loaded: nothing overlaps at rest",
+    fails="As loaded: links overlap at rest",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
@@ -111,7 +113,8 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
 
 @check(
     "KV803",
-    title="as loaded: left alone, joints stay in range and are not thrown",
+    title="As loaded: left alone, joints stay in range and are not thrown",
+    fails="As loaded: left alone, a joint leaves its range or is thrown",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
@@ -188,7 +191,8 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
 
 @check(
     "KV804",
-    title="as loaded: a hand moves each joint over its range",
+    title="As loaded: a hand moves each joint over its range",
+    fails="As loaded: a hand cannot move a joint over its range",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_ENGINES,

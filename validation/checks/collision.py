@@ -18,7 +18,13 @@ if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
 
 
-@check("KV240", title="Links have collision geometry", severity=Severity.WARNING, blame=Blame.PHYSICS)
+@check(
+    "KV240",
+    title="Links have collision geometry",
+    fails="A link has no collision geometry",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+)
 def missing_collisions(result: OpenCheck, physics: Physics) -> None:
     """Every body with geometry has collision geometry, and so has each of its links that stands out of the rest by
     `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links). Where no
@@ -73,6 +79,7 @@ def _stands_out(body: Body, name: str, felt: Room) -> float:
 @check(
     "KV241",
     title="Collision geometry stands where it is seen",
+    fails="Collision geometry stands beside what is seen",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     needs=(something_collides,),
@@ -137,6 +144,7 @@ def _vector(values: FloatArray) -> str:
 @check(
     "KV242",
     title="Collision meshes are nearly convex",
+    fails="A collision mesh is far from its hull",
     severity=Severity.NOTE,
     blame=Blame.PHYSICS,
     needs=(something_collides,),
@@ -168,7 +176,8 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
 
 @check(
     "KV243",
-    title="Amount of collision geometry",
+    title="Collision geometry is light",
+    fails="Collision geometry is heavy",
     severity=Severity.NOTE,
     blame=Blame.PHYSICS,
     needs=(something_collides,),

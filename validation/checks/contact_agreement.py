@@ -47,7 +47,13 @@ class _Disagreement:
     overlap: _Overlap
 
 
-@check("KV604", title="Engines see the same collisions", severity=Severity.WARNING, blame=Blame.PHYSICS)
+@check(
+    "KV604",
+    title="Engines see the same collisions",
+    fails="An engine sees a collision that the exact geometry does not have",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+)
 def contacts_differ(result: OpenCheck, left: EngineResults) -> None:
     """Pairs of links that overlap in one engine by more than agreement.contact_depth and do not touch in the other,
     and either against the exact geometry, in the same configurations.

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 @check(
     "KV223",
     title="Joints state effort and velocity",
+    fails="Joints state no effort or velocity",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     needs=(something_moves,),
@@ -66,6 +67,7 @@ def _drive(result: OpenCheck, message: str, joint: Joint) -> None:
 @check(
     "KV224",
     title="Damping and friction are plausible",
+    fails="Damping or friction is implausible",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     needs=(something_moves,),
@@ -115,6 +117,7 @@ def _dynamics(result: OpenCheck, joint: Joint, name: str, value: float, limit: f
 @check(
     "KV226",
     title="Joints can bear the weight",
+    fails="A joint cannot bear the weight",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     needs=(

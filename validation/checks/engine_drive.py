@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 @engine_check(
     "05",
-    title="driven through its range, each joint reaches both ends",
+    title="Driven through its range, each joint reaches both ends",
+    fails="Driven through its range, a joint stops early",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_REACHED,
@@ -57,7 +58,8 @@ def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "06",
-    title="little penetration while driven",
+    title="Driven joints press nothing together",
+    fails="A driven joint presses links into each other",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
@@ -88,7 +90,8 @@ def little_penetration(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "09",
-    title="limits hold",
+    title="Limits hold",
+    fails="A limit gives way",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,

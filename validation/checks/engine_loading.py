@@ -30,7 +30,8 @@ _LIMIT_SLACK = 1e-6
 
 @engine_check(
     "01",
-    title="loads with the same joints, masses and limits",
+    title="Loads with the same joints, masses and limits",
+    fails="Joints, masses or limits change on loading",
     severity=Severity.ERROR,
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,
@@ -52,6 +53,7 @@ def loads(result: OpenCheck, context: EngineContext) -> None:
 @check(
     "KV606",
     title="Pinocchio loads the same model",
+    fails="Pinocchio loads another model",
     severity=Severity.ERROR,
     blame=Blame.ENGINE,
     engines=("pinocchio",),
@@ -189,7 +191,8 @@ def _same(declared: float, found: float) -> bool:
 
 @engine_check(
     "02",
-    title="poses agree over the range",
+    title="Poses agree over the range",
+    fails="Poses differ over the range",
     severity=Severity.ERROR,
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,

@@ -27,7 +27,8 @@ _TOLD_PAIRS = 8
 
 @engine_check(
     "03",
-    title="starts without contact",
+    title="Starts without contact",
+    fails="Links overlap when it starts",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
@@ -64,7 +65,8 @@ def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "04",
-    title="holds under gravity",
+    title="Holds under gravity",
+    fails="Does not hold under gravity",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.SINKS,
@@ -90,7 +92,8 @@ def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "08",
-    title="energy does not grow",
+    title="Energy does not grow",
+    fails="Energy grows",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
@@ -114,7 +117,8 @@ def energy_does_not_grow(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "12",
-    title="the time step is small enough",
+    title="The time step is small enough",
+    fails="The time step is too large",
     severity=Severity.NOTE,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.EXPORTER,
@@ -135,7 +139,8 @@ def step_is_small_enough(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "11",
-    title="settles on the floor",
+    title="Settles on the floor",
+    fails="Does not settle on the floor",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.SINKS,

@@ -27,7 +27,8 @@ _TOLD = 10
 
 @engine_check(
     "07",
-    title="stable",
+    title="Stable",
+    fails="Unstable",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
@@ -50,7 +51,8 @@ def stable(result: OpenCheck, context: EngineContext) -> None:
 
 @engine_check(
     "10",
-    title="no warnings of the engine",
+    title="The engine warns of nothing",
+    fails="The engine warns",
     severity=Severity.WARNING,
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 @check(
     "KV341",
-    title="child hangs on what it touches",
+    title="A child hangs on what it touches",
+    fails="A child touches another link than its parent",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_CARRIED,
@@ -73,7 +74,8 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
 
 @check(
     "KV342",
-    title="axis direction is one that the parts show",
+    title="The axis runs in a direction that the parts show",
+    fails="The axis runs in no direction that the parts show",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
@@ -109,7 +111,8 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
 
 @check(
     "KV343",
-    title="axis runs where the parts have a hinge",
+    title="The axis runs where the parts have a hinge",
+    fails="The axis runs beside every hinge of the parts",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
@@ -145,7 +148,8 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
 
 @check(
     "KV344",
-    title="no other joint fits the contact far better",
+    title="No other joint fits the contact far better",
+    fails="Another joint fits the contact far better",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
@@ -198,7 +202,8 @@ def _contradicted(case: JointCase) -> bool:
 
 @check(
     "KV345",
-    title="type fits the parts",
+    title="The type fits the parts",
+    fails="The parts look as if they moved otherwise",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.TYPE,
@@ -251,7 +256,8 @@ def _type_open(case: JointCase) -> bool:
 
 @check(
     "KV346",
-    title="permitted motion opens",
+    title="The permitted motion opens",
+    fails="The permitted motion closes",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     doubts=True,
@@ -297,7 +303,13 @@ def opens_inwards(result: OpenCheck, case: JointCase) -> None:
         _doubt(result, case, message, remedy, value=outward, limit=-settings.panel_inward)
 
 
-@check("KV347", title="a slide stays with its parent", severity=Severity.WARNING, blame=Blame.KINEMATICS)
+@check(
+    "KV347",
+    title="A slide stays with its parent",
+    fails="A slide leaves its parent",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+)
 def leaves_guides(result: OpenCheck, case: JointCase) -> None:
     """At the end of its range, a part that slides by more than its own length along the axis is not evidence.far_gap
     of the model's size farther away from its parent than at rest; beyond, it has left its guides.
@@ -323,7 +335,13 @@ def leaves_guides(result: OpenCheck, case: JointCase) -> None:
     )
 
 
-@check("KV348", title="range is usual for such a part", severity=Severity.WARNING, blame=Blame.KINEMATICS)
+@check(
+    "KV348",
+    title="The range is usual for such a part",
+    fails="The range is unusual for such a part",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+)
 def unusual_range(result: OpenCheck, case: JointCase) -> None:
     """No limited range is a whole turn, mostly to one side (evidence.whole_turn). Outside linkages, an upright panel
     opens by no more than evidence.widest_door, a level one by no more than evidence.widest_lid, and a button

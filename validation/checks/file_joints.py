@@ -38,7 +38,13 @@ _ELSEWHERE = {
 _UNITS = {"revolute": "rad", "prismatic": "m"}
 
 
-@check("KV130", title="Joint types are known", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV130",
+    title="Joint types are known",
+    fails="A joint type is unknown",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def unknown_types(result: OpenCheck, urdf: Urdf) -> None:
     """Every type is revolute, continuous, prismatic, fixed, floating or planar.
 
@@ -59,7 +65,13 @@ def unknown_types(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV131", title="Joint types are supported", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV131",
+    title="Joint types are supported",
+    fails="A joint type is not supported",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def free_types(result: OpenCheck, urdf: Urdf) -> None:
     """No floating or planar joint stands below a link with geometry. Above the root body it is a note: it says that
     the model stands freely.
@@ -102,7 +114,13 @@ def _free(result: OpenCheck, joint: JointElement, solid: str | None) -> None:
     )
 
 
-@check("KV134", title="Axes have a direction", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV134",
+    title="Axes have a direction",
+    fails="An axis has no direction",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def zero_axes(result: OpenCheck, urdf: Urdf) -> None:
     """No axis of a joint that moves has a length of `zero_axis` or less.
 
@@ -123,7 +141,13 @@ def zero_axes(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV135", title="Axes have unit length", severity=Severity.WARNING, blame=Blame.KINEMATICS)
+@check(
+    "KV135",
+    title="Axes have unit length",
+    fails="An axis does not have unit length",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+)
 def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
     """The length of an axis is one within `unit_axis_tolerance`; it is only a note within `rounded_axis_tolerance`.
 
@@ -147,7 +171,13 @@ def unnormalised_axes(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV136", title="Joints with limits state them", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV136",
+    title="Joints with limits state them",
+    fails="A joint lacks its limits",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
     """Every revolute and prismatic joint has a <limit>; one that states neither lower nor upper is a warning.
 
@@ -184,7 +214,13 @@ def missing_limits(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV137", title="Limits stand in order", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV137",
+    title="Limits stand in order",
+    fails="Lower and upper limit are swapped",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def swapped_limits(result: OpenCheck, urdf: Urdf) -> None:
     """lower is not above upper.
 

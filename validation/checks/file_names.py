@@ -23,7 +23,7 @@ _HARMFUL = re.compile(r"""[\s<>&"'/\\|*?:;,]""")
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
-@check("KV110", title="Names present", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV110", title="Names are present", fails="Names are missing", severity=Severity.ERROR, blame=Blame.ASSET)
 def missing_names(result: OpenCheck, urdf: Urdf) -> None:
     """Every link and joint has a name; the robot should have one.
 
@@ -47,7 +47,7 @@ def missing_names(result: OpenCheck, urdf: Urdf) -> None:
         )
 
 
-@check("KV111", title="Names unique", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV111", title="Names are unique", fails="Names are used twice", severity=Severity.ERROR, blame=Blame.ASSET)
 def repeated_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two links, and no two joints, have the same name.
 
@@ -73,7 +73,13 @@ def repeated_names(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV112", title="Names usable elsewhere", severity=Severity.WARNING, blame=Blame.ASSET)
+@check(
+    "KV112",
+    title="Names are usable elsewhere",
+    fails="Names break other tools",
+    severity=Severity.WARNING,
+    blame=Blame.ASSET,
+)
 def odd_names(result: OpenCheck, urdf: Urdf) -> None:
     """Names hold no spaces, slashes, quotes and the like; a link below a joint is not called world. Other signs that
     are no part of identifiers are a note.

@@ -69,7 +69,13 @@ class _Field:
         return f"{self.attribute}={shown(self.text)} of <{self.element.tag}> of {owner}"
 
 
-@check("KV132", title="Numbers are finite and complete", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV132",
+    title="Numbers are finite and complete",
+    fails="Numbers are missing or not finite",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def unreadable_numbers(result: OpenCheck, urdf: Urdf) -> None:
     """Every attribute that holds numbers holds the right count of plain, finite ones.
 
@@ -115,7 +121,13 @@ def _remedy(text: str) -> str:
     return "Write plain numbers separated by spaces, such as 0 0.5 1e-3; find out why the exporter failed here."
 
 
-@check("KV133", title="Numbers are of a plausible size", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV133",
+    title="Numbers are of a plausible size",
+    fails="Numbers have an implausible size",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def implausible_numbers(result: OpenCheck, urdf: Urdf) -> None:
     """No number is larger than `max_number` (a warning for effort, velocity, damping and friction), and no roll, pitch
     or yaw is more than one turn (a warning).

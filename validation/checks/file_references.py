@@ -38,7 +38,7 @@ class _Reference:
     """Why there is none."""
 
 
-@check("KV141", title="Mesh files exist", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV141", title="Mesh files exist", fails="A mesh file is missing", severity=Severity.ERROR, blame=Blame.ASSET)
 def missing_files(result: OpenCheck, urdf: Urdf) -> None:
     """Every file name leads to a file, through packages where it says so.
 
@@ -79,7 +79,13 @@ def _same_but_for_case(path: Path) -> Path | None:
         return None
 
 
-@check("KV142", title="Mesh formats can be read", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV142",
+    title="Mesh formats can be read",
+    fails="A mesh format cannot be read everywhere",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
     """Every mesh is of a format that is read here; formats that MuJoCo does not read are a note.
 
@@ -110,7 +116,13 @@ def unknown_formats(result: OpenCheck, urdf: Urdf) -> None:
         )
 
 
-@check("KV143", title="Mesh files have names of their own", severity=Severity.NOTE, blame=Blame.ASSET)
+@check(
+    "KV143",
+    title="Mesh files have names of their own",
+    fails="Mesh files share a name",
+    severity=Severity.NOTE,
+    blame=Blame.ASSET,
+)
 def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
     """No two different mesh files have the same name without folder and suffix.
 
@@ -137,7 +149,13 @@ def repeated_base_names(result: OpenCheck, urdf: Urdf) -> None:
         )
 
 
-@check("KV144", title="Mesh paths hold elsewhere", severity=Severity.NOTE, blame=Blame.ASSET)
+@check(
+    "KV144",
+    title="Mesh paths hold elsewhere",
+    fails="Mesh paths hold on one machine only",
+    severity=Severity.NOTE,
+    blame=Blame.ASSET,
+)
 def bound_paths(result: OpenCheck, urdf: Urdf) -> None:
     """No mesh path is absolute or written with backslashes.
 

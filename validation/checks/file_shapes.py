@@ -24,7 +24,13 @@ _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "lengt
 _KNOWN = ("mesh", *_SIZES)
 
 
-@check("KV138", title="Sizes of primitives", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV138",
+    title="Sizes of primitives are above zero",
+    fails="A primitive has no usable size",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
     """Every length of a box, sphere, cylinder or capsule is above zero.
 
@@ -49,7 +55,13 @@ def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
                 )
 
 
-@check("KV139", title="Scales of meshes", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV139",
+    title="Scales of meshes are plausible",
+    fails="The scale of a mesh is implausible",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def bad_scales(result: OpenCheck, urdf: Urdf) -> None:
     """No factor of a mesh scale is zero (`zero_scale`); a negative one is a note.
 
@@ -85,7 +97,13 @@ def bad_scales(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV140", title="Geometry elements are complete", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV140",
+    title="Geometry elements are complete",
+    fails="A geometry element is incomplete",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def malformed_shapes(result: OpenCheck, urdf: Urdf) -> None:
     """Every visual and collision holds one known shape with the attributes that it needs.
 

@@ -52,7 +52,13 @@ for _parent, _children in _CHILDREN.items():
 _DOCTYPE = re.compile(rb"<!(DOCTYPE|ENTITY)\b")
 
 
-@check("KV101", title="The file is well-formed XML", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV101",
+    title="The file is well-formed XML",
+    fails="The file is not well-formed XML",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
     """The XML parser reads the whole file.
 
@@ -69,7 +75,13 @@ def syntax_problems(result: OpenCheck, source: UrdfText) -> None:
         )
 
 
-@check("KV102", title="No DOCTYPE and no entities", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV102",
+    title="No DOCTYPE and no entities",
+    fails="The file has a DOCTYPE or entities",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
     """The file declares neither a DOCTYPE nor entities.
 
@@ -88,7 +100,13 @@ def doctype_problems(result: OpenCheck, source: UrdfText) -> None:
         )
 
 
-@check("KV103", title="Size within the caps", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV103",
+    title="The file stays within the caps",
+    fails="The file is larger than the caps",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
     """Elements, links and joints, and how deep links hang one below the other, stay below `max_elements`, `max_links`
     and `max_depth`.
@@ -117,7 +135,13 @@ def cap_problems(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV104", title="Lines and names short enough", severity=Severity.WARNING, blame=Blame.ASSET)
+@check(
+    "KV104",
+    title="Lines and names are short enough",
+    fails="Lines or names are too long",
+    severity=Severity.WARNING,
+    blame=Blame.ASSET,
+)
 def long_text(result: OpenCheck, urdf: Urdf) -> None:
     """No line is longer than `max_line_bytes`, no name longer than `max_name`.
 
@@ -149,7 +173,13 @@ def long_text(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV105", title="Elements once and in their place", severity=Severity.WARNING, blame=Blame.ASSET)
+@check(
+    "KV105",
+    title="Elements stand once and in their place",
+    fails="Elements are repeated or misplaced",
+    severity=Severity.WARNING,
+    blame=Blame.ASSET,
+)
 def displaced_elements(result: OpenCheck, urdf: Urdf) -> None:
     """What may stand once in its parent stands once, and what URDF knows stands where URDF wants it.
 
@@ -193,7 +223,7 @@ def _displaced(result: OpenCheck, child: _Element, parent: _Element) -> None:
     )
 
 
-@check("KV106", title="Elements are known", severity=Severity.NOTE, blame=Blame.ASSET)
+@check("KV106", title="Elements are known", fails="Elements are unknown", severity=Severity.NOTE, blame=Blame.ASSET)
 def unknown_elements(result: OpenCheck, urdf: Urdf) -> None:
     """Elements that neither URDF nor the usual extensions define are counted by kind.
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SHOWN = 8
 
 
-@check("KV120", title="There are links", severity=Severity.ERROR, blame=Blame.ASSET)
+@check("KV120", title="There are links", fails="There is no link", severity=Severity.ERROR, blame=Blame.ASSET)
 def no_links(result: OpenCheck, urdf: Urdf) -> None:
     """At least one <link> stands in the <robot>.
 
@@ -39,7 +39,13 @@ def no_links(result: OpenCheck, urdf: Urdf) -> None:
         )
 
 
-@check("KV121", title="Parents and children exist", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV121",
+    title="Parents and children exist",
+    fails="A parent or child does not exist",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def dangling_ends(result: OpenCheck, urdf: Urdf) -> None:
     """Every joint names a parent and a child, and both are links of the file.
 
@@ -66,7 +72,13 @@ def dangling_ends(result: OpenCheck, urdf: Urdf) -> None:
                 )
 
 
-@check("KV122", title="Parent and child differ", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV122",
+    title="Parent and child differ",
+    fails="A joint joins a link to itself",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def self_joined(result: OpenCheck, urdf: Urdf) -> None:
     """No joint joins a link to itself.
 
@@ -85,7 +97,13 @@ def self_joined(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV123", title="One parent per link", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV123",
+    title="Each link has one parent",
+    fails="A link has two parents",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def second_parents(result: OpenCheck, urdf: Urdf) -> None:
     """No link is the child of two joints.
 
@@ -110,7 +128,9 @@ def second_parents(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV124", title="No circle of links", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV124", title="No circle of links", fails="Links form a circle", severity=Severity.ERROR, blame=Blame.KINEMATICS
+)
 def cycles(result: OpenCheck, urdf: Urdf) -> None:
     """Following joints downward never leads back to a link above.
 
@@ -149,7 +169,13 @@ def _closing_joints(urdf: Urdf) -> Iterator[tuple[JointElement, list[str]]]:
                 waiting.append(iter(urdf.below.get(joint.child, ())))
 
 
-@check("KV125", title="One root", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV125",
+    title="There is one root",
+    fails="There is more than one root",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def second_roots(result: OpenCheck, urdf: Urdf) -> None:
     """One link carries all others.
 
@@ -178,7 +204,9 @@ def second_roots(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV126", title="No isolated link", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV126", title="No link is isolated", fails="A link is isolated", severity=Severity.ERROR, blame=Blame.KINEMATICS
+)
 def isolated_links(result: OpenCheck, urdf: Urdf) -> None:
     """Every link hangs on a joint or carries one, unless it is the only link.
 
@@ -198,7 +226,13 @@ def isolated_links(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV127", title="Leaders of mimic joints exist", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV127",
+    title="Leaders of mimic joints exist",
+    fails="The leader of a mimic joint does not exist",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def dangling_mimics(result: OpenCheck, urdf: Urdf) -> None:
     """Every <mimic> names a joint of the file.
 
@@ -218,7 +252,13 @@ def dangling_mimics(result: OpenCheck, urdf: Urdf) -> None:
             )
 
 
-@check("KV128", title="Mimic joints follow a leader", severity=Severity.ERROR, blame=Blame.KINEMATICS)
+@check(
+    "KV128",
+    title="Mimic joints follow a leader",
+    fails="Mimic joints follow each other in a circle",
+    severity=Severity.ERROR,
+    blame=Blame.KINEMATICS,
+)
 def mimic_circles(result: OpenCheck, urdf: Urdf) -> None:
     """Followers do not follow each other in a circle, nor in chains of more than `max_mimic_chain`; a follower of a
     follower is a warning.

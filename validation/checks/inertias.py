@@ -26,6 +26,7 @@ _ROUNDING = 1e-9
 @check(
     "KV204",
     title="Inertia tensors are positive definite",
+    fails="An inertia tensor is not positive definite",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     needs=(something_weighs,),
@@ -84,6 +85,7 @@ def _better_tensor(body: Body, link: Link) -> str:
 @check(
     "KV205",
     title="Principal moments satisfy the triangle inequality",
+    fails="Principal moments are those of no body",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     needs=(something_weighs,),
@@ -121,6 +123,7 @@ def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
 @check(
     "KV207",
     title="Inertia fits the geometry",
+    fails="An inertia does not fit its geometry",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     needs=(something_weighs,),
@@ -206,6 +209,7 @@ def _centre(body: Body, link: Link, inertial: Inertial) -> FloatArray:
 @check(
     "KV208",
     title="Centres of mass lie in the geometry",
+    fails="A centre of mass lies outside the geometry",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     needs=(something_weighs,),

@@ -30,6 +30,7 @@ _NO_LIMIT = 10.0
 @check(
     "KV220",
     title="Ranges of joints are plausible",
+    fails="The range of a joint is implausible",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     needs=(something_moves,),
@@ -114,6 +115,7 @@ def _slide(result: OpenCheck, physics: Physics, joint: Joint) -> None:
 @check(
     "KV221",
     title="Ranges of joints are not empty",
+    fails="The range of a joint is empty",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     needs=(something_moves,),
@@ -142,6 +144,7 @@ def empty_ranges(result: OpenCheck, physics: Physics) -> None:
 @check(
     "KV222",
     title="Zero lies within the limits",
+    fails="Zero lies outside the limits",
     severity=Severity.NOTE,
     blame=Blame.KINEMATICS,
     needs=(something_moves,),
@@ -171,6 +174,7 @@ def zero_outside(result: OpenCheck, physics: Physics) -> None:
 @check(
     "KV225",
     title="Mimic joints stay within their limits",
+    fails="A mimic joint leaves its limits",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     needs=(something_follows,),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 @check(
     "KV201",
     title="Bodies that move have a mass",
+    fails="A body that moves has no mass",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     needs=(something_moves,),
@@ -62,7 +63,13 @@ def _suggested(body: Body) -> str:
     return "" if volume is None else f"; at 1000 kg/m3 its geometry has {1000.0 * volume:.3g} kg"
 
 
-@check("KV202", title="Masses are above zero", severity=Severity.ERROR, blame=Blame.PHYSICS)
+@check(
+    "KV202",
+    title="Masses are above zero",
+    fails="A mass is not above zero",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+)
 def masses_not_positive(result: OpenCheck, physics: Physics) -> None:
     """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, a note for
     scenery without joints, and a warning where the link does not move or others of its body have a mass.
@@ -111,7 +118,14 @@ def _not_positive(
     )
 
 
-@check("KV203", title="Masses are plausible", severity=Severity.WARNING, blame=Blame.PHYSICS, needs=(something_weighs,))
+@check(
+    "KV203",
+    title="Masses are plausible",
+    fails="A mass is implausible",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
+)
 def implausible_masses(result: OpenCheck, physics: Physics) -> None:
     """The mass of every body with geometry lies between `tiny_mass` and `huge_mass`.
 
@@ -139,7 +153,12 @@ def implausible_masses(result: OpenCheck, physics: Physics) -> None:
 
 
 @check(
-    "KV206", title="Densities are plausible", severity=Severity.ERROR, blame=Blame.PHYSICS, needs=(something_weighs,)
+    "KV206",
+    title="Densities are plausible",
+    fails="A density is implausible",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
 )
 def implausible_densities(result: OpenCheck, physics: Physics) -> None:
     """The mass of a body over the volume of its hull is not above `dense` (an error above `impossibly_dense`), and
@@ -186,6 +205,7 @@ def _density(result: OpenCheck, body: Body, density: float, limit: float, *, cer
 @check(
     "KV209",
     title="Neighbours have comparable masses",
+    fails="A light link carries a heavy one",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     needs=(

@@ -12,7 +12,13 @@ if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
 
 
-@check("KV150", title="Mesh files can be read", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV150",
+    title="Mesh files can be read",
+    fails="A mesh file cannot be read",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def unreadable(result: OpenCheck, look: MeshLook) -> None:
     """Every mesh file that the URDF names opens, is complete, not larger than `max_mesh_bytes`, and its faces refer to
     vertices that it has.
@@ -34,7 +40,13 @@ def unreadable(result: OpenCheck, look: MeshLook) -> None:
         result.find(look.fault, "Mend what the message names.")
 
 
-@check("KV151", title="Mesh coordinates are finite", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV151",
+    title="Mesh coordinates are finite",
+    fails="Mesh coordinates are not finite",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def wild_coordinates(result: OpenCheck, look: MeshLook) -> None:
     """Every coordinate is a finite number of at most `max_number`.
 
@@ -56,7 +68,13 @@ def wild_coordinates(result: OpenCheck, look: MeshLook) -> None:
             )
 
 
-@check("KV152", title="Triangle counts", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV152",
+    title="Meshes have a usable number of triangles",
+    fails="A mesh has too few or too many triangles",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def triangle_counts(result: OpenCheck, look: MeshLook) -> None:
     """All meshes together have at most `max_faces` triangles; a single mesh with more than `stl_faces` is a warning.
 
@@ -90,7 +108,7 @@ def triangle_counts(result: OpenCheck, look: MeshLook) -> None:
         )
 
 
-@check("KV153", title="Meshes have a thickness", severity=Severity.WARNING, blame=Blame.ASSET)
+@check("KV153", title="Meshes have a thickness", fails="A mesh is flat", severity=Severity.WARNING, blame=Blame.ASSET)
 def flat_meshes(result: OpenCheck, look: MeshLook) -> None:
     """No mesh is thinner than `flat` times its diagonal; for meshes that are only seen it is a note.
 
@@ -113,7 +131,13 @@ def flat_meshes(result: OpenCheck, look: MeshLook) -> None:
             )
 
 
-@check("KV154", title="Triangles have an area", severity=Severity.WARNING, blame=Blame.ASSET)
+@check(
+    "KV154",
+    title="Triangles have an area",
+    fails="Triangles have no area",
+    severity=Severity.WARNING,
+    blame=Blame.ASSET,
+)
 def degenerate_faces(result: OpenCheck, look: MeshLook) -> None:
     """At most `degenerate_share` of the triangles of a mesh have no area; for meshes that are only seen it is a note.
 
@@ -136,7 +160,7 @@ def degenerate_faces(result: OpenCheck, look: MeshLook) -> None:
             )
 
 
-@check("KV155", title="Meshes are closed", severity=Severity.NOTE, blame=Blame.ASSET)
+@check("KV155", title="Meshes are closed", fails="A mesh has open edges", severity=Severity.NOTE, blame=Blame.ASSET)
 def open_meshes(result: OpenCheck, look: MeshLook) -> None:
     """Mesh files that do not enclose a volume are counted.
 
@@ -159,7 +183,13 @@ def open_meshes(result: OpenCheck, look: MeshLook) -> None:
         )
 
 
-@check("KV156", title="Triangles face outward", severity=Severity.WARNING, blame=Blame.ASSET)
+@check(
+    "KV156",
+    title="Triangles face outward",
+    fails="Triangles face inward or share edges",
+    severity=Severity.WARNING,
+    blame=Blame.ASSET,
+)
 def inward_faces(result: OpenCheck, look: MeshLook) -> None:
     """No closed collision mesh is inside out. Edges at which triangles face opposite sides, or with more than two
     triangles, are counted in a note.
@@ -196,7 +226,13 @@ def inward_faces(result: OpenCheck, look: MeshLook) -> None:
         )
 
 
-@check("KV159", title="Units and axes that files state", severity=Severity.NOTE, blame=Blame.ASSET)
+@check(
+    "KV159",
+    title="Meshes state neither unit nor axes",
+    fails="Meshes state a unit or axes that readers treat differently",
+    severity=Severity.NOTE,
+    blame=Blame.ASSET,
+)
 def stated_units(result: OpenCheck, look: MeshLook) -> None:
     """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they heed it.
 

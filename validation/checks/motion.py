@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 @check(
     "KV310",
-    title="a joint does not drive its child into its parent",
+    title="A joint does not drive its child into its parent",
+    fails="A joint drives its child into its parent",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.INTO_PARENT,
@@ -81,7 +82,8 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
 
 @check(
     "KV311",
-    title="a joint does not drive its child into other bodies",
+    title="A joint does not drive its child into other bodies",
+    fails="A joint drives its child into another body",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.OTHER_PARENT,
@@ -124,7 +126,8 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
 
 @check(
     "KV312",
-    title="limits fit the free travel",
+    title="Limits fit the free travel",
+    fails="A limit lies beyond the free travel",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.END,
@@ -174,7 +177,8 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
 
 @check(
     "KV320",
-    title="parts stay with what carries them",
+    title="Parts stay with what carries them",
+    fails="A part leaves what carries it",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.DERAILED,
@@ -213,7 +217,8 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
 
 @check(
     "KV321",
-    title="a slide ends before its guide does",
+    title="A slide ends before its guide does",
+    fails="A slide runs out of its guide",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.GUIDE,

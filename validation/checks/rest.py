@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 @check(
     "KV301",
-    title="bodies without a joint between them are apart at rest",
+    title="Bodies without a joint between them are apart at rest",
+    fails="Bodies without a joint between them overlap at rest",
     severity=Severity.ERROR,
     blame=Blame.ASSET,
     feedback=FeedbackRow.ALLOWED,
@@ -41,7 +42,8 @@ def strangers_overlap(result: OpenCheck, look: GeometryLook) -> None:
 
 @check(
     "KV302",
-    title="parent and child overlap only at their joint",
+    title="Parent and child overlap only at their joint",
+    fails="Parent and child are in each other at rest",
     severity=Severity.WARNING,
     blame=Blame.ASSET,
     feedback=FeedbackRow.ALLOWED,
@@ -95,7 +97,8 @@ def _overlap(
 
 @check(
     "KV303",
-    title="parts touch what carries them",
+    title="Parts touch what carries them",
+    fails="A part touches nothing that carries it",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_CARRIED,
@@ -128,7 +131,13 @@ def hovering(result: OpenCheck, look: GeometryLook) -> None:
             )
 
 
-@check("KV304", title="what is tolerated, and why", severity=Severity.NOTE, blame=Blame.ASSET)
+@check(
+    "KV304",
+    title="Nothing has to be tolerated",
+    fails="What is tolerated, and why",
+    severity=Severity.NOTE,
+    blame=Blame.ASSET,
+)
 def tolerated(result: OpenCheck, look: GeometryLook) -> None:
     """Nothing: it lists the pairs whose contact other checks do not count (joined and in contact at rest, in contact
     at rest, in contact in more than geometry.always of all configurations, fixed together), with the overlap that

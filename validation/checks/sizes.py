@@ -16,7 +16,13 @@ if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
 
 
-@check("KV157", title="Links are in the same unit", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV157",
+    title="Links are in the same unit",
+    fails="A link is in another unit than the others",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def unit_slips(result: OpenCheck, look: MeshLook) -> None:
     """No link is more than `oversize` times as large as the largest other one, none with a mesh file `undersize` times
     smaller; no link stands further from its parent than `apart` times the sizes of both (blamed on the joint).
@@ -75,7 +81,13 @@ def _likely_factor(ratio: float) -> str:
     return "1000" if ratio < 1e-2 else "1"
 
 
-@check("KV158", title="The model has a plausible size", severity=Severity.ERROR, blame=Blame.ASSET)
+@check(
+    "KV158",
+    title="The model has a plausible size",
+    fails="The model has an implausible size",
+    severity=Severity.ERROR,
+    blame=Blame.ASSET,
+)
 def model_size(result: OpenCheck, look: MeshLook) -> None:
     """The diagonal of the model at zero lies between `small` and `large`; above `huge` it is an error if the model has
     joints that move, and so is a largest link below `tiny`.

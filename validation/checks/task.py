@@ -13,7 +13,13 @@ if TYPE_CHECKING:
     from kinematify.validation.task.robot_task import RobotTask
 
 
-@check("KV701", title="the task can be set up", severity=Severity.ERROR, blame=Blame.TASK)
+@check(
+    "KV701",
+    title="The task can be set up",
+    fails="The task cannot be set up",
+    severity=Severity.ERROR,
+    blame=Blame.TASK,
+)
 def task_set_up(result: OpenCheck, task: RobotTask) -> None:
     """The object has a joint that moves, its size is that of a thing that an arm can use (objects of common
     collections are brought to the usual size of what they are called; --scale wins), and the point of --grasp lies
@@ -26,7 +32,13 @@ def task_set_up(result: OpenCheck, task: RobotTask) -> None:
     task.set_up(result)
 
 
-@check("KV702", title="a gripper finds a hold", severity=Severity.WARNING, blame=Blame.TASK)
+@check(
+    "KV702",
+    title="A gripper finds a hold",
+    fails="A gripper finds no hold",
+    severity=Severity.WARNING,
+    blame=Blame.TASK,
+)
 def no_hold(result: OpenCheck, task: RobotTask) -> None:
     """On what the joint moves there is a place that two parallel pads can take: seen from outside, with opposite sides
     within the opening of the gripper, and with room for the fingers beside it and for the hand behind it. Handles,
@@ -40,7 +52,14 @@ def no_hold(result: OpenCheck, task: RobotTask) -> None:
     task.tell_failures(result, Failure.NO_WAY, Failure.NO_GRASP)
 
 
-@check("KV703", title="an arm reaches the hold", severity=Severity.ERROR, blame=Blame.TASK, feedback=FeedbackRow.NO_WAY)
+@check(
+    "KV703",
+    title="An arm reaches the hold",
+    fails="No arm reaches the hold",
+    severity=Severity.ERROR,
+    blame=Blame.TASK,
+    feedback=FeedbackRow.NO_WAY,
+)
 def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
     """From at least one place around the object (task.plan.bearings, distances, heights) the arm's inverse kinematics
     reaches one of the holds, within the joints' limits and without meeting the object, the floor or itself while it
@@ -54,7 +73,14 @@ def out_of_reach(result: OpenCheck, task: RobotTask) -> None:
     task.tell_failures(result, Failure.NO_REACH)
 
 
-@check("KV704", title="a way leads to the hold", severity=Severity.ERROR, blame=Blame.TASK, feedback=FeedbackRow.NO_WAY)
+@check(
+    "KV704",
+    title="A way leads to the hold",
+    fails="No way leads to the hold",
+    severity=Severity.ERROR,
+    blame=Blame.TASK,
+    feedback=FeedbackRow.NO_WAY,
+)
 def no_path(result: OpenCheck, task: RobotTask) -> None:
     """From the arm's home posture, RRTConnect finds a path free of collisions (task.plan.margin) to a place in front
     of the hold, and a straight way leads in from there.
@@ -66,7 +92,14 @@ def no_path(result: OpenCheck, task: RobotTask) -> None:
     task.tell_failures(result, Failure.NO_PATH)
 
 
-@check("KV705", title="an arm opens the joint", severity=Severity.ERROR, blame=Blame.TASK, feedback=FeedbackRow.NO_WAY)
+@check(
+    "KV705",
+    title="An arm opens the joint",
+    fails="An arm does not open the joint",
+    severity=Severity.ERROR,
+    blame=Blame.TASK,
+    feedback=FeedbackRow.NO_WAY,
+)
 def not_opened(result: OpenCheck, task: RobotTask) -> None:
     """With the hand fixed to the part, the arm follows the joint from rest to the farther end of its range (joints
     without limits by task.plan.range_turn); task.plan.opened of it counts. What ends a pull earlier is said: a
@@ -84,7 +117,8 @@ def not_opened(result: OpenCheck, task: RobotTask) -> None:
 
 @check(
     "KV706",
-    title="the joint leaves its part the way that a pull needs",
+    title="The joint leaves its part the way that a pull needs",
+    fails="The joint blocks the way that a pull needs",
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NO_WAY,
@@ -103,7 +137,8 @@ def jams(result: OpenCheck, task: RobotTask) -> None:
 
 @check(
     "KV707",
-    title="the plan works in simulation",
+    title="The plan works in simulation",
+    fails="The plan fails in simulation",
     severity=Severity.ERROR,
     blame=Blame.TASK,
     engines=("mujoco", "pybullet"),
@@ -122,7 +157,14 @@ def plan_fails(result: OpenCheck, task: RobotTask) -> None:
     task.tell_executions(result, Hold.WELD)
 
 
-@check("KV708", title="friction alone holds", severity=Severity.NOTE, blame=Blame.TASK, engines=("mujoco",))
+@check(
+    "KV708",
+    title="Friction alone holds",
+    fails="Friction alone does not hold",
+    severity=Severity.NOTE,
+    blame=Blame.TASK,
+    engines=("mujoco",),
+)
 def slips(result: OpenCheck, task: RobotTask) -> None:
     """The same with real contact: the fingers close with task.execution.grip_force, and nothing but friction
     (task.execution.friction) holds the part.
@@ -134,7 +176,9 @@ def slips(result: OpenCheck, task: RobotTask) -> None:
     task.tell_executions(result, Hold.CONTACT)
 
 
-@check("KV709", title="films of the task", severity=Severity.NOTE, blame=Blame.TASK)
+@check(
+    "KV709", title="Films of the task are written", fails="Films of the task", severity=Severity.NOTE, blame=Blame.TASK
+)
 def films(result: OpenCheck, task: RobotTask) -> None:
     """Nothing: it names the films. Each shows the first execution of a plan, as a GIF, and beside it a still of its
     three moments: before, at the grasp, and open.

@@ -21,7 +21,8 @@ def _two_joints(look: GeometryLook) -> str | None:
 
 @check(
     "KV330",
-    title="two joints at once",
+    title="Two joints at once bring nothing together",
+    fails="Two joints at once bring bodies together",
     severity=Severity.NOTE,
     blame=Blame.KINEMATICS,
     needs=(_two_joints,),
@@ -59,7 +60,8 @@ def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
 
 @check(
     "KV331",
-    title="free configurations of all joints",
+    title="Configurations of all joints are free",
+    fails="Configurations of all joints collide",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
@@ -104,7 +106,8 @@ def _two_bodies_that_collide(look: GeometryLook) -> str | None:
 
 @check(
     "KV332",
-    title="engines' hulls leave the motion free",
+    title="Engines' hulls leave the motion free",
+    fails="Engines' hulls block a motion that the surfaces leave free",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,

@@ -272,7 +272,7 @@ def _explained(outcomes: Sequence[Outcome]) -> str:
     if not checks:
         return ""
     parts = (
-        f'<details id="check-{check.id}"><summary>{check.id} {text(check.title)}</summary><p>{text(check.verifies)}</p>'
+        f'<details id="check-{check.id}"><summary>{check.id} {text(check.fails)}</summary><p>{text(check.verifies)}</p>'
         f"<p>{text(check.matters)}</p><p>Remedy: {text(check.remedy)}</p></details>"
         for check in checks
     )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.text import family, measure, printable, title, where
+from kinematify.validation.formats.text import family, lasting_title, measure, printable, where
 from kinematify.validation.outcome import Unusable
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def _add_case(suite: _Element, model: str, check: CheckResult) -> None:
         suite,
         "testcase",
         classname=printable(f"{model}.{family(check.check)}"),
-        name=printable(title(check)),
+        name=printable(lasting_title(check)),
         time=f"{check.seconds:.3f}",
     )
     failing = [f for f in check.findings if f.severity is Severity.ERROR and f.suppressed is None]

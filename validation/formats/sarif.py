@@ -61,8 +61,8 @@ def _rule(check: Check) -> dict[str, Any]:
     marked = f"{check.verifies}\n\n**Why it matters:** {check.matters}\n\n**Remedy:** {check.remedy}"
     return {
         "id": check.id,
-        "name": "".join(word[:1].upper() + word[1:] for word in _words(check.title)) or check.id,
-        "shortDescription": {"text": check.title},
+        "name": "".join(word[:1].upper() + word[1:] for word in _words(check.fails)) or check.id,
+        "shortDescription": {"text": check.fails},
         "fullDescription": {"text": check.verifies},
         "help": {"text": plain, "markdown": marked},
         "defaultConfiguration": {"level": _LEVELS[check.severity]},

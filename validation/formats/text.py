@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.validation.check import FAMILIES
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Status
+from kinematify.validation.finding import Finding, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.finding import CheckResult
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.summary import JointSummary
 
@@ -140,10 +140,19 @@ def family_rows(report: ValidationReport) -> list[tuple[str, ...]]:
     ]
 
 
-def title(check: CheckResult | Finding) -> str:
-    """Id, title and engine of a check."""
-    engine = f" [{check.engine}]" if check.engine else ""
-    return f"{check.check} {CHECKS[check.check].title}{engine}"
+def title(told: CheckResult | Finding) -> str:
+    """Id, title and engine of a check: what is wrong of a finding or a check that failed, else what should be."""
+    failed = isinstance(told, Finding) or told.status is Status.FAIL
+    return _titled(told, CHECKS[told.check].fails) if failed else lasting_title(told)
+
+
+def lasting_title(told: CheckResult | Finding) -> str:
+    """Id, title and engine of a check, the same whatever became of it: names by which machines follow it over time."""
+    return _titled(told, CHECKS[told.check].title)
+
+
+def _titled(told: CheckResult | Finding, title: str) -> str:
+    return f"{told.check} {title}{f' [{told.engine}]' if told.engine else ''}"
 
 
 def family(check: str) -> str:
