@@ -24,7 +24,7 @@ STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo     one sentence -> parts -> joints -> URDF -> verdict -> picture, in out/cabinet/"
+	@echo "make demo     one sentence -> URDF -> verdict, and its joints inferred again, in out/cabinet/"
 	@echo "make test     run the tests (ARGS=... for pytest)"
 	@echo "make check    lint, types and the tests of the packages that differ from BASE=main; for every change"
 	@echo "make lint     ruff: rules and format"
@@ -51,7 +51,7 @@ $(STAMP):
 
 demo: setup
 	@echo "A sentence: $$SENTENCE"
-	@$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --force
+	@$(IN_VENV) kinematify generate --text "$$SENTENCE" -o out/cabinet --infer --force
 	@echo
 	@echo "Look at  out/cabinet/preview.png       the cabinet at rest, and with every joint moved"
 	@echo "    and  out/cabinet/validation.html   what was checked, in three engines, and what to do about each finding"

@@ -16,7 +16,7 @@ from kinematify.cli.study import study_command
 from tests.places import ROOT
 
 PAGES = ("README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")))
-MADE_BY_COMMANDS = ("out/", "meshes/", "parts/", "truth/", "OUT.job/")
+MADE_BY_COMMANDS = ("out/", "meshes/", "parts/", "inferred/", "OUT.job/")
 NO_PATHS = r".*-v\d|ZebraDevs/fetch_ros|models/|more/.*"  # ids of environments, repositories elsewhere, yours
 
 

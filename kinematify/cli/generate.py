@@ -1,4 +1,4 @@
-"""`kinematify generate`: a sentence, a category or an image becomes parts, and the model inferred from them."""
+"""`kinematify generate`: a sentence or a category becomes an exact model; an image parts, and the model inferred."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @click.command(
     "generate",
-    short_help="A sentence or a photo -> parts -> a model; sentences work offline.",
+    short_help="A sentence or a photo -> a model; sentences work offline.",
     epilog=examples(
         'kinematify generate --text "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
         "kinematify generate --category cabinet --set doors=2 --set drawers=3 --set handle=knob -o out/c2",
@@ -76,6 +76,7 @@ if TYPE_CHECKING:
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
+@click.option("--infer", "inferred", is_flag=True, help="Find the joints again from the parts alone, and compare.")
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
 @click.option("--no-preview", is_flag=True, help="Write no picture.")
@@ -101,24 +102,26 @@ def command(
     up: str,
     scale: float,
     out: Path | None,
+    inferred: bool,
     collision: str | None,
     force: bool,
     no_preview: bool,
     no_validation: bool,
     json_to: str | None,
 ) -> int:
-    """Build an object whose joints are known, infer them again from its parts alone, and say how well that went.
+    """Build what a sentence or a category asks for, with its exact joints, and validate it.
 
-    OUT becomes a model folder: model.urdf as it was inferred, meshes/, inference.json, preview.png and the verdict
-    on the model, validation.html and validation.json. parts/ holds what the inference saw, one mesh per part, and
-    truth/ the exact model, which it never opens.
+    OUT becomes a model folder: model.urdf, meshes/, preview.png, the verdict on the model in validation.html and
+    validation.json, and what is known of it: truth.json (joints) and source.json (parameters). parts/ holds one mesh
+    per part and nothing of the joints. With --infer they are found again from parts/ alone: inferred/ is the model
+    folder of that, and how far it is from the exact one is said.
 
     Ends with 1 if the model has an error, see `kinematify validate`.
 
     Without --source nothing is downloaded: objects are put together from boards, hinges, slides and bearings by rules.
 
-    With --source another generator makes the parts from --image or --text, and there are no known joints to compare
-    with. Its job is kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
+    With --source another generator makes the parts from --image or --text, and the joints are inferred. Its job is
+    kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
     """
     from kinematify.cli.generation import Generation
     from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
@@ -134,6 +137,8 @@ def command(
         _write_corpus(corpus, seed or 0, _needed(out), text or category)
         return 0
     if source is not None:
+        if inferred:
+            raise click.UsageError("What a --source makes is always inferred. Leave --infer out.")
         if category is not None or settings:
             raise click.UsageError(
                 "--category and --set belong to objects built by rules. Leave --source out for those."
@@ -151,13 +156,16 @@ def command(
     if settings and text is not None:
         raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
     request = from_text(text) if text is not None else from_category(category or "", _pairs(settings))
-    return _run(
-        Generation(
-            request, seed, _needed(out), preview=not no_preview, validated=not no_validation, collision=collision
-        ),
-        force,
-        json_to,
+    generation = Generation(
+        request,
+        seed,
+        _needed(out),
+        preview=not no_preview,
+        validated=not no_validation,
+        inferred=inferred,
+        collision=collision,
     )
+    return _run(generation, force, json_to)
 
 
 def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:

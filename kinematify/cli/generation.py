@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli.inferred import describe
+from kinematify.cli.inferred import describe_files, describe_joints
 from kinematify.cli.options import with_collision
 from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
@@ -16,8 +16,9 @@ from kinematify.config import load_config
 from kinematify.errors import ExitStatus
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
+from kinematify.model.preview import render_preview
 from kinematify.pipeline import infer
-from kinematify.pipeline.generate import PARTS_FOLDER, TRUTH_FOLDER, write_parts, write_truth
+from kinematify.pipeline.generate import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
 from kinematify.validation.finding import Severity
 from kinematify.validation.formats.picture import scene_of
@@ -29,13 +30,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.cli.progress import Reporter
+    from kinematify.config import Config
     from kinematify.evaluation.metrics import ObjectScore
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.procedural.request import Request
+    from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
     from kinematify.validation.report import ValidationReport
 
-_INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints
+_INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints that are inferred
 
 
 @dataclass
@@ -47,14 +50,17 @@ class Generation:
     out: Path
     preview: bool
     validated: bool
+    inferred: bool = False
+    """Whether the joints are found again from the parts alone, beside the exact ones."""
     collision: str | None = None
     """``auto`` or ``mesh``; None: as the configuration says."""
     blueprint: Blueprint = field(init=False)
-    inference: Inference = field(init=False)
+    model: KinematicModel = field(init=False)
+    inference: Inference | None = None
     report: ValidationReport | None = None
 
     def all(self, progress: Reporter, *, overwrite: bool) -> None:
-        """Build the object, infer its joints from its parts, write the folder and validate the model in it.
+        """Build the object, write it with its exact joints and validate that; infer them from its parts if asked to.
 
         Raises:
             InputError: A parameter is out of its bounds.
@@ -65,19 +71,23 @@ class Generation:
         if self.validated:
             start_server()  # its imports take seconds, on another core than the inference
         config = with_collision(load_config(), self.collision)
-        self.inference = infer(
-            self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
-        )
+        if self.inferred:
+            self.inference = infer(
+                self.blueprint.assembly, config=config, progress=lambda stage, done: progress(stage, _INFERRED * done)
+            )
         progress("writing the model and its picture" if self.preview else "writing the model", _INFERRED)
-
-        def write(folder: Path) -> None:
-            write_inference_files(self.inference, folder, preview=self.preview)
-            write_parts(self.blueprint, folder / PARTS_FOLDER)
-            write_truth(self.blueprint, folder / TRUTH_FOLDER, config)
-
-        write_model_folder(self.out, write, overwrite=overwrite)
+        write_model_folder(self.out, lambda folder: self._write(folder, config), overwrite=overwrite)
         if self.validated:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
+
+    def _write(self, folder: Path, config: Config) -> None:
+        self.model = write_blueprint(self.blueprint, folder, config)
+        write_parts(self.blueprint, folder / PARTS_FOLDER)
+        if self.preview:
+            render_preview(self.model, folder / PREVIEW_FILE, config.preview)
+        if self.inference is not None:
+            (folder / INFERRED_FOLDER).mkdir()
+            write_inference_files(self.inference, folder / INFERRED_FOLDER, preview=self.preview)
 
     def _validate(self, progress: Reporter) -> None:
         self.report = validated(self.out, preview=self.preview, progress=progress)
@@ -98,25 +108,28 @@ class Generation:
             "understood": list(self.request.understood),
             "ignored": list(self.request.ignored),
             "validation": summary_of(self.report),
-            "accuracy": _accuracy(self.score()),
+            "accuracy": None if self.inference is None else _accuracy(self.score(self.inference)),
         }
 
     def say(self, *, quiet: bool) -> None:
-        """Tell the user, the accuracy last; nothing if a machine reads stdout."""
+        """Tell the user, how well the joints were inferred last; nothing if a machine reads stdout."""
         if quiet:
             return
         blocks = [
             _understood(self.request),
-            describe(self.inference, self.out),
+            f"Base: {self.model.root}\n\n{describe_joints(self.model.joints)}",
+            "\n".join(describe_files(self.out)),
             verdict_on(self.report, self.out),
-            _describe_score(self.score()),
         ]
+        if self.inference is not None:
+            score = _describe_score(self.score(self.inference))
+            blocks.append(f"Inferred from the parts alone: {self.out / INFERRED_FOLDER / MODEL_FILE}\n{score}")
         say("\n\n".join(block for block in blocks if block))
         warn_if_interrupted(self.report)
 
-    def score(self) -> ObjectScore:
+    def score(self, inference: Inference) -> ObjectScore:
         """Compare with the joints that the object was built with."""
-        return score_blueprint(self.blueprint, self.inference)
+        return score_blueprint(self.blueprint, inference)
 
 
 def validated(out: Path, *, preview: bool, progress: Reporter) -> ValidationReport:

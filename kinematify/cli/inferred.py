@@ -9,6 +9,7 @@ from kinematify.cli.table import format_table
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from kinematify.pipeline import Inference
@@ -27,16 +28,25 @@ def confidences(inference: Inference) -> dict[str, float]:
 def describe(inference: Inference, out: Path) -> str:
     """What was found, as people read it: the joints, what to look at first, and the files."""
     confidence_of = confidences(inference)
-    rows = [_describe_joint(joint, confidence_of[joint.child]) for joint in inference.model.joints]
     lines = [
         f"Base: {inference.model.root}",
         "",
-        format_table(("joint", "type", "parent -> child", "range", "confidence"), rows),
+        describe_joints(inference.model.joints, confidence_of),
         "",
         *_describe_doubts(inference),
-        *_describe_files(out),
+        *describe_files(out),
     ]
     return "\n".join(lines)
+
+
+def describe_joints(joints: Sequence[Joint], confidence_of: Mapping[str, float] | None = None) -> str:
+    """A table of joints; with the confidence by child link if they were inferred."""
+    headings = ("joint", "type", "parent -> child", "range")
+    rows = [(joint.name, joint.kind.value, f"{joint.parent} -> {joint.child}", _range(joint)) for joint in joints]
+    if confidence_of is None:
+        return format_table(headings, rows)
+    sure = [(*row, f"{confidence_of[joint.child]:.0%}") for row, joint in zip(rows, joints, strict=True)]
+    return format_table((*headings, "confidence"), sure)
 
 
 def as_loaded(urdf: Path) -> str:
@@ -48,17 +58,7 @@ def as_loaded(urdf: Path) -> str:
     return validate(urdf, selected={free_travel, *(check.id for check in checks_of("KV8"))}).as_loaded
 
 
-def _describe_joint(joint: Joint, confidence: float) -> tuple[str, ...]:
-    return (
-        joint.name,
-        joint.kind.value,
-        f"{joint.parent} -> {joint.child}",
-        _describe_range(joint),
-        f"{confidence:.0%}",
-    )
-
-
-def _describe_range(joint: Joint) -> str:
+def _range(joint: Joint) -> str:
     if joint.kind is JointType.FIXED:
         return "-"
     if not math.isfinite(joint.upper - joint.lower):
@@ -84,7 +84,8 @@ def _describe_doubts(inference: Inference) -> list[str]:
     return [*lines, ""] if lines else []
 
 
-def _describe_files(out: Path) -> list[str]:
+def describe_files(out: Path) -> list[str]:
+    """The files of a model folder that are there, a line each."""
     purposes = {
         "model.urdf": "what a simulator loads, with meshes/ beside it",
         "inference.json": "every alternative with its evidence, seed and timings",

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 MODEL_FILE = "model.urdf"
 RECORD_FILE = "inference.json"
+SOURCE_FILE = "source.json"
+"""What an object of the generator was built with."""
 
 
 def write_model_folder(out: Path, write: Callable[[Path], None], *, overwrite: bool) -> None:
@@ -82,11 +84,12 @@ def _check_replaceable(out: Path, overwrite: bool) -> None:
         raise OutputError(
             f"The output {out} exists and is not a folder, so --force leaves it. Give another one with -o."
         )
-    ours = (out / MODEL_FILE).is_file() and (out / RECORD_FILE).is_file()
+    recorded = (out / RECORD_FILE).is_file() or (out / SOURCE_FILE).is_file()
+    ours = (out / MODEL_FILE).is_file() and recorded
     if not ours and any(out.iterdir()):
         raise OutputError(
-            f"The output folder {out} holds files but no {MODEL_FILE} with {RECORD_FILE}, so it is not a model folder "
-            "and --force leaves it as it is. Give another one with -o, or remove it yourself."
+            f"The output folder {out} holds files but no {MODEL_FILE} with {RECORD_FILE} or {SOURCE_FILE}, so it is "
+            "not a model folder and --force leaves it as it is. Give another one with -o, or remove it yourself."
         )
 
 

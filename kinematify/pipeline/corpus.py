@@ -19,7 +19,7 @@ from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.pipeline.generate import write_truth
+from kinematify.pipeline.generate import write_blueprint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -108,7 +108,7 @@ def _write_object(out: Path, entry: dict[str, Any]) -> str:
     aside = out / f".{folder.name}.{os.getpid()}"
     shutil.rmtree(aside, ignore_errors=True)
     blueprint = build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=entry["seed"], name=entry["name"])
-    write_truth(blueprint, aside, load_config())
+    write_blueprint(blueprint, aside, load_config())
     aside.rename(folder)
     return folder.name
 

@@ -1,4 +1,4 @@
-"""From a blueprint to files: parts for the inference, and the truth beside them, which it never opens."""
+"""From a blueprint to files: the exact model with what is known of it, and its parts for an inference."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
+from kinematify.model.output import SOURCE_FILE
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.robot.obj_file import write_obj
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
 
 PARTS_FOLDER = "parts"
-TRUTH_FOLDER = "truth"
+INFERRED_FOLDER = "inferred"
 
 
 def true_model(blueprint: Blueprint, config: Config) -> KinematicModel:
@@ -65,8 +66,8 @@ def write_parts(blueprint: Blueprint, folder: Path) -> None:
         write_obj(folder / f"{part.name}.obj", part.vertices, part.faces)
 
 
-def write_truth(blueprint: Blueprint, folder: Path, config: Config) -> KinematicModel:
-    """Write ``model.urdf`` with the exact joints, ``truth.json`` and ``source.json`` into a new folder.
+def write_blueprint(blueprint: Blueprint, folder: Path, config: Config) -> KinematicModel:
+    """Write ``model.urdf`` with the exact joints, ``truth.json`` and ``source.json`` into a folder, made if need be.
 
     The folder is one object of a benchmark: `kinematify bench` takes it as it is.
 
@@ -76,10 +77,10 @@ def write_truth(blueprint: Blueprint, folder: Path, config: Config) -> Kinematic
     Raises:
         OSError: It cannot be written.
     """
-    folder.mkdir(parents=True)
+    folder.mkdir(parents=True, exist_ok=True)
     model = true_model(blueprint, config)
     write_model(simulable_model(model, config).robot, folder)
     (folder / "truth.json").write_text(ground_truth(blueprint).to_json() + "\n", encoding="utf-8")
     facts = {"kind": "procedural", "category": blueprint.family, "parameters": dict(blueprint.parameters)}
-    (folder / "source.json").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    (folder / SOURCE_FILE).write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
     return model

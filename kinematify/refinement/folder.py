@@ -115,8 +115,8 @@ def read_record(folder: Path) -> dict[str, Any]:
     if not path.is_file():
         raise InputError(
             f"There is no {RECORD_FILE} in {folder}, so that nothing is known of how its model was chosen. Give a "
-            "folder that `kinematify infer PARTS -o FOLDER` has made; a URDF from elsewhere can be inferred anew with "
-            "`kinematify infer MODEL.urdf -o FOLDER --refine 3`."
+            "folder of `kinematify infer`, or inferred/ of `kinematify generate --infer`; a URDF from elsewhere can be "
+            "inferred anew with `kinematify infer MODEL.urdf -o FOLDER --refine 3`."
         )
     try:
         record = json.loads(path.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""`kinematify generate`: sentences, categories, corpora, and that the inference lives without the truth."""
+"""`kinematify generate`: sentences, categories, corpora, and that the inference sees the parts alone."""
 
 from __future__ import annotations
 
@@ -27,15 +27,20 @@ SENTENCE = "a cabinet with one door above two drawers, 60 cm wide"
 def generated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
     folder = tmp_path_factory.mktemp("generated")
     answer = folder / "answer.json"
-    assert run(["generate", "--text", SENTENCE, "-o", str(folder / "cabinet"), "--json", str(answer)]) == 0
+    assert run(["generate", "--text", SENTENCE, "-o", str(folder / "cabinet"), "--infer", "--json", str(answer)]) == 0
     return folder / "cabinet", json.loads(answer.read_text())
 
 
-def test_a_sentence_becomes_parts_a_model_and_the_truth(generated):
+def test_a_sentence_becomes_an_exact_model_its_parts_and_what_is_inferred_from_them(generated):
     out, answer = generated
     assert sorted(path.stem for path in (out / "parts").iterdir()) == ["body", "door_1", "drawer_1", "drawer_2"]
-    assert {path.name for path in out.iterdir()} >= {"model.urdf", "inference.json", "preview.png", "meshes", "truth"}
-    assert {path.name for path in out.iterdir()} >= {"validation.json", "validation.html"}
+    assert {path.name for path in out.iterdir()} == {
+        *("model.urdf", "meshes", "preview.png", "parts", "truth.json", "source.json", "inferred"),
+        *("validation.json", "validation.html"),
+    }
+    assert {path.name for path in (out / "inferred").iterdir()} == {
+        *("model.urdf", "meshes", "preview.png", "inference.json")
+    }
     assert answer["category"] == "cabinet"
     assert answer["ignored"] == []
     assert answer["accuracy"]["types_right"] == answer["accuracy"]["joints"] == 3
@@ -73,8 +78,8 @@ def test_the_short_verdict_tells_errors_in_full_and_counts_warnings(monkeypatch)
 
 def test_the_truth_describes_the_same_object(generated):
     out, _ = generated
-    truth = GroundTruth.from_json((out / "truth" / "truth.json").read_text())
-    described = read_robot(out / "truth" / "model.urdf", geometry="shown")
+    truth = GroundTruth.from_json((out / "truth.json").read_text())
+    described = read_robot(out / "model.urdf", geometry="shown")
     assert sorted(truth.part_names) == sorted(link.name for link in described.links)
     by_child = {joint.child: joint for joint in described.joints}
     for joint in truth.joints:
@@ -84,11 +89,12 @@ def test_the_truth_describes_the_same_object(generated):
         assert (named.lower, named.upper) == pytest.approx((joint.lower, joint.upper))
 
 
-def test_the_inference_gives_the_same_model_where_the_truth_is_deleted(generated, tmp_path):
+def test_the_inference_sees_nothing_but_the_parts(generated, tmp_path):
     out, _ = generated
     shutil.copytree(out / "parts", tmp_path / "parts")
     assert run(["infer", str(tmp_path / "parts"), "-o", str(tmp_path / "again"), "--no-preview"]) == 0
-    one, two = (read_robot(folder / "model.urdf", geometry="shown") for folder in (out, tmp_path / "again"))
+    folders = (out / "inferred", tmp_path / "again")
+    one, two = (read_robot(folder / "model.urdf", geometry="shown") for folder in folders)
     for first, second in zip(one.joints, two.joints, strict=True):
         assert (first.name, first.kind, first.parent) == (second.name, second.kind, second.parent)
         np.testing.assert_allclose(first.axis, second.axis, atol=1e-9)
@@ -96,11 +102,12 @@ def test_the_inference_gives_the_same_model_where_the_truth_is_deleted(generated
 
 def test_a_category_takes_settings_and_a_seed(tmp_path, capsys):
     command = ["generate", "--category", "gripper", "--set", "fingers=3", "--seed", "4", "-o", str(tmp_path / "one")]
-    assert run([*command, "--no-preview", "--no-validation"]) == 0
-    said = capsys.readouterr().out
-    assert "Not validated" in said
-    assert said.splitlines()[-1].startswith("Against the known joints: 3 of 3 types right")
+    assert run([*command, "--no-preview", "--no-validation", "--collision", "mesh"]) == 0
+    assert "Not validated" in capsys.readouterr().out.splitlines()[-1]
     assert not list((tmp_path / "one").glob("validation.*"))
+    assert len(read_robot(tmp_path / "one" / "model.urdf", geometry="none").joints) == 3
+    assert run([*command, "--no-preview", "--no-validation", "--collision", "mesh", "--infer", "--force"]) == 0
+    assert "Against the known joints: 3 of 3 types right" in capsys.readouterr().out.splitlines()[-1]
 
 
 def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.generate.procedural.request import from_text
-from kinematify.pipeline.generate import write_truth
+from kinematify.pipeline.generate import write_blueprint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,5 +33,5 @@ def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:
             continue
         aside = folder / f".{place.name}.{os.getpid()}"
         shutil.rmtree(aside, ignore_errors=True)
-        write_truth(blueprint, aside, load_config())
+        write_blueprint(blueprint, aside, load_config())
         aside.rename(place)
