@@ -1,7 +1,7 @@
-"""What goes into another format: the URDF's tree, what is seen, convex pieces that engines collide, usable masses.
+"""What goes into another format: the URDF's tree, what is seen, the pieces that collide, usable masses.
 
-Engines take the hull of a mesh for the mesh, so that a drawer would be solid and its cabinet too. What collides is
-therefore what `kinematify validate` simulates: primitives, and meshes cut into convex pieces.
+The pieces are those that the file has. Engines take the hull of a mesh for the mesh, so that a drawer would be solid
+and its cabinet too: a file whose meshes are not convex gets the pieces that `kinematify fix` writes.
 """
 
 from __future__ import annotations
@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
+from kinematify.config import load_config
+from kinematify.geometry.rest import overlapping_links
 from kinematify.geometry.scene import read_scene
-from kinematify.model.collision_pieces import decomposed
+from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
 from kinematify.robot.read import read_robot
-from kinematify.robot.robot import Link, LinkMesh, Shape
+from kinematify.robot.robot import Link, Shape
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from kinematify.config.validation import PrepareSettings, ValidationSettings
-    from kinematify.model.collision_pieces import Pieces
     from kinematify.model.masses import PreparedInertial
     from kinematify.robot.robot import Robot
 
@@ -45,7 +44,7 @@ class Content:
     settings: PrepareSettings
     """What joints without effort and velocity get where a format demands them."""
     apart: tuple[tuple[str, str], ...]
-    """Links that are not to collide: neighbours in the tree, and those in contact at rest."""
+    """Links that are not to collide, since they are in each other at rest."""
     notes: tuple[str, ...]
     """What was made up or changed, one sentence each."""
 
@@ -73,40 +72,35 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
         InputError: The URDF cannot be used.
     """
     model = read_robot(urdf, package_dirs=package_dirs)
+    made = not collides_as_it_is(model)
+    robot = model
+    if made:
+        robot = fit_collision(model, load_config().collision, settings.prepare, settings.geometry).robot
     inertials = prepared_inertials(model, settings.prepare)
-    pieces = decomposed(model, settings.prepare)
     links = tuple(
         Link(
             name=link.name,
             inertial=inertials[link.name] if inertials[link.name].mass > 0.0 else None,
             visuals=_visuals(link),
-            collisions=(
-                *pieces[link.name].primitives,
-                *(
-                    Shape(mesh=LinkMesh(vertices=piece.vertices, faces=piece.faces))
-                    for piece in pieces[link.name].convex
-                ),
-            ),
+            collisions=tuple(Shape(mesh=shape.mesh) if shape.kind == "mesh" else shape for shape in link.collisions),
         )
-        for link in model.links
+        for link in robot.links
     )
     return Content(
-        robot=replace(model, links=links),
+        robot=replace(robot, links=links),
         settings=settings.prepare,
-        apart=_apart(model, settings),
-        notes=tuple(_notes(model, inertials, pieces)),
+        apart=overlapping_links(read_scene(robot, settings.geometry)),
+        notes=tuple(_notes(model, inertials, made=made)),
     )
 
 
-def _notes(model: Robot, inertials: dict[str, PreparedInertial], pieces: dict[str, Pieces]) -> list[str]:
+def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) -> list[str]:
     weighed = [link.name for link in model.links if inertials[link.name].mass_added and link.has_geometry]
     notes = []
-    cut = [name for name, found in pieces.items() if len(found.convex) > 1]
-    if cut:
-        farthest = max(cut, key=lambda name: pieces[name].gap)
+    if made:
         notes.append(
-            f"The collision geometry of {len(cut)} links is several convex pieces each; they reach at most "
-            f"{1e3 * pieces[farthest].gap:.2g} mm beyond the surface ({farthest})."
+            "Not all meshes that collide are convex, as engines take them to be: what collides is the convex pieces "
+            "that kinematify fix makes, carved by the motion."
         )
     if weighed:
         notes.append(f"{len(weighed)} links state no usable mass and weigh what their volume suggests: "
@@ -125,12 +119,3 @@ def _visuals(link: Link) -> tuple[Shape, ...]:
         if shape.kind != "mesh" or len(np.unique(shape.mesh.faces)) >= _LEAST_VERTICES
     ]
     return tuple(Shape(mesh=shape.mesh, color=shape.color) if shape.kind == "mesh" else shape for shape in shown)
-
-
-def _apart(model: Robot, settings: ValidationSettings) -> tuple[tuple[str, str], ...]:
-    """Pairs of links that touch where nothing is wrong: neighbours, and what is in contact at rest."""
-    scene = read_scene(model, settings.geometry)
-    allowance = Allowance(scene, Overlap(scene))
-    pairs = [pair for pair, rest in allowance.pairs.items() if rest.joined or rest.collide or rest.contained]
-    shown = [[name for name in body.links if model.link_by_name[name].has_geometry] for body in scene.bodies]
-    return tuple((first, second) for a, b in sorted(pairs) for first in shown[a] for second in shown[b])

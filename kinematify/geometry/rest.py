@@ -7,12 +7,12 @@ from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.scene import relative
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.geometry.overlap import Overlap
     from kinematify.geometry.scene import Pair, Scene
 
 
@@ -36,6 +36,14 @@ class AtRest:
     """Deepest point in a closed shell [m]."""
     contained: bool
     """One body is inside the other one, and their surfaces do not meet."""
+
+
+def overlapping_links(scene: Scene) -> tuple[tuple[str, str], ...]:
+    """Pairs of links with geometry whose bodies are in each other at rest: engines would drive them apart."""
+    allowance = Allowance(scene, Overlap(scene))
+    pairs = [pair for pair, rest in allowance.pairs.items() if rest.collide or rest.contained]
+    shown = [[name for name in body.links if scene.model.link_by_name[name].has_geometry] for body in scene.bodies]
+    return tuple((first, second) for a, b in sorted(pairs) for first in shown[a] for second in shown[b])
 
 
 class Allowance:

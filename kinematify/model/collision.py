@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.carve import Sweep, carved
-from kinematify.geometry.convex import ConvexPiece, surface_points
+from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume, surface_points
 from kinematify.geometry.fewer import fewer_pieces
 from kinematify.geometry.hull import convex_hull
 from kinematify.geometry.overlap import Overlap
@@ -44,6 +44,8 @@ _PROBES = 400
 """Points of a link's surface by which it is told how much the pieces leave out."""
 _MAX_STEM = 100  # file systems end at 255 bytes for a name
 _BOX_CORNERS = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1).reshape(8, 3)
+_FILLED = 1e-3
+"""A mesh is convex if its hull is larger by less than this share."""
 _SQUARE = 1e-6
 """A piece is a box if its corners differ from those of one by less than this fraction of its diagonal."""
 
@@ -137,6 +139,23 @@ def fit_collision(
         jams=tuple((joints[k].name, robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
         blocked=tuple(exact.blocked),
     )
+
+
+def collides_as_it_is(robot: Robot) -> bool:
+    """Whether what the links collide with is what engines take it for: primitives and convex meshes, on every link."""
+    return all(
+        bool(link.collisions) and all(shape.kind != "mesh" or _convex(shape.mesh) for shape in link.collisions)
+        for link in robot.links
+        if link.has_geometry
+    )
+
+
+def _convex(mesh: LinkMesh) -> bool:
+    volume = enclosed_volume(mesh.vertices, mesh.faces) if len(mesh.faces) else None
+    if volume is None:
+        return False
+    hull = convex_piece(mesh.vertices, thickness=_THINNEST, directions=len(mesh.vertices))
+    return volume >= (1.0 - _FILLED) * hull.volume
 
 
 class _ExactSweeps:

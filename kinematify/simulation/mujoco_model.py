@@ -1,4 +1,4 @@
-"""Prepared files in MuJoCo: compiled models, variants of them, and what it says of a table of configurations."""
+"""Files in MuJoCo: compiled models, variants of them, and what it says of a table of configurations."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class ParsedModel:
 
 
 def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> ParsedModel:
-    """Parse a prepared file.
+    """Parse a file.
 
     Raises:
         Refused: MuJoCo cannot.
@@ -92,6 +92,7 @@ def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> ParsedModel:
         spec = mujoco.MjSpec.from_string(etree.tostring(robot, encoding="unicode", pretty_print=True))
     except ValueError as error:
         raise Refused(_sentence(error)) from error
+    spec.modelfiledir = str(urdf.parent)
     spec.compiler.fusestatic = False
     set_options(spec, step)
     # Contacts between a body and its parent count; what is there from the start is allowed pair by pair.

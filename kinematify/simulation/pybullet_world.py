@@ -1,4 +1,4 @@
-"""Prepared files in worlds of PyBullet, and what it says of single configurations.
+"""Files in worlds of PyBullet, and what it says of single configurations.
 
 PyBullet speaks in indices of its own and in tuples; nothing of either leaves this package.
 """
@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pybullet as bullet
 
-from kinematify.model.collision_pieces import Method
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import Contacts, deepest
@@ -23,10 +22,10 @@ from kinematify.simulation.engine import Refused
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
-    from kinematify.simulation.prepared import Prepared
 
 _FLAGS = (
     bullet.URDF_USE_SELF_COLLISION
@@ -253,13 +252,13 @@ def connect(step: float, *, iterations: int | None = None) -> int:
 
 
 def load(
-    mechanism: Mechanism, prepared: Prepared, *, step: float, fixed: bool = True, looking: bool = False
+    mechanism: Mechanism, urdf: Path, *, step: float, fixed: bool = True, looking: bool = False
 ) -> PybulletBody:
-    """Load a prepared file into a new world; links that fixed joints join do not collide with each other.
+    """Load a file into a new world; links that fixed joints join do not collide with each other.
 
     Args:
         mechanism: Its tree.
-        prepared: The file and its record.
+        urdf: The file, its meshes convex.
         step: Time step [s].
         fixed: False: the base is free.
         looking: The model is set to configurations and never simulated. Large inertias are then scaled down, because
@@ -270,7 +269,7 @@ def load(
     """
     client = connect(step)
     try:
-        loaded = _loaded(client, mechanism, prepared, useFixedBase=fixed, flags=_FLAGS)
+        loaded = _loaded(client, mechanism, urdf, useFixedBase=fixed, flags=_FLAGS)
     except Refused:
         bullet.disconnect(physicsClientId=client)
         raise
@@ -283,14 +282,14 @@ def load(
 
 
 def load_at(
-    client: int, mechanism: Mechanism, prepared: Prepared, T_world_root: FloatArray, *, itself: bool
+    client: int, mechanism: Mechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool
 ) -> PybulletBody:
-    """Load a prepared file into a world, its root fixed at a pose.
+    """Load a file into a world, its root fixed at a pose.
 
     Args:
         client: Number of the world.
         mechanism: Its tree.
-        prepared: The file and its record.
+        urdf: The file, its meshes convex.
         T_world_root: Shape (4, 4).
         itself: Links that no joint connects collide with each other.
 
@@ -300,26 +299,34 @@ def load_at(
     flags = bullet.URDF_USE_INERTIA_FROM_FILE | (bullet.URDF_USE_SELF_COLLISION if itself else 0)
     place, turn = T_world_root[:3, 3].tolist(), quaternion_of(T_world_root[:3, :3], real_last=True).tolist()
     options = {"basePosition": place, "baseOrientation": turn, "useFixedBase": True, "flags": flags}
-    return _loaded(client, mechanism, prepared, **options)
+    return _loaded(client, mechanism, urdf, **options)
 
 
-def _loaded(client: int, mechanism: Mechanism, prepared: Prepared, **options: Any) -> PybulletBody:
+def _loaded(client: int, mechanism: Mechanism, urdf: Path, **options: Any) -> PybulletBody:
     try:
-        body = bullet.loadURDF(str(prepared.urdf), physicsClientId=client, **options)
+        body = bullet.loadURDF(str(urdf), physicsClientId=client, **options)
     except bullet.error as error:
         raise Refused(str(error)) from error
     infos = [bullet.getJointInfo(body, k, physicsClientId=client) for k in range(bullet.getNumJoints(body, client))]
     links = {text_of(info[12]): info[0] for info in infos}
     links.setdefault(mechanism.robot.root, _BASE)
     joints = {text_of(info[1]): info[0] for info in infos if info[2] != bullet.JOINT_FIXED}
-    methods = [prepared.link_by_name[name].method for name in mechanism.links]
+    indices = [links.get(name, -2) for name in mechanism.links]
+    inflated = [
+        index >= _BASE
+        and any(
+            shape[2] == bullet.GEOM_MESH
+            for shape in bullet.getCollisionShapeData(body, index, physicsClientId=client)
+        )
+        for index in indices
+    ]
     return PybulletBody(
         client=client,
         body=body,
         mechanism=mechanism,
-        link=np.array([links.get(name, -2) for name in mechanism.links], dtype=np.int64),
+        link=np.array(indices, dtype=np.int64),
         joint=np.array([joints.get(name, -2) for name in mechanism.joints], dtype=np.int64),
-        margin=np.array([0.0 if m in {Method.NONE, Method.PRIMITIVES} else _HULL_MARGIN for m in methods]),
+        margin=np.where(inflated, _HULL_MARGIN, 0.0),
     )
 
 

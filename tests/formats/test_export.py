@@ -14,10 +14,17 @@ from pxr import Usd, UsdGeom, UsdPhysics
 
 from kinematify import export
 from kinematify.cli.app import run
+from kinematify.config import load_config
 from kinematify.errors import InputError, OutputError
+from kinematify.generate.procedural.request import from_category
+from kinematify.geometry.convex import signed_volume
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model as write_files
+from kinematify.pipeline.generate import true_model
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import rotation_about
+from tests.plain_mujoco import stuck_joints
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -133,6 +140,68 @@ def test_mjcf_holds_the_hollow_of_a_tray_and_lets_followers_follow(urdf: Path, t
     hinge, follow = (data.joint(name).qpos[0] for name in ("hinge", "follow"))
     assert abs(hinge) > 0.05
     assert follow == pytest.approx(0.1 - 2.0 * hinge, abs=0.02)
+
+
+@pytest.fixture(scope="module", params=["cabinet", "toilet"])
+def carved(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A model as `kinematify generate` writes it, with pieces carved by the motion."""
+    config = load_config()
+    model = true_model(from_category(request.param, {}).build(seed=1), config)
+    return write_files(simulable_model(model, config).robot, tmp_path_factory.mktemp(request.param))
+
+
+def pieces_of(urdf: Path) -> dict[str, list[float]]:
+    """Volumes of what each link collides with, small ones first [m^3]."""
+    return {
+        link.name: sorted(abs(signed_volume(shape.mesh.vertices, shape.mesh.faces)) for shape in link.collisions)
+        for link in read_robot(urdf).links
+    }
+
+
+def same_pieces(found: dict[str, list[float]], urdf: Path) -> None:
+    expected = pieces_of(urdf)
+    assert found.keys() == expected.keys()
+    for name, volumes in expected.items():
+        assert sorted(found[name]) == pytest.approx(volumes, rel=1e-4)
+
+
+def test_mjcf_collides_with_the_pieces_of_the_urdf_and_every_joint_moves(carved: Path, tmp_path: Path) -> None:
+    done = export(carved, "mjcf", tmp_path / "model.xml")
+    assert not any("convex" in note for note in done.notes)
+    model = mujoco.MjModel.from_xml_path(str(done.path))
+    assert model.nexclude == 0
+    found: dict[str, list[float]] = {model.body(k).name: [] for k in range(1, model.nbody)}
+    for geom in np.flatnonzero(model.geom_contype):
+        size, mesh = model.geom_size[geom], model.geom_dataid[geom]
+        volume = 8.0 * np.prod(size)
+        if mesh >= 0:
+            points = slice(model.mesh_vertadr[mesh], model.mesh_vertadr[mesh] + model.mesh_vertnum[mesh])
+            volume = trimesh.convex.convex_hull(model.mesh_vert[points]).volume
+        found[model.body(model.geom_bodyid[geom]).name].append(float(volume))
+    same_pieces(found, carved)
+    assert stuck_joints(model, read_robot(carved)) == []
+
+
+def test_sdf_collides_with_the_pieces_of_the_urdf(carved: Path, tmp_path: Path) -> None:
+    model = etree.parse(export(carved, "sdf", tmp_path / "model.sdf").path).find("model")
+    assert model is not None
+    found: dict[str, list[float]] = {}
+    for element in model.findall("link"):
+        volumes = found.setdefault(str(element.get("name")), [])
+        for geometry in element.findall("collision/geometry"):
+            size, uri = geometry.findtext("box/size"), geometry.findtext("mesh/uri")
+            volumes.append(
+                trimesh.load_mesh(tmp_path / uri).volume
+                if uri is not None
+                else float(np.prod([float(word) for word in str(size).split()]))
+            )
+    same_pieces(found, carved)
+
+
+def test_usd_collides_with_as_many_pieces_as_the_urdf(carved: Path, tmp_path: Path) -> None:
+    stage = Usd.Stage.Open(str(export(carved, "usd", tmp_path / "model.usda").path))
+    colliding = [prim for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.CollisionAPI)]
+    assert len(colliding) == sum(len(volumes) for volumes in pieces_of(carved).values())
 
 
 def test_free_model_falls_and_a_fixed_one_does_not(urdf: Path, tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from kinematify.generate.procedural.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.generate import true_model
+from tests.plain_mujoco import hand, stuck_joints, wanted
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -31,28 +32,9 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return model, write_model(model.robot, tmp_path_factory.mktemp(request.param))
 
 
-def hand(kind: object) -> float:
-    config = load_config().dynamics
-    return config.hand_torque if kind.turns else config.hand_force
-
-
 def test_every_joint_moves_in_plain_mujoco(written: tuple[SimulableModel, Path]) -> None:
     made, urdf = written
-    model = mujoco.MjModel.from_xml_path(str(urdf))
-    for joint in made.robot.leaders:
-        data = mujoco.MjData(model)
-        at, dof = model.joint(joint.name).qposadr[0], model.joint(joint.name).dofadr[0]
-        way = joint.upper if math.isfinite(joint.upper) else math.pi
-        sign = 1.0 if way >= -max(joint.lower, -math.pi) else -1.0
-        goal = 0.95 * (way if sign > 0 else -joint.lower)
-        for _ in range(3000):
-            data.qfrc_applied[dof] = sign * hand(joint.kind)
-            mujoco.mj_step(model, data)
-            others = np.arange(model.nv) != dof
-            data.qpos[others], data.qvel[others] = 0.0, 0.0
-            if sign * data.qpos[at] >= goal:
-                break
-        assert sign * data.qpos[at] >= goal, joint.name
+    assert stuck_joints(mujoco.MjModel.from_xml_path(str(urdf)), made.robot) == []
 
 
 def test_nothing_overlaps_or_moves_by_itself_in_plain_mujoco(written: tuple[SimulableModel, Path]) -> None:
@@ -79,14 +61,12 @@ def test_every_joint_moves_in_plain_pybullet(written: tuple[SimulableModel, Path
         }
         for joint in made.robot.leaders:
             number = index[joint.name]
-            way = joint.upper if math.isfinite(joint.upper) else math.pi
-            sign = 1.0 if way >= -max(joint.lower, -math.pi) else -1.0
-            goal = 0.95 * (way if sign > 0 else -joint.lower)
+            sign, goal = math.copysign(1.0, wanted(joint)), abs(wanted(joint))
             free = {"controlMode": pybullet.VELOCITY_CONTROL, "force": 0.0, "physicsClientId": client}
             pybullet.setJointMotorControl2(body, number, **free)
             for _ in range(1500):
                 pybullet.setJointMotorControl2(
-                    body, number, pybullet.TORQUE_CONTROL, force=sign * hand(joint.kind), physicsClientId=client
+                    body, number, pybullet.TORQUE_CONTROL, force=sign * hand(joint), physicsClientId=client
                 )
                 pybullet.stepSimulation(physicsClientId=client)
                 if sign * pybullet.getJointState(body, number, physicsClientId=client)[0] >= goal:
