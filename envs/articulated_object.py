@@ -1,4 +1,4 @@
-"""The object of an environment: read, made loadable, stood on the floor, and the way on which its joint opens."""
+"""The object of an environment: its file, stood on the floor, and the way on which its joint opens."""
 
 from __future__ import annotations
 
@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
-from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
+from kinematify.formats.fix import fix_urdf
 from kinematify.geometry.scene import read_scene, transformed
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
+from kinematify.model.collision import collides_as_it_is
+from kinematify.model.masses import prepared_inertials
 from kinematify.model.output import MODEL_FILE
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rigid_groups
-from kinematify.simulation.prepare import prepare
 
 if TYPE_CHECKING:
     from kinematify.envs.settings import HandSettings
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Robot
-    from kinematify.simulation.prepared import Prepared
 
 AUTO = "auto"
 _PLINTH = 0.4  # objects whose parts swing below them stand so much higher [m]
@@ -46,9 +47,10 @@ class ArticulatedObject:
     source: str
     """The `model` keyword."""
     urdf: Path
+    loaded: Path
+    """What engines load: the URDF, or what `kinematify fix` makes of one whose meshes they would misread."""
     declared: Robot
     scene: Scene
-    prepared: Prepared
     T_world_root: FloatArray
     """Root link with the object in the middle of the floor, shape (4, 4)."""
     suggested: str
@@ -127,12 +129,11 @@ class Target:
         return self.way / abs(self.range)
 
 
-def load_articulated_object(model: str | Path | None, *, fine: bool = False) -> ArticulatedObject:
+def load_articulated_object(model: str | Path | None) -> ArticulatedObject:
     """Read the object that a `model` keyword names.
 
     Args:
         model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY``, or None for the default.
-        fine: Cut concave parts so finely that fingers can go around handles.
 
     Raises:
         InputError: There is no such model, it cannot be read, or nothing of it moves.
@@ -140,7 +141,7 @@ def load_articulated_object(model: str | Path | None, *, fine: bool = False) -> 
     source = f"{PREFIX}{DEFAULT}" if model is None else str(model)
     folder = Path(tempfile.mkdtemp(prefix="kinematify-env-"))
     try:
-        articulated_object = _read(source, folder, fine=fine)
+        articulated_object = _read(source, folder)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
@@ -148,34 +149,44 @@ def load_articulated_object(model: str | Path | None, *, fine: bool = False) -> 
     return articulated_object
 
 
-def _read(source: str, folder: Path, *, fine: bool) -> ArticulatedObject:
+def _read(source: str, folder: Path) -> ArticulatedObject:
     suggested = AUTO
     if source.startswith((PREFIX, FAMILY_PREFIX)):
         bundled = find_bundled(source)
         urdf, suggested = write_bundled(bundled, folder / "object"), bundled.joint
     else:
         urdf = urdf_of(source)
-    settings, names = load_settings(), ("link_gap", "model_gap", "cuts", "cuts_per_link")
-    finer = {name: getattr(load_env_settings().robot, name) for name in names} if fine else {}
-    declared = read_robot(urdf)
-    scene = read_scene(declared, settings.geometry)
+    loaded = loadable(urdf, folder)
+    declared = read_robot(loaded)
+    scene = read_scene(declared, load_settings().geometry)
     if not scene.travels:
         raise InputError(
             f"The model {source} has no joint that moves by itself, so there is nothing to open. Give a model with a "
             "revolute, continuous or prismatic joint; kinematify infer finds the joints of separate parts."
         )
-    work = folder / "prepared"
-    work.mkdir()
     return ArticulatedObject(
         source=source,
         urdf=urdf,
+        loaded=loaded,
         declared=declared,
         scene=scene,
-        prepared=prepare(declared, work, settings.prepare.model_copy(update=finer)),
         T_world_root=_standing(scene),
         suggested=suggested,
         folder=folder,
     )
+
+
+def loadable(urdf: Path, folder: Path) -> Path:
+    """Return a file that engines load as it stands: the given one where its pieces are convex and its links weigh.
+
+    Others are mended into the folder, as `kinematify fix` does.
+    """
+    robot, settings = read_robot(urdf), load_settings()
+    inertials = prepared_inertials(robot, settings.prepare)
+    weighed = not any(inertials[link.name].mass_added for link in robot.links if link.has_geometry)
+    if weighed and collides_as_it_is(robot):
+        return urdf
+    return fix_urdf(urdf, folder / f"{urdf.stem}_fixed.urdf", load_config(), settings).path
 
 
 def urdf_of(source: str) -> Path:

@@ -72,7 +72,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
         self.open_fraction = open_fraction
-        self.articulated_object = shared_articulated_object(model, fine=self._with_robot)
+        self.articulated_object = shared_articulated_object(model)
         self.validation = require_valid(self.articulated_object, engine, allow_invalid=allow_invalid)
         self.T_world_root = self.articulated_object.T_world_root
         self._asked_joint = joint

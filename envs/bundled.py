@@ -10,7 +10,8 @@ from kinematify.config import load_config
 from kinematify.errors import InputError
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.request import from_category
-from kinematify.model.urdf import write_urdf
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model
 from kinematify.pipeline.generate import true_model
 
 if TYPE_CHECKING:
@@ -85,6 +86,6 @@ def write_bundled(bundled: BundledObject, folder: Path) -> Path:
         OSError: It cannot be written.
     """
     folder.mkdir(parents=True)
-    blueprint = from_category(bundled.family, bundled.settings).build()
-    write_urdf(true_model(blueprint, load_config("default")), folder)
-    return folder / "model.urdf"
+    config = load_config()
+    model = true_model(from_category(bundled.family, bundled.settings).build(), config)
+    return write_model(simulable_model(model, config).robot, folder)

@@ -11,19 +11,16 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.config.validation import load_settings as load_limits
 from kinematify.envs.articulated_object import held_links
 from kinematify.envs.mujoco_object import (
     PREFIX,
     MujocoObject,
     MujocoWorld,
-    ObjectSource,
     add_object,
     deepest_contact,
     env_spec,
-    object_source,
+    parsed,
     poses_of,
-    settled_source,
 )
 from kinematify.envs.settings import load_settings
 from kinematify.simulation.mujoco_world import (
@@ -45,6 +42,7 @@ if TYPE_CHECKING:
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.mujoco_model import ParsedModel
 
 ROBOT = "robot "
 """Before the names of the robot's links and joints."""
@@ -58,7 +56,7 @@ class ArmFacts:
     """A compiled world; worlds are copies of it."""
 
     model: mujoco.MjModel
-    source: ObjectSource
+    source: ParsedModel
     dynamics: JointDynamics
 
 
@@ -68,9 +66,9 @@ def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvR
     settings = load_settings()
     spec = env_spec(settings)
     hold_by_friction(spec)
-    source = object_source(articulated_object, settings)
+    source = parsed(articulated_object.loaded, articulated_object.scene, settings)
     add_object(spec, articulated_object, target, source, plan.T_world_object)
-    _add_robot(spec, articulated_object, robot, plan, settings)
+    _add_robot(spec, robot, plan, settings)
     floor = spec.worldbody.add_geom(name="kinematify floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0])
     floor.contype, floor.conaffinity = 0, _ROBOT_BIT
     _add_drives(spec, robot, settings)
@@ -81,17 +79,12 @@ def arm_facts(articulated_object: ArticulatedObject, target: Target, robot: EnvR
     return ArmFacts(model=model, source=source, dynamics=dynamics)
 
 
-def _add_robot(
-    spec: mujoco.MjSpec, articulated_object: ArticulatedObject, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings
-) -> None:
+def _add_robot(spec: mujoco.MjSpec, robot: EnvRobot, plan: RobotPlan, settings: EnvSettings) -> None:
     """Attach the robot; it meets itself, the object and the floor, with rubber on all of its surfaces."""
-    tolerance = load_limits().engines.contact_depth * articulated_object.scene.size
-    part = settled_source(robot.prepared, robot.mechanism, 1.0, settings).source.spec.copy()
+    part = parsed(robot.loaded, robot.scene, settings).spec.copy()
     make_rubber(part, settings.robot.friction, settings.time.step)
     for geom in part.geoms:
         geom.contype, geom.conaffinity = _ROBOT_BIT, _OBJECT_BIT | _ROBOT_BIT
-        # Margins of both sides add up: robot and object act on each other from the first touch.
-        geom.margin, geom.gap = 0.5 * tolerance, -0.5 * tolerance
     for geom in spec.geoms:
         geom.conaffinity = _OBJECT_BIT | _ROBOT_BIT
     attach(spec, part, ROBOT, plan.T_world_base)

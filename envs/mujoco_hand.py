@@ -15,11 +15,10 @@ from kinematify.envs.mujoco_object import (
     WORLD,
     MujocoObject,
     MujocoWorld,
-    ObjectSource,
     add_object,
     deepest_contact,
     env_spec,
-    object_source,
+    parsed,
 )
 from kinematify.envs.settings import load_settings
 
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from kinematify.envs.dynamics import JointDynamics
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
+    from kinematify.simulation.mujoco_model import ParsedModel
 
 FORCE, POSITION = "force", "position"
 _DAMPING_RATIO = 2.0  # of the hand's spring, times mass and frequency: neither swings nor creeps
@@ -38,7 +38,7 @@ class HandFacts:
     """A compiled world and what its hand can do; worlds are copies of it."""
 
     model: mujoco.MjModel
-    source: ObjectSource
+    source: ParsedModel
     dynamics: JointDynamics
     inertia: float
     """That the joint moves at most [kg m^2 or kg]."""
@@ -56,7 +56,7 @@ class HandFacts:
 def hand_facts(articulated_object: ArticulatedObject, target: Target, control: str) -> HandFacts:
     """Compile the world of a hand, once per process."""
     settings = load_settings()
-    source = object_source(articulated_object, settings)
+    source = parsed(articulated_object.loaded, articulated_object.scene, settings)
     spec = env_spec(settings)
     add_object(spec, articulated_object, target, source, articulated_object.T_world_root)
     for axis, letter in enumerate("xyz"):

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
-from kinematify.config.validation import load_settings
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
 from kinematify.envs.reading import Reading
-from kinematify.simulation.contacts import touching
-from kinematify.simulation.mujoco_model import compiled, measure, parse, with_allowances
+from kinematify.geometry.rest import overlapping_links
+from kinematify.simulation.mujoco_model import parse
 from kinematify.simulation.mujoco_world import world_spec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from pathlib import Path
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
     from kinematify.envs.settings import EnvSettings
+    from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import Mechanism
-    from kinematify.simulation.contacts import Touching
     from kinematify.simulation.mujoco_model import ParsedModel
-    from kinematify.simulation.prepared import Prepared
 
 PREFIX = "object "
 """Before the names of the object's links, joints and shapes."""
@@ -40,44 +37,14 @@ _WARNINGS = {
 _STIFF = 0.999  # share of its creep that friction takes away
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ObjectSource:
-    """A parsed object whose contacts are settled; worlds are compiled from copies of it."""
-
-    source: ParsedModel
-    touching: Touching
-
-
-def object_source(articulated_object: ArticulatedObject, settings: EnvSettings) -> ObjectSource:
-    """Parse the object and settle its contacts (`settled_source`)."""
-    return settled_source(
-        articulated_object.prepared, articulated_object.scene.mechanism, articulated_object.scene.size, settings
-    )
-
-
-def settled_source(prepared: Prepared, mechanism: Mechanism, size: float, settings: EnvSettings) -> ObjectSource:
-    """Parse a prepared file and look who touches whom while it moves.
-
-    What touches at rest, as a drawer its runners, acts beyond the depth that it has there; where it gets no deeper over
-    the whole motion it need not be looked at. Everything else acts from the first touch (`with_allowances`).
-
-    Args:
-        prepared: An object or a robot.
-        mechanism: Its tree.
-        size: Its diagonal [m].
-        settings: Samples of the motion.
-    """
-    source = parse(prepared.urdf, mechanism, step=settings.time.step)
+def parsed(urdf: Path, scene: Scene, settings: EnvSettings) -> ParsedModel:
+    """Parse a file; what is in each other at rest does not collide, everything else does."""
+    source = parse(urdf, scene.mechanism, step=settings.time.step)
     source.spec.compiler.balanceinertia = True
-    measured = compiled(source)
-    rows = mechanism.sweep(settings.object.sweep_samples)
-    seen = measure(measured, mechanism.all_values(rows), dynamic=0, threads=1)
-    tolerance = load_settings().engines.contact_depth * size
-    met = touching(seen.contacts, mechanism, prepared, rows=len(rows), tolerance=tolerance)
-    slack = met.slack.copy()
-    slack[np.setdiff1d(np.arange(len(slack)), met.meet)] = np.inf
-    settled = replace(met, slack=slack)
-    return ObjectSource(source=with_allowances(source, measured, settled, only=False), touching=settled)
+    names = dict(zip(scene.mechanism.links, source.names, strict=True))
+    for first, second in overlapping_links(scene):
+        source.spec.add_exclude(bodyname1=names[first], bodyname2=names[second])
+    return source
 
 
 def env_spec(settings: EnvSettings) -> mujoco.MjSpec:
@@ -94,14 +61,14 @@ def add_object(
     spec: mujoco.MjSpec,
     articulated_object: ArticulatedObject,
     target: Target,
-    found: ObjectSource,
+    found: ParsedModel,
     T_world_root: FloatArray,
 ) -> None:
     """Attach the object, mark the hold and the joint that is opened, and add their sensors."""
-    part = found.source.spec.copy()
+    part = found.spec.copy()
     part.compiler.balanceinertia = True
     spec.attach(part, prefix=PREFIX, frame=spec.worldbody.add_frame(pos=T_world_root[:3, 3]))
-    names = dict(zip(articulated_object.scene.mechanism.links, found.source.names, strict=True))
+    names = dict(zip(articulated_object.scene.mechanism.links, found.names, strict=True))
     body = spec.body(PREFIX + names[target.link])
     body.add_site(name=HOLD, pos=target.point)
     axis = articulated_object.declared.joint_by_name[target.joint].axis
@@ -125,7 +92,7 @@ class MujocoObject:
     """Where the object stands in a compiled world, and its dynamics; redrawn in place."""
 
     def __init__(
-        self, model: mujoco.MjModel, articulated_object: ArticulatedObject, target: Target, found: ObjectSource
+        self, model: mujoco.MjModel, articulated_object: ArticulatedObject, target: Target, found: ParsedModel
     ) -> None:
         """Look up names; `model` is changed by `set_up` and `apply`."""
         self.model, self.articulated_object, self.target = model, articulated_object, target
@@ -133,9 +100,7 @@ class MujocoObject:
         self.joints: IntArray = np.array([model.joint(PREFIX + name).id for name in mechanism.joints], dtype=np.int64)
         self.qpos: IntArray = np.asarray(model.jnt_qposadr[self.joints], dtype=np.int64)
         self.dof: IntArray = np.asarray(model.jnt_dofadr[self.joints], dtype=np.int64)
-        self.body: IntArray = np.array(
-            [int(model.body(PREFIX + name).id) for name in found.source.names], dtype=np.int64
-        )
+        self.body: IntArray = np.array([int(model.body(PREFIX + name).id) for name in found.names], dtype=np.int64)
         names = list(mechanism.joints)
         self._leaders = np.array([names.index(joint) for joint in articulated_object.joints], dtype=np.int64)
         self.leader_qpos, self.leader_dof = self.qpos[self._leaders], self.dof[self._leaders]

@@ -51,7 +51,7 @@ class PybulletArm(PybulletWorld):
 
     def _load(self, plan: RobotPlan, settings: EnvSettings) -> None:
         client, names = self.client, self._robot.robot
-        loaded = load_at(client, self._robot.mechanism, self._robot.prepared, plan.T_world_base, itself=True)
+        loaded = load_at(client, self._robot.mechanism, self._robot.loaded, plan.T_world_base, itself=True)
         self._loaded, self.body = loaded, loaded.body
         joints = dict(zip(loaded.mechanism.joints, loaded.indices, strict=True))
         driven = (*names.arm_joints, *names.finger_joints)

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
-from kinematify.config.validation import load_settings
 from kinematify.envs.reading import Reading
+from kinematify.geometry.rest import overlapping_links
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.contacts import deepest, touching
 from kinematify.simulation.pybullet_world import load, pose_of
 
 if TYPE_CHECKING:
@@ -41,16 +40,18 @@ class PybulletObject:
         T_world_root: FloatArray,
         settings: EnvSettings,
     ) -> None:
-        """Load the prepared file; pairs that always touch do not collide, as in MuJoCo."""
+        """Load the file; what is in each other at rest does not collide, as in MuJoCo."""
         self.articulated_object, self.target, self._dynamics = articulated_object, target, dynamics
         mechanism = articulated_object.scene.mechanism
-        self._loaded = load(mechanism, articulated_object.prepared, step=settings.time.step)
+        self._loaded = load(mechanism, articulated_object.loaded, step=settings.time.step)
         self.client, self.body = self._loaded.client, self._loaded.body
         bullet.setPhysicsEngineParameter(
             numSolverIterations=settings.time.solver_iterations, deterministicOverlappingPairs=1,
             physicsClientId=self.client,
         )  # fmt: skip
-        self._let_touch(settings)
+        place = {name: k for k, name in enumerate(mechanism.links)}
+        apart = overlapping_links(articulated_object.scene)
+        self._loaded.act([(place[first], place[second]) for first, second in apart], on=False)
         names = list(mechanism.joints)
         self._leaders = [names.index(joint) for joint in articulated_object.joints]
         self._indices = self._loaded.indices
@@ -63,25 +64,6 @@ class PybulletObject:
         self._T_usual = self._T_root = T_world_root
         self._saved: int | None = None
         self.look()
-
-    def _let_touch(self, settings: EnvSettings) -> None:
-        """Switch off pairs that touch at rest, or only lightly as they move: Bullet's hulls are 1 mm thicker."""
-        articulated_object, loaded = self.articulated_object, self._loaded
-        mechanism, limits = articulated_object.scene.mechanism, load_settings().engines
-        rows = mechanism.sweep(settings.object.sweep_samples)
-        found: list[tuple[int, int, int, float]] = []
-        for number, values in enumerate(mechanism.all_values(rows)):
-            loaded.place(values)
-            found += loaded.contacts(number)
-        table = np.array(found, dtype=np.float64).reshape(-1, 4)
-        tolerance = limits.contact_depth * articulated_object.scene.size + 2.0 * float(loaded.margin.max(initial=0.0))
-        contacts = deepest(table[:, 0].astype(np.int64), table[:, 1:3].astype(np.int64), table[:, 3])
-        met = touching(contacts, mechanism, articulated_object.prepared, rows=len(rows), tolerance=tolerance)
-        free = set(met.meet[met.at_rest[met.meet] <= tolerance].tolist())
-        for k, pair in enumerate(met.bodies.tolist()):
-            if k not in free:
-                members = [np.flatnonzero(mechanism.body_of_link == body).tolist() for body in pair]
-                loaded.act([(a, b) for a in members[0] for b in members[1]], on=False)
 
     def link_index(self, name: str) -> int:
         """PyBullet's index of a link."""

@@ -14,20 +14,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.config.validation import load_settings
+from kinematify.envs.articulated_object import loadable
 from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.envs.verdict import content_digest, keep, kept
 from kinematify.errors import InputError
+from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.kinematics import Arm
 from kinematify.manipulation.planning import plan_pull
 from kinematify.manipulation.robot import builtin_robot, user_robot
-from kinematify.robot.mechanism import Mechanism
-from kinematify.simulation.prepare import prepare
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject
+    from kinematify.geometry.scene import Scene
     from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
-    from kinematify.simulation.prepared import Prepared
+    from kinematify.robot.mechanism import Mechanism
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,8 +38,15 @@ class EnvRobot:
 
     robot: TaskRobot
     arm: Arm
-    prepared: Prepared
-    mechanism: Mechanism
+    loaded: Path
+    """What engines load (`loadable`)."""
+    scene: Scene
+    """Of that file."""
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """Its tree."""
+        return self.scene.mechanism
 
     @property
     def strongest(self) -> FloatArray:
@@ -95,12 +104,11 @@ def env_robot(articulated_object: ArticulatedObject, robot: str | None, tool: st
             f"robot={robot!r} needs tool= with the link that carries the fingers, such as tool='gripper_link'."
         )
     folder = articulated_object.folder / hashlib.sha256(f"{robot} {tool}".encode()).hexdigest()[:12]
-    (folder / "prepared").mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True)
     found = builtin_robot(folder) if robot is None or tool is None else user_robot(Path(robot), tool, folder=folder)
-    settings = load_settings()
-    arm = Arm(found, settings.task.plan)
-    prepared = prepare(arm.declared, folder / "prepared", settings.prepare)
-    return EnvRobot(robot=found, arm=arm, prepared=prepared, mechanism=Mechanism(robot=arm.declared))
+    settings, loaded = load_settings(), loadable(found.urdf, folder)
+    scene = read_scene(read_robot(loaded), settings.geometry)
+    return EnvRobot(robot=found, arm=Arm(found, settings.task.plan), loaded=loaded, scene=scene)
 
 
 @lru_cache(maxsize=16)

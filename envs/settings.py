@@ -45,8 +45,6 @@ class ObjectSettings(StageConfig):
     """Friction of a joint without one, per inertia that it moves [m/s^2 or rad/s^2]."""
     hold: float
     """Friction of a joint without one, over what gravity pulls it away from rest with."""
-    sweep_samples: int
-    """Values of each joint at which contacts are looked at."""
     slots: int
     """Joints in an observation; models with more get the next multiple."""
 
@@ -159,14 +157,6 @@ class RobotSettings(StageConfig):
     """Of the robot's surfaces."""
     touch_force: float
     """Of each finger at least for a grip [N]."""
-    link_gap: float
-    """Convex pieces of the object may reach so far beyond its surface, fraction of a link's diagonal."""
-    model_gap: float
-    """Or so far, whichever is more, fraction of the object's diagonal."""
-    cuts: int
-    """Cuts through concave meshes of the object."""
-    cuts_per_link: int
-    """The same for objects with many links."""
     plan_seconds: float
     """Processor time for finding a place of the robot [s]."""
 

@@ -88,18 +88,18 @@ class ArmWorld(World, Protocol):
         """Force of each finger on the part [N], shape (fingers,)."""
 
 
-def shared_articulated_object(model: str | Path | None, *, fine: bool = False) -> ArticulatedObject:
+def shared_articulated_object(model: str | Path | None) -> ArticulatedObject:
     """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
     path = Path(model) if isinstance(model, Path) or (isinstance(model, str) and Path(model).exists()) else None
     file = path / "model.urdf" if path is not None and path.is_dir() else path
     stamp = (file.stat().st_mtime_ns, file.stat().st_size) if file is not None and file.is_file() else None
-    return _loaded(None if model is None else str(model), stamp, fine)
+    return _loaded(None if model is None else str(model), stamp)
 
 
 @lru_cache(maxsize=8)
-def _loaded(model: str | None, stamp: tuple[int, int] | None, fine: bool) -> ArticulatedObject:
+def _loaded(model: str | None, stamp: tuple[int, int] | None) -> ArticulatedObject:
     del stamp
-    return load_articulated_object(model, fine=fine)
+    return load_articulated_object(model)
 
 
 @lru_cache(maxsize=32)

@@ -51,12 +51,12 @@ def command(
 ) -> None:
     """Write the URDF MODEL in another format.
 
-    mjcf, usd, sdf: links, joints, limits, masses and colours for MuJoCo, Isaac Sim and Gazebo. Concave collision
-    geometry becomes convex pieces, as `kinematify validate` simulates it; neighbours do not collide. mjcf and sdf have
-    their meshes in a folder beside the file, as urdf has.
+    mjcf, usd, sdf: links, joints, limits, masses, colours and collision pieces for MuJoCo, Isaac Sim and Gazebo. Where
+    the meshes that collide are not convex, the pieces are those that `kinematify fix` makes, carved by the motion.
+    Only what is in each other at rest does not collide. mjcf and sdf have their meshes in a folder beside the file, as
+    urdf has.
 
-    urdf: the same model, whose collision geometry became convex pieces: engines and most planners take a mesh for its
-    convex hull, which fills a cabinet.
+    urdf: the same model with these pieces; `kinematify fix` keeps the document's comments and order, too.
 
     glb: what is seen, in a tree of nodes that stand where the joints are, for viewers and game engines.
 

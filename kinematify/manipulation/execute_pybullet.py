@@ -37,9 +37,12 @@ def open_world(loaded: Loaded, settings: ExecutionSettings, hold: Hold) -> Pybul
     del hold  # its hulls slip out of fingers that hold by friction
     client, motion = connect(settings.time_step, iterations=_ITERATIONS), loaded.motion
     try:
-        robot = load_at(client, Mechanism(robot=loaded.robot), loaded.robot_prepared, motion.T_world_base, itself=False)
-        placed = load_at(
-            client, Mechanism(robot=loaded.object), loaded.object_prepared, motion.T_world_object, itself=False
+        robot, placed = (
+            load_at(client, Mechanism(robot=model), prepared.urdf, T_world_root, itself=False)
+            for model, prepared, T_world_root in (
+                (loaded.robot, loaded.robot_prepared, motion.T_world_base),
+                (loaded.object, loaded.object_prepared, motion.T_world_object),
+            )
         )
     except Refused:
         bullet.disconnect(client)

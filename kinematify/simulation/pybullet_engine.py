@@ -66,8 +66,8 @@ class PybulletEngine:
         """Load a prepared file; a second time with a free base, because a fixed one has no mass."""
         step = self.settings.pybullet_time_step
         try:
-            fixed = load(mechanism, prepared, step=step, looking=True)
-            free = load(mechanism, prepared, step=step, fixed=False)
+            fixed = load(mechanism, prepared.urdf, step=step, looking=True)
+            free = load(mechanism, prepared.urdf, step=step, fixed=False)
         except Refused as refusal:
             said = self._printed() or [str(refusal)]
             raise Refused(" ".join(said[-3:])[:400].rstrip(".")) from refusal
@@ -185,7 +185,7 @@ class PybulletModel:
     def world(self, *, fixed: bool = True) -> PybulletBody:
         """Load into a new world, see `load`."""
         step = self.engine.settings.pybullet_time_step
-        return load(self.looking.mechanism, self.prepared, step=step, fixed=fixed)
+        return load(self.looking.mechanism, self.prepared.urdf, step=step, fixed=fixed)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

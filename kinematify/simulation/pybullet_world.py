@@ -251,9 +251,7 @@ def connect(step: float, *, iterations: int | None = None) -> int:
     return client
 
 
-def load(
-    mechanism: Mechanism, urdf: Path, *, step: float, fixed: bool = True, looking: bool = False
-) -> PybulletBody:
+def load(mechanism: Mechanism, urdf: Path, *, step: float, fixed: bool = True, looking: bool = False) -> PybulletBody:
     """Load a file into a new world; links that fixed joints join do not collide with each other.
 
     Args:
@@ -281,9 +279,7 @@ def load(
     return loaded
 
 
-def load_at(
-    client: int, mechanism: Mechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool
-) -> PybulletBody:
+def load_at(client: int, mechanism: Mechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool) -> PybulletBody:
     """Load a file into a world, its root fixed at a pose.
 
     Args:
@@ -315,8 +311,7 @@ def _loaded(client: int, mechanism: Mechanism, urdf: Path, **options: Any) -> Py
     inflated = [
         index >= _BASE
         and any(
-            shape[2] == bullet.GEOM_MESH
-            for shape in bullet.getCollisionShapeData(body, index, physicsClientId=client)
+            shape[2] == bullet.GEOM_MESH for shape in bullet.getCollisionShapeData(body, index, physicsClientId=client)
         )
         for index in indices
     ]
