@@ -133,6 +133,10 @@ class AsLoadedContext:
         settings = self.settings
         return max(settings.still * travel.range, settings.still_angle if travel.turns else settings.still_length)
 
+    def _nothing(self, travel: Travel) -> float:
+        """A shorter way is none [rad or m]; the buttons of a machine have but a millimetre."""
+        return self.settings.still * travel.range
+
     def free(self, travel: Travel) -> tuple[float, float] | None:
         """Return the part of the range that exact geometry leaves free, the range itself where it is not known.
 
@@ -140,7 +144,7 @@ class AsLoadedContext:
         """
         lower, upper = self.request.free_travel.get(travel.joint, (travel.lower, travel.upper))
         lower, upper = min(max(lower, travel.lower), travel.rest), max(min(upper, travel.upper), travel.rest)
-        return (lower, upper) if max(travel.rest - lower, upper - travel.rest) > self.still(travel) else None
+        return (lower, upper) if max(travel.rest - lower, upper - travel.rest) > self._nothing(travel) else None
 
     def between(self, travel: Travel, overlaps: Iterable[Overlap]) -> Overlap | None:
         """Return the deepest of the overlaps that a joint moves apart or together; None without any."""
@@ -156,15 +160,27 @@ class AsLoadedContext:
             self._by_hand(travel, end)
             for travel in self.travels
             for end in self.free(travel) or (travel.lower, travel.upper)
-            if abs(end - travel.rest) > self.still(travel)
+            if abs(end - travel.rest) > self._nothing(travel)
         )
+
+    @cached_property
+    def inertias(self) -> dict[str, float]:
+        """What a force at each joint moves at rest [kg or kg m^2]."""
+        return dict(zip(self.loaded.joints, self.loaded.inertias(self.values).tolist(), strict=True))
+
+    def ratios(self, travel: Travel) -> dict[str, float]:
+        """Return the motion of a joint, 1, and of those that mimic it."""
+        leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
+        moved = dict(zip(self.mechanism.joints, self.mechanism.leads[:, leader].tolist(), strict=True))
+        followers = {name: ratio for name, ratio in moved.items() if ratio and name not in (travel.joint, *self.lost)}
+        return {travel.joint: 1.0, **followers}
 
     def _by_hand(self, travel: Travel, end: float) -> HandRun:
         settings, joint = self.settings, self.robot.joint_by_name[travel.joint]
         push = hand(
-            travel.joint,
+            self.ratios(travel),
             (travel.rest, end),
-            inertia=self.loaded.inertia(travel.joint, self.values),
+            inertias=self.inertias,
             force=settings.torque if travel.turns else settings.force,
             speed=settings.turning_speed if travel.turns else settings.sliding_speed,
             resistance=joint.friction or 0.0,

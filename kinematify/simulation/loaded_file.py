@@ -43,11 +43,26 @@ class RestRun:
     """What the engine says of the run; None if nothing."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReleaseRun:
+    """What becomes of the energy of a model that was given a push and let go."""
+
+    energy: FloatArray
+    """Potential and kinetic [J], shape (looks, 2), the first right after the push; ends where it is no number."""
+    complaint: str | None
+    """What the engine says of the run; None if nothing."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Push:
-    """A joint moved by a hand: a speed is kept with a limited force, on top of what balances gravity."""
+    """A joint moved by a hand, its followers with it, the others held, without gravity: a force keeps a speed."""
 
-    joint: str
+    moved: tuple[str, ...]
+    """The joint, and those that mimic it."""
+    ratios: tuple[float, ...]
+    """Motion of each of `moved` per motion of the joint."""
+    weights: tuple[float, ...]
+    """What the motion of each counts where an engine lets them drift apart; with `ratios` they make 1."""
     target: float
     """[rad or m]."""
     speed: float
@@ -60,6 +75,11 @@ class Push:
     """At most [N or N m]."""
     steps: int
     """At most."""
+
+    @property
+    def joint(self) -> str:
+        """That is pushed."""
+        return self.moved[0]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,11 +107,14 @@ class LoadedFile(Protocol):
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
         """Let go at `values`, with or without contacts among the links."""
 
-    def inertia(self, joint: str, values: Mapping[str, float]) -> float:
-        """What a force at a joint moves while the engine computes a step of a push [kg or kg m^2]."""
+    def inertias(self, values: Mapping[str, float]) -> FloatArray:
+        """What a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """Push a joint from `values`, the others held there."""
+
+    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
+        """Let go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
@@ -99,12 +122,15 @@ class LoadedFile(Protocol):
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
         """Return plain code of the engine that repeats `push` and prints where the joint ends."""
 
+    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
+        """Return plain code of the engine that repeats `release` and prints the first and the largest energy."""
+
 
 def hand(
-    joint: str,
+    ratios: Mapping[str, float],
     way: tuple[float, float],
     *,
-    inertia: float,
+    inertias: Mapping[str, float],
     force: float,
     speed: float,
     resistance: float,
@@ -114,21 +140,25 @@ def hand(
     """Return the push of a hand.
 
     Args:
-        joint: Its name.
+        ratios: Motion of the joint, 1, and of its followers, by name.
         way: From where to where [rad or m].
-        inertia: From `LoadedFile.inertia`.
+        inertias: From `LoadedFile.inertias`, by joint.
         force: Of the hand [N or N m]; more is given where a heavy part would take long to start.
         speed: At least [rad/s or m/s]; long ways are gone faster.
         resistance: Declared friction [N or N m].
         damping: Declared [N s/m or N m s/rad].
         time_step: Of the engine [s].
     """
-    length, inertia = abs(way[1] - way[0]), max(inertia, 1e-9)
+    inertia_of = {name: max(inertias[name], 1e-9) for name in ratios}
+    inertia = sum(ratio**2 * inertia_of[name] for name, ratio in ratios.items())
+    length = abs(way[1] - way[0])
     speed = max(speed, 0.5 * length)
     force = max(force, inertia * speed / _START_SECONDS) + resistance + damping * speed
     whole = force * time_step / (speed * _START_SECONDS)  # grows to the full force in that time
     return Push(
-        joint=joint,
+        moved=tuple(ratios),
+        ratios=tuple(ratios.values()),
+        weights=tuple(ratio * inertia_of[name] / inertia for name, ratio in ratios.items()),
         target=way[1],
         speed=float(np.copysign(speed, way[1] - way[0])),
         proportional=_PROPORTIONAL * inertia / time_step,

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
-from kinematify.simulation.loaded_file import Progress, Pushed, RestRun, Unloadable, deepest_first
+from kinematify.simulation.loaded_file import Progress, Pushed, ReleaseRun, RestRun, Unloadable, deepest_first
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
@@ -28,14 +29,22 @@ print(min(seen), max(seen))
 )
 _PUSH = (
     _LOAD
-    + """for _ in range({steps}): slow = {speed!r} - data.qvel[{joint}]; \
+    + """model.opt.gravity[:] = 0.0; moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
+for _ in range({steps}): slow = {speed!r} - data.qvel[{joint}]; \
 push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
-data.qfrc_applied[:] = data.qfrc_bias; \
-data.qfrc_applied[{joint}] += np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
+data.qfrc_applied[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
 mujoco.mj_step(model, data); \
-data.qpos[:] = np.where(np.arange(model.nq) == {joint}, data.qpos, rest); \
-data.qvel[:] = np.where(np.arange(model.nv) == {joint}, data.qvel, 0.0)
+way, speed = weights @ (data.qpos - rest)[moved], weights @ data.qvel[moved]; \
+data.qpos[:] = rest; data.qvel[:] = 0.0; data.qpos[moved] += ratios * way; data.qvel[moved] = ratios * speed
 print(data.qpos[{joint}])
+"""
+)
+_RELEASE = (
+    _LOAD
+    + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel[:] = {speeds}
+model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
+seen = [sum(data.energy) for _ in range({steps}) if mujoco.mj_step(model, data) is None]
+print(seen[0], max(seen))
 """
 )
 
@@ -82,52 +91,72 @@ class MujocoFile:
             depths[pair] = max(depths.get(pair, 0.0), -float(contact.dist))
         return deepest_first(depths)
 
+    @contextmanager
+    def _without(self, *, contacts: bool, gravity: bool = False) -> Iterator[None]:
+        """Switch contacts or gravity off for a run."""
+        option = self._model.opt
+        flags, down = option.disableflags, option.gravity.copy()
+        option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT) if contacts else 0
+        option.gravity[:] *= not gravity
+        yield
+        option.disableflags, option.gravity[:] = flags, down
+
+    def _complaint(self) -> str | None:
+        """Warnings of numbers that are none."""
+        bad = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
+        broken = [item.name.removeprefix("mjWARN_") for item in bad if self._data.warning[item].number]
+        return f"MuJoCo warns {', '.join(broken)}" if broken else None
+
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
         """See `LoadedFile`."""
         self._place(values)
         seen = np.empty((round(seconds / self.time_step), self._model.nq))
-        flags = self._model.opt.disableflags
-        if not contacts:
-            self._model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
-        for row in seen:
-            mujoco.mj_step(self._model, self._data)
-            row[:] = self._data.qpos
-        self._model.opt.disableflags = flags
-        warned = [mujoco.mjtWarning(k) for k, item in enumerate(self._data.warning) if item.number]
-        bad = {mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC}
-        broken = [item.name.removeprefix("mjWARN_") for item in warned if item in bad]
-        return RestRun(values=seen, complaint=f"MuJoCo warns {', '.join(broken)}" if broken else None)
+        with self._without(contacts=not contacts):
+            for row in seen:
+                mujoco.mj_step(self._model, self._data)
+                row[:] = self._data.qpos
+        return RestRun(values=seen, complaint=self._complaint())
 
-    def inertia(self, joint: str, values: Mapping[str, float]) -> float:
+    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
         """See `LoadedFile`."""
         self._place(values)
-        unit = np.zeros((1, self._model.nv))
-        unit[0, self.joints.index(joint)] = 1.0
-        answer = np.zeros_like(unit)
-        mujoco.mj_solveM(self._model, self._data, answer, unit)
-        return 1.0 / float(answer[0, self.joints.index(joint)])
+        self._data.qvel[:] = [speeds[name] for name in self.joints]
+        seen = np.empty((round(seconds / self.time_step), 2))
+        self._model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        with self._without(contacts=True):
+            for row in seen:
+                mujoco.mj_step(self._model, self._data)
+                row[:] = self._data.energy  # of the state before the step
+        self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        return ReleaseRun(energy=seen, complaint=self._complaint())
+
+    def inertias(self, values: Mapping[str, float]) -> FloatArray:
+        """See `LoadedFile`."""
+        self._place(values)
+        inverse = np.zeros((self._model.nv, self._model.nv))
+        mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
+        return np.asarray(1.0 / np.diagonal(inverse))
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `LoadedFile`."""
         rest, joint, data = self._place(values), self.joints.index(push.joint), self._data
-        held = np.arange(self._model.nv) != joint
+        moved = [self.joints.index(name) for name in push.moved]
+        ratios, weights = np.array(push.ratios), np.array(push.weights)
         progress = Progress(start=values[push.joint], push=push, time_step=self.time_step)
-        flags = self._model.opt.disableflags
-        if not contacts:
-            self._model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
         step, grown = 0, 0.0
-        for step in range(1, push.steps + 1):
-            slow = push.speed - float(data.qvel[joint])
-            grown = min(max(grown + push.integral * slow, -push.force), push.force)
-            force = min(max(push.proportional * slow + grown, -push.force), push.force)
-            data.qfrc_applied[:] = data.qfrc_bias  # what holds the others bears their weight too
-            data.qfrc_applied[joint] += force
-            mujoco.mj_step(self._model, data)
-            data.qpos[held], data.qvel[held] = rest[held], 0.0
-            if not progress.goes_on(float(data.qpos[joint]), step):
-                break
-        found = self._overlaps()
-        self._model.opt.disableflags = flags
+        with self._without(contacts=not contacts, gravity=True):
+            for step in range(1, push.steps + 1):
+                slow = push.speed - float(data.qvel[joint])
+                grown = min(max(grown + push.integral * slow, -push.force), push.force)
+                data.qfrc_applied[joint] = min(max(push.proportional * slow + grown, -push.force), push.force)
+                mujoco.mj_step(self._model, data)
+                way, speed = weights @ (data.qpos - rest)[moved], weights @ data.qvel[moved]
+                data.qpos[:], data.qvel[:] = rest, 0.0
+                data.qpos[moved] += ratios * way
+                data.qvel[moved] = ratios * speed
+                if not progress.goes_on(float(data.qpos[joint]), step):
+                    break
+            found = self._overlaps()
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
@@ -137,7 +166,13 @@ class MujocoFile:
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
         """See `LoadedFile`."""
-        return _PUSH.format(**{**vars(push), **self._facts(push.joint, values), "steps": steps})
+        facts = {**vars(push), **self._facts(push.joint, values), "steps": steps}
+        return _PUSH.format(**facts | {"moved": [self.joints.index(name) for name in push.moved]})
+
+    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
+        """See `LoadedFile`."""
+        facts = self._facts(self.joints[0], values) | {"speeds": [float(speeds[name]) for name in self.joints]}
+        return _RELEASE.format(**facts, steps=round(seconds / self.time_step))
 
     def _facts(self, joint: str, values: Mapping[str, float]) -> dict[str, object]:
         return {

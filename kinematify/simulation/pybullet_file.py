@@ -9,12 +9,13 @@ import numpy as np
 import pybullet as bullet
 
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.loaded_file import Progress, Pushed, RestRun, Unloadable, deepest_first
+from kinematify.simulation.loaded_file import Progress, Pushed, ReleaseRun, RestRun, Unloadable, deepest_first
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.loaded_file import Overlap, Push
 
 _LOAD = """import pybullet as p
@@ -30,17 +31,32 @@ print(min(seen), max(seen))
 )
 _PUSH = (
     _LOAD
-    + """p.setJointMotorControl2(body, {joint}, p.VELOCITY_CONTROL, force=0); \
-clip = lambda f: min(max(f, -{force!r}), {force!r})
+    + """p.setGravity(0, 0, 0); moved, clip = {moved}, lambda f: min(max(f, -{force!r}), {force!r})
+[p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k, _, _ in moved]
 for _ in range({steps}): slow = {speed!r} - p.getJointState(body, {joint})[1]; \
 push = clip(push + {integral!r} * slow); \
-weight = p.calculateInverseDynamics(body, [p.getJointState(body, k)[0] for k in rest], [0.0] * len(rest), \
-[0.0] * len(rest))[{row}]; \
-p.setJointMotorControl2(body, {joint}, p.TORQUE_CONTROL, force=weight + clip({proportional!r} * slow + push)); \
-p.stepSimulation(); [p.resetJointState(body, k, q) for k, q in rest.items() if k != {joint}]
+p.setJointMotorControl2(body, {joint}, p.TORQUE_CONTROL, force=clip({proportional!r} * slow + push)); \
+p.stepSimulation(); state = {{k: p.getJointState(body, k) for k in rest}}; \
+way = sum(w * (state[k][0] - rest[k]) for k, _, w in moved); speed = sum(w * state[k][1] for k, _, w in moved); \
+ratio = {{k: r for k, r, _ in moved}}; \
+[p.resetJointState(body, k, q + ratio.get(k, 0) * way, ratio.get(k, 0) * speed) for k, q in rest.items()]
 print(p.getJointState(body, {joint})[0])
 """
 )
+_RELEASE = (
+    _LOAD.replace("p.URDF_USE_SELF_COLLISION", "0")
+    + """import numpy as np
+[p.resetJointState(body, k, rest[k], v) for k, v in {speeds}.items()]
+[p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k in rest]; links = range(p.getNumJoints(body))
+local = lambda s: np.reshape(p.getMatrixFromQuaternion(s[1]), (3, 3)).T @ s[7]
+energy = lambda: sum(d[0] * (9.81 * s[0][2] + 0.5 * np.dot(s[6], s[6])) + 0.5 * np.dot(d[2], local(s)**2) \
+for d, s in ((p.getDynamicsInfo(body, k), p.getLinkState(body, k, 1, 1)) for k in links))
+seen = [energy()] + [energy() for _ in range({steps}) if p.stepSimulation() is None]
+print(seen[0], max(seen))
+"""
+)
+_LOOK_STEPS = 8
+"""Between two looks at the energy."""
 _TIME_STEP = 1.0 / 240.0
 _MOTOR = 240.0
 """Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
@@ -62,7 +78,8 @@ class PybulletFile:
         self._links = {-1: root, **{k: info[12].decode() for k, info in enumerate(infos)}}
         self._index = {info[1].decode(): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
         self.joints: Sequence[str] = tuple(self._index)
-        self._inertias: dict[str, float] | None = None
+        above = {k: info[16] for k, info in enumerate(infos)}
+        self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
     def _world(self, values: Mapping[str, float], *, contacts: bool, as_loaded: bool = False) -> _World:
         """A world as it was after loading, with the joints at `values`; its motors too where that is asked for."""
@@ -98,38 +115,90 @@ class PybulletFile:
         finite = bool(np.isfinite(seen).all())
         return RestRun(values=seen, complaint=None if finite else "the values of joints are no numbers any more")
 
-    def inertia(self, joint: str, values: Mapping[str, float]) -> float:
+    def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
         """See `LoadedFile`."""
-        if self._inertias is None:
-            world = self._world(values, contacts=True)
-            matrix = np.array(world.do(bullet.calculateMassMatrix, [values[name] for name in self.joints]))
-            self._inertias = dict(zip(self.joints, np.diagonal(matrix).tolist(), strict=True))
-        return self._inertias[joint]  # the motors of the others hold them within a step
+        world = self._world(values, contacts=False)
+        world.pushed = True
+        for name, k in self._index.items():
+            world.do(bullet.resetJointState, k, values[name], speeds[name])
+            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
+        seen = [self._energy(world)]
+        for step in range(1, round(seconds / self.time_step) + 1):
+            bullet.stepSimulation(physicsClientId=world.client)
+            if step % _LOOK_STEPS == 0:
+                seen.append(self._energy(world))
+                if not np.isfinite(seen[-1]).all():
+                    return ReleaseRun(energy=np.array(seen[:-1]), complaint="the energy is no number any more")
+        return ReleaseRun(energy=np.array(seen), complaint=None)
+
+    def _energy(self, world: _World) -> tuple[float, float]:
+        """Potential and kinetic [J] of all links but the base."""
+        links = [link for link in self._links if link != -1]
+        states = world.do(bullet.getLinkStates, links, computeLinkVelocity=True, computeForwardKinematics=True)
+        potential = kinetic = 0.0
+        for link, state in zip(links, states, strict=True):
+            mass, _, tensor, *_ = world.do(bullet.getDynamicsInfo, link)
+            turning = np.reshape(bullet.getMatrixFromQuaternion(state[1]), (3, 3)).T @ state[7]
+            potential += GRAVITY * mass * state[0][2]
+            kinetic += 0.5 * (mass * np.dot(state[6], state[6]) + np.dot(tensor, turning**2))
+        return potential, float(kinetic)
+
+    def inertias(self, values: Mapping[str, float]) -> FloatArray:
+        """See `LoadedFile`; the motors of the others hold them within a step."""
+        world = self._world(values, contacts=True)
+        return np.array([self._inertia(world, k) for k in self._index.values()])
+
+    def _inertia(self, world: _World, joint: int) -> float:
+        """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
+        info = world.do(bullet.getJointInfo, joint)
+        frame = world.do(bullet.getLinkState, joint, computeForwardKinematics=True)
+        axis = np.array(bullet.rotateVector(frame[5], info[13]))
+        total = 0.0
+        for link in self._below[joint]:
+            mass, _, tensor, *_ = world.do(bullet.getDynamicsInfo, link)
+            centre, turned, *_ = world.do(bullet.getLinkState, link, computeForwardKinematics=True)
+            if info[2] == bullet.JOINT_PRISMATIC:
+                total += mass
+                continue
+            arm = np.cross(axis, np.subtract(centre, frame[4]))
+            local = np.array(bullet.getMatrixFromQuaternion(turned)).reshape(3, 3).T @ axis
+            total += mass * float(arm @ arm) + float(local @ (np.array(tensor) * local))
+        return total
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `LoadedFile`."""
-        world, joint, row = self._world(values, contacts=contacts), self._index[push.joint], list(self._index)
-        held = [(k, values[name]) for name, k in self._index.items() if k != joint]
+        world, joint, places = (
+            self._world(values, contacts=contacts),
+            self._index[push.joint],
+            list(self._index.values()),
+        )
+        rest = np.array([values[name] for name in self.joints])
+        moved = [self.joints.index(name) for name in push.moved]
+        ratios, weights = np.array(push.ratios), np.array(push.weights)
         world.pushed = True
-        world.do(bullet.setJointMotorControl2, joint, bullet.VELOCITY_CONTROL, force=0)
+        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
+        for k in moved:
+            world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=0)
         progress = Progress(start=values[push.joint], push=push, time_step=self.time_step)
-        step, grown, still = 0, 0.0, [0.0] * len(row)
-        places = list(self._index.values())
+        step, grown, speed = 0, 0.0, 0.0
+        q, v = rest.copy(), np.zeros_like(rest)
         for step in range(1, push.steps + 1):
-            states = world.do(bullet.getJointStates, places)
-            slow = push.speed - states[row.index(push.joint)][1]
+            slow = push.speed - speed
             grown = min(max(grown + push.integral * slow, -push.force), push.force)
             force = min(max(push.proportional * slow + grown, -push.force), push.force)
-            weight = world.do(bullet.calculateInverseDynamics, [state[0] for state in states], still, still)
-            force += weight[row.index(push.joint)]
             world.do(bullet.setJointMotorControl2, joint, bullet.TORQUE_CONTROL, force=force)
             bullet.stepSimulation(physicsClientId=world.client)
-            for k, value in held:
-                world.do(bullet.resetJointState, k, value)
-            if not progress.goes_on(world.do(bullet.getJointState, joint)[0], step):
+            states = world.do(bullet.getJointStates, places)
+            way = sum(w * (states[k][0] - rest[k]) for k, w in zip(moved, weights, strict=True))
+            speed = sum(w * states[k][1] for k, w in zip(moved, weights, strict=True))
+            q[moved], v[moved] = rest[moved] + ratios * way, ratios * speed
+            world.do(bullet.resetJointStatesMultiDof, places, q[:, None].tolist(), v[:, None].tolist())
+            if not progress.goes_on(float(q[moved[0]]), step):
                 break
         found = self._overlaps(world)
-        world.do(bullet.setJointMotorControl2, joint, bullet.VELOCITY_CONTROL, force=_MOTOR)
+        for k in moved:
+            world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=_MOTOR)
+        bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=world.client)
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
@@ -138,8 +207,14 @@ class PybulletFile:
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
         """See `LoadedFile`."""
-        row = self.joints.index(push.joint)
-        return _PUSH.format(**{**vars(push), **self._facts(push.joint, values), "steps": steps, "row": row})
+        moved = zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True)
+        return _PUSH.format(**vars(push) | self._facts(push.joint, values) | {"steps": steps, "moved": list(moved)})
+
+    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
+        """See `LoadedFile`."""
+        facts = self._facts(self.joints[0], values)
+        given = {k: float(speeds[name]) for name, k in self._index.items()}
+        return _RELEASE.format(**facts, speeds=given, steps=round(seconds / self.time_step))
 
     def _facts(self, joint: str, values: Mapping[str, float]) -> dict[str, Any]:
         return {
@@ -147,6 +222,11 @@ class PybulletFile:
             "values": {k: float(values[name]) for name, k in self._index.items()},
             "joint": self._index[joint],
         }
+
+
+def _chain(above: Mapping[int, int], link: int) -> list[int]:
+    """A link and all that it hangs on but the base."""
+    return [] if link == -1 else [link, *_chain(above, above[link])]
 
 
 class _World:

@@ -19,7 +19,7 @@ from kinematify.validation.finding import Blame, CheckResult, Finding, Severity,
 from kinematify.validation.run import validate
 from kinematify.validation.stage import StageRequest
 from kinematify.validation.stages import as_loaded
-from tests.validation.engine_models import Box, Model, Told, cabinet, tell
+from tests.validation.engine_models import Box, Model, Part, Told, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
 each_engine = pytest.mark.parametrize("engine", ENGINES)
@@ -79,6 +79,33 @@ def test_siblings_that_jam_are_named_in_both_engines(tmp_path: Path, engine: str
     assert reached == pytest.approx(finding.value, abs=0.1)
     assert reached < 0.95 * 1.5
     assert result.results["KV804"].measured["right"] == 1.0
+
+
+FOLLOWS = '<mimic joint="door_joint" multiplier="0.2"/>'
+
+
+@each_engine
+def test_what_follows_a_joint_is_pushed_with_it(tmp_path: Path, engine: str) -> None:
+    result = told(cabinet().with_part("drawer", extra=FOLLOWS), tmp_path, engine)
+    assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
+    assert result.results["KV804"].measured == {"joints": 1.0, "right": 1.0}
+
+
+@each_engine
+def test_a_joint_jams_where_its_follower_does(tmp_path: Path, engine: str) -> None:
+    post = Part(name="post", parent="body", boxes=(Box(size=(0.02, 0.2, 0.4), at=(0.35, -0.155, 0.0)),))
+    result = told(Model(parts=(*cabinet().with_part("drawer", extra=FOLLOWS).parts, post)), tmp_path, engine)
+    (finding,) = result.results["KV804"].findings
+    assert finding.joint == "door_joint"
+    assert "drawer" in (finding.pair or ()), "MuJoCo takes the post for a piece of the body"
+    assert finding.value == pytest.approx(0.145 / 0.2, abs=0.1)
+    assert printed(finding.reproduction) == pytest.approx([finding.value], abs=0.1)
+
+
+@each_engine
+def test_a_button_of_a_millimetre_is_pushed_too(tmp_path: Path, engine: str) -> None:
+    result = told(cabinet().with_part("drawer", limits=(0.0, 0.001)), tmp_path, engine)
+    assert result.results["KV804"].measured == {"joints": 2.0, "right": 2.0}
 
 
 def test_a_drawer_that_is_thrown_out_is_seen_by_the_code_of_the_report(tmp_path: Path) -> None:

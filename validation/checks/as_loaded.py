@@ -200,9 +200,9 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint is pushed from rest to both ends by as_loaded.force or as_loaded.torque on top
-    of what balances gravity and declared friction and damping, the others held. It has to reach as_loaded.reach of what
-    exact geometry leaves free of its range, of the whole range where that is not known. What does not get there
-    without contacts either, or has no free way at all (KV31x), is a note. PyBullet is asked with
+    of declared friction and damping, its followers with it, the others held, gravity off. It has to reach
+    as_loaded.reach of what exact geometry leaves free of its range, of the whole range where that is not known. What
+    does not get there without contacts either, or has no free way at all (KV31x), is a note. PyBullet is asked with
     `URDF_USE_SELF_COLLISION`: without it links pass through each other.
 
     Why it matters: A drawer that jams in the simulator is of no use, whatever its surfaces would allow.
@@ -231,7 +231,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
     unit = "N m" if travel.turns else "N"
     said = (
         f"Pushed with up to {push.force:.3g} {unit} from {travel.rest:.4g} towards {push.target:.4g} {travel.unit} in "
-        f"{context.title}, gravity balanced and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+        f"{context.title}, gravity off and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
     )
     result.find(
         f"{said}: {_cause(overlap, jammed=jammed)}.",

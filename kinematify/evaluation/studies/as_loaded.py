@@ -1,196 +1,228 @@
-"""Do the files that are written work in engines as they are?
+"""Do files work in engines as they are?
 
 Objects of the benchmark are inferred from their parts alone and written; generated ones are written with the joints
-that they were built with. Each file is loaded with the engine's own defaults: `MjModel.from_xml_path`, and `loadURDF`
-with a fixed base, with and without self-collision. It is left alone under gravity for 4 s, in which no joint may leave
-its range, and then each joint is pushed by a hand (60 N or 15 N m; machines by the effort that their file declares),
-the others held: it must move over 95 % of its range, which ends where exact geometry blocks it. `blocked` counts the
-joints of which that is less than what is declared; `still` are models in which nothing moves by itself.
+that they were built with; models of others are taken as they are, and after `kinematify fix`. Each file is judged by
+the checks KV8xx of `kinematify validate`: it is loaded with the engine's own defaults, left alone under gravity, and
+each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an engine in which
+no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is asked with
+`URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other.
 """
 
 from __future__ import annotations
 
-import math
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from operator import itemgetter
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import pybullet as bullet
 from pydantic import Field
 
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.study import Options, Study, among, explained
+from kinematify.formats.fix import fix_urdf
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.model.dynamics import moved_by_hand
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import true_model
-from kinematify.simulation.as_loaded import PLAIN_WORLDS, as_loaded
+from kinematify.simulation.engines import ENGINES
+from kinematify.validation.checks import checks_of
+from kinematify.validation.finding import Severity, Status
+from kinematify.validation.run import validate
+from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from kinematify.config import Config
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.model.simulable import SimulableModel
-    from kinematify.robot.robot import Joint, Robot
-    from kinematify.simulation.as_loaded import AsLoaded
+    from kinematify.validation.finding import CheckResult
 
-_DEEP = 0.005
-"""Overlap at rest that is counted [m]."""
+_FREE_TRAVEL = "KV310"
+"""Its stage measures how far every joint is free."""
 
 
 class AsLoadedOptions(Options):
-    """Which objects, and which collision geometry."""
+    """Which objects, in which engines, and which collision geometry."""
 
-    data: tuple[str, ...] = Field(("everyday",), description="Sets or folders of objects, separated by commas.")
+    data: tuple[str, ...] = Field(("everyday",), description="Sets or folders of objects to infer.")
+    given: tuple[str, ...] = Field((), description="Sets or folders of models to take as they are, and after fix.")
     seeds: int = Field(1, ge=0, description="Objects per family of the generator.")
     families: Annotated[tuple[str, ...], among(FAMILIES)] = Field(
         (), description="Only these families, separated by commas."
+    )
+    engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
+        ("mujoco", "pybullet"), description="Engines, separated by commas."
     )
     collision: Literal["auto", "mesh"] = Field("auto", description="Collision geometry that is written.")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """One object, and how it is written."""
+    """One file to try, and how it comes about."""
 
-    item: BenchObject | None
-    """To be inferred; None for a generated one."""
-    family: str
-    seed: int
+    made: Literal["inferred", "as given", "after fix", "exact"]
+    engines: tuple[str, ...]
     collision: str
+    item: BenchObject | None = None
+    """None for an object of the generator."""
+    family: str = ""
+    seed: int = 0
 
 
 def measure(options: AsLoadedOptions, work: Work) -> Measured:
     """Write every object and try it in every engine."""
-    found = {item.name: item for data in options.data for item in find_objects(data)}
-    cases = {name: Case(item=item, family="", seed=0, collision=options.collision) for name, item in found.items()}
+    case = partial(Case, engines=options.engines, collision=options.collision)
+    inferred = {item.name: item for data in options.data for item in find_objects(data)}
+    given = {item.name: item for data in options.given for item in find_objects(data)}
+    cases = {f"{name} inferred": case(made="inferred", item=item) for name, item in inferred.items()}
+    for name, item in given.items():
+        cases[f"{name} as given"] = case(made="as given", item=item)
+        cases[f"{name} after fix"] = case(made="after fix", item=item)
     for seed in range(options.seeds):
         for family in options.families or FAMILIES:
-            case = Case(item=None, family=family, seed=seed, collision=options.collision)
-            cases[f"{family} {seed}"] = case
-    return list(work.each(tried_as_loaded, cases, timeout=900.0).values()), {}
-
-
-def tried_as_loaded(case: Case) -> Record:
-    """Infer or build an object, write it and try it."""
-    config = load_config()
-    config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
-    if case.item is not None:
-        model = infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config).model
-        return {"set": case.item.urdf.parents[1].name, "object": case.item.name, **_tried(model, config)}
-    blueprint = build(FAMILIES[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
-    model = true_model(blueprint, config)
-    return {"set": "generated", "object": f"{case.family} {case.seed}", **_tried(model, config)}
-
-
-def _tried(model: KinematicModel, config: Config) -> Record:
-    start = time.process_time()
-    made = simulable_model(model, config)
-    seconds = time.process_time() - start
-    free = _free(made)
-    forces = {joint.name: _force(made.robot, joint, config) for joint in made.robot.leaders}
-    with tempfile.TemporaryDirectory() as folder:
-        urdf = write_model(made.robot, Path(folder))
-        worlds = {world: _plain(partial(as_loaded, urdf, made.robot, world, forces, free)) for world in PLAIN_WORLDS}
-    return {
-        "joints": len(forces),
-        "blocked": len(free),
-        "pieces": [len(link.collisions) for link in made.robot.links],
-        "seconds": seconds,
-        "worlds": worlds,
+            cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
+    return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
+        "versions": package_versions(ENGINES[engine].package for engine in options.engines)
     }
 
 
-def _force(robot: Robot, joint: Joint, config: Config) -> float:
-    """What a joint is pushed with [N m or N]."""
-    hand = config.dynamics.hand_torque if joint.kind.turns else config.dynamics.hand_force
-    return hand if moved_by_hand(robot, joint) else max(hand, joint.effort or 0.0)
+def tried_as_loaded(case: Case) -> Record:
+    """Infer, build, mend or take a model, and try it."""
+    config = load_config()
+    config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
+    if case.item is None:
+        name = f"{case.family}_{case.seed}"
+        model = true_model(build(FAMILIES[case.family], {}, seed=case.seed, name=name), config)
+        facts = {"set": "generated, exact", "object": f"{case.family} {case.seed}"}
+        return {**facts, **_written(model, config, case.engines)}
+    facts = {"set": f"{case.item.urdf.parents[1].name}, {case.made}", "object": case.item.name}
+    if case.made == "inferred":
+        model = infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config).model
+        return {**facts, **_written(model, config, case.engines)}
+    if case.made == "as given":
+        return {**facts, **_judged(case.item.urdf, case.engines, case.item.package_dirs)}
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.process_time()
+        fixed = fix_urdf(
+            case.item.urdf, Path(folder) / "model.urdf", config, load_settings(), package_dirs=case.item.package_dirs
+        )
+        seconds = time.process_time() - start
+        return {**facts, "seconds": seconds, **_judged(fixed.path, case.engines, case.item.package_dirs)}
 
 
-def _free(made: SimulableModel) -> dict[str, tuple[float, float]]:
-    """Where exact geometry leaves joints free, for those that it blocks within their range."""
-    found: dict[str, tuple[float, float]] = {}
-    for item in made.collision.blocked if made.collision is not None else ():
-        low, high = found.get(item.joint, (-math.inf, math.inf))
-        found[item.joint] = (max(low, item.at), high) if item.at < 0.0 else (low, min(high, item.at))
-    return found
-
-
-def _plain(tried: Callable[[], AsLoaded]) -> Record:
-    """What came of one engine as JSON values; the words of an engine that does not load the file."""
-    try:
-        found = tried()
-    except (ValueError, bullet.error) as error:
-        return {"refused": str(error), "joints": {}, "depth": 0.0}
+def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> Record:
+    start = time.process_time()
+    made = simulable_model(model, config)
+    seconds = time.process_time() - start
+    with tempfile.TemporaryDirectory() as folder:
+        tried = _judged(write_model(made.robot, Path(folder)), engines)
     return {
-        "joints": {joint.joint: {**asdict(joint), "works": joint.works} for joint in found.joints},
-        "depth": found.depth,
+        "blocked": len({item.joint for item in made.collision.blocked}) if made.collision is not None else 0,
+        "pieces": [len(link.collisions) for link in made.robot.links],
+        "seconds": seconds,
+        **tried,
+    }
+
+
+def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = ()) -> Record:
+    """What `kinematify validate` says of a file as it is loaded, by engine."""
+    checks = checks_of("KV8")
+    report = validate(
+        urdf,
+        package_dirs=package_dirs,
+        engines=engines,
+        selected={_FREE_TRAVEL, *(check.id for check in checks)},
+        workers=1,
+    )
+    return {"as_loaded": report.as_loaded, "worlds": {engine: _world(report.checks, engine) for engine in engines}}
+
+
+def _world(checks: Sequence[CheckResult], engine: str) -> Record:
+    """The judgement of one engine."""
+    told = [check for check in checks if check.check.startswith("KV8") and check.engine == engine]
+    measured = {name: value for check in told for name, value in check.measured.items()}
+    return {
+        "joints": measured.get("joints", 0.0),
+        "right": measured.get("right", 0.0),
+        "unfinished": [f"{check.check}: {check.reason}" for check in told if check.status is Status.BLOCKED],
+        "findings": [
+            [item.check, item.joint, item.message]
+            for check in told
+            for item in check.findings
+            if item.severity is not Severity.NOTE
+        ],
     }
 
 
 def report(found: Report[Record]) -> list[str]:
-    """Models and joints that work, by set and engine, and every joint that does not."""
-    groups = grouped(found.records, by=itemgetter("set"))
-    rows = [_row(name, group, world) for name, group in groups.items() for world in PLAIN_WORLDS]
-    pieces = [count for record in found.records for count in record["pieces"]]
-    seconds = [record["seconds"] for record in found.records]
-    facts = (
-        f"Collision pieces of a link: median {median(pieces):.0f}, most {max(pieces)}. Time of a processor to fit "
-        f"them: median {median(seconds):.1f} s, most {max(seconds):.1f} s an object."
-    )
+    """Models and joints that work, by set and engine, and every complaint."""
+    pieces = [count for record in found.records for count in record.get("pieces", ())]
+    seconds = [record["seconds"] for record in found.records if "seconds" in record]
+    facts = [
+        f"Collision pieces of a link: median {median(pieces):.0f}, most {max(pieces)}." if pieces else "",
+        f"Time of a processor to fit them: median {median(seconds):.1f} s, most {max(seconds):.1f} s an object."
+        if seconds
+        else "",
+    ]
     return [
         explained(__doc__),
-        table(("set", "engine", "models that work", "joints that work", "blocked", "still", "deeper than 5 mm"), rows),
-        facts,
+        "## Works in",
+        works_in(found),
+        " ".join(facts).strip(),
         "## What does not work",
         "\n".join(_failing(found.records)) or "Nothing.",
     ]
 
 
-def _row(name: str, records: Sequence[Record], world: str) -> tuple[str, ...]:
-    tried = [record["worlds"][world] for record in records]
-    joints = [joint for one in tried for joint in one["joints"].values()]
+def works_in(found: Report[Record]) -> str:
+    """Return the table of engines with their versions and the date, in which as many models of a set work."""
+    groups = grouped(found.records, by=itemgetter("set"))
+    rows = [
+        _row(found, name, engine, group)
+        for name, group in groups.items()
+        for engine in ENGINES
+        if engine in group[0]["worlds"]
+    ]
+    return table(("set", "engine", "version", "date", "models that work", "joints that move", "blocked"), rows)
+
+
+def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record]) -> tuple[str, ...]:
+    tried = [record["worlds"][engine] for record in records]
     return (
         name,
-        world,
+        ENGINES[engine].title,
+        found.summary["versions"][ENGINES[engine].package],
+        found.header.date,
         f"{sum(_works(one) for one in tried)} of {len(tried)}",
-        f"{sum(joint['works'] for joint in joints)} of {sum(record['joints'] for record in records)}",
-        str(sum(record["blocked"] for record in records)),
-        str(sum(all(joint["still"] for joint in one["joints"].values()) for one in tried)),
-        str(sum(one["depth"] > _DEEP for one in tried)),
+        f"{sum(one['right'] for one in tried):.0f} of {sum(one['joints'] for one in tried):.0f}",
+        str(sum(record.get("blocked", 0) for record in records)),
     )
 
 
 def _works(tried: Record) -> bool:
-    return "refused" not in tried and all(joint["works"] for joint in tried["joints"].values())
+    return not tried["findings"] and not tried["unfinished"]
 
 
 def _failing(records: Sequence[Record]) -> Iterator[str]:
     for record in records:
-        for world, tried in record["worlds"].items():
-            if "refused" in tried:
-                yield f"- {record['set']}, {record['object']}, {world}: refused, {tried['refused']}"
-            for joint in tried["joints"].values():
-                if not joint["works"]:
-                    yield (
-                        f"- {record['set']}, {record['object']}, {world}, {joint['joint']}: moves over "
-                        f"{joint['reached']:.0%} of its range, leaves it by {joint['beyond']:.3f} rad or m."
-                    )
+        for engine, tried in record["worlds"].items():
+            for check, _, message in tried["findings"]:
+                yield f"- {record['set']}, {record['object']}, {engine}, {check}: {message}"
+            for reason in tried["unfinished"]:
+                yield f"- {record['set']}, {record['object']}, {engine}, {reason}"
 
 
 STUDY = Study(title="The files as they are loaded", options=AsLoadedOptions, measure=measure, report=report)
