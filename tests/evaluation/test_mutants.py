@@ -115,6 +115,7 @@ def test_what_changes_nothing_is_not_planted(tmp_path: Path) -> None:
 
 
 FACT = {"check": "KV342", "severity": "error", "blame": "kinematics", "joint": "hinge", "link": None, "pair": None}
+NOTE = {**FACT, "severity": "note"}
 PLANTED = Planted(how="turned", joint="hinge", links=("door",))
 
 
@@ -123,6 +124,10 @@ PLANTED = Planted(how="turned", joint="hinge", links=("door",))
     [
         ([FACT], [], Verdict.FOUND),
         ([FACT], [FACT], Verdict.MISSED),
+        ([NOTE], [], Verdict.NOTED),
+        ([NOTE], [NOTE], Verdict.MISSED),
+        ([FACT], [NOTE], Verdict.FOUND),
+        ([{**NOTE, "joint": "other"}], [], Verdict.MISSED),
         ([{**FACT, "joint": "other"}], [], Verdict.ELSEWHERE),
         ([{**FACT, "blame": "physics"}], [], Verdict.ELSEWHERE),
         ([{**FACT, "joint": None, "link": "door"}], [], Verdict.FOUND),

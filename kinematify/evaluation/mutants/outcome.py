@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
+from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
@@ -23,9 +24,11 @@ class Verdict(StrEnum):
     """What became of a planted fault."""
 
     FOUND = "found"
-    """A new finding names the joint or link and puts the right blame."""
+    """A new warning or error names the joint or link and puts the right blame."""
+    NOTED = "only as a note"
+    """A new note does: the shapes suggest otherwise, and no fact agrees."""
     ELSEWHERE = "elsewhere"
-    """There are new findings, but they name something else or blame something else."""
+    """There are new warnings or errors, but they name something else or blame something else."""
     MISSED = "missed"
     """Nothing new was found."""
 
@@ -40,8 +43,12 @@ class Outcome:
 
 
 def facts(report: ValidationReport) -> list[Fact]:
-    """Warnings and errors of a report, short."""
-    return [_fact(finding) for finding in report.findings if finding.severity is not Severity.NOTE]
+    """Warnings and errors of a report, and the notes that hold something against a joint, short."""
+    return [
+        _fact(finding)
+        for finding in report.findings
+        if finding.severity is not Severity.NOTE or CHECKS[finding.check].opinion
+    ]
 
 
 def _fact(finding: Finding) -> Fact:
@@ -60,12 +67,22 @@ def judge(fault: Fault, planted: Planted, found: Sequence[Fact], untouched: Sequ
     known = {_key(fact) for fact in untouched}
     new = [fact for fact in found if _key(fact) not in known]
     right = [fact for fact in new if _names(fact, planted) and fact["blame"] in fault.blames]
-    verdict = Verdict.FOUND if right else Verdict.ELSEWHERE if new else Verdict.MISSED
-    return Outcome(verdict=verdict, right=tuple(right), other=tuple(fact for fact in new if fact not in right))
+    other = tuple(fact for fact in new if fact not in right)
+    if any(_counts(fact) for fact in right):
+        verdict = Verdict.FOUND
+    elif right:
+        verdict = Verdict.NOTED
+    else:
+        verdict = Verdict.ELSEWHERE if any(map(_counts, other)) else Verdict.MISSED
+    return Outcome(verdict=verdict, right=tuple(right), other=other)
+
+
+def _counts(fact: Fact) -> bool:
+    return bool(fact["severity"] != Severity.NOTE)
 
 
 def _key(fact: Fact) -> tuple[Any, ...]:
-    return fact["check"], fact["joint"], fact["link"], tuple(fact["pair"] or ())
+    return fact["check"], _counts(fact), fact["joint"], fact["link"], tuple(fact["pair"] or ())
 
 
 def _names(fact: Fact, planted: Planted) -> bool:

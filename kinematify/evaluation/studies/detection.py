@@ -1,7 +1,8 @@
 """Which faults that are planted in good models does `kinematify validate` find?
 
 *Found*: a warning or an error that the untouched model does not have names the joint (or its link) and puts the right
-blame. *Elsewhere*: there are new findings, but none of them does.
+blame. *Only as a note*: nothing measured does, but the note that the shapes suggest otherwise. *Elsewhere*: there are
+new warnings or errors, but none of them does.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from kinematify.evaluation.mutants.plan import FAULTS, write_mutants
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
 from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -85,7 +87,7 @@ def measure(options: DetectionOptions, work: Work) -> Measured:
 
 
 def validated(asked: MutantValidation) -> Record:
-    """Validate one model without engines; notes are left out."""
+    """Validate one model without engines."""
     selected = [check for check in CHECKS if check.startswith(asked.families)]
     start = time.perf_counter()
     report = validate(asked.urdf, settings=load_settings(), selected=selected, engines=(), workers=1)
@@ -124,7 +126,7 @@ def report(found: Report[Record]) -> list[str]:
         ),
         table(("", *dict.fromkeys(_FAMILY.values())), _halves(records)),
         "## What found them",
-        "Mutants found by each check (several may find one).",
+        "Mutants found by each check (several may find one), notes apart.",
         "\n".join(_checks(records)),
         "## Not found",
         "\n".join(_misses(records)) or "All were found.",
@@ -165,7 +167,8 @@ def _checks(records: Sequence[Record]) -> list[str]:
     lines = []
     for name in dict.fromkeys(record["fault"] for record in records):
         group = [record for record in records if record["fault"] == name]
-        counts = Counter(check for record in group for check in sorted({fact["check"] for fact in record["right"]}))
+        right = [{fact["check"] for fact in record["right"] if fact["severity"] != Severity.NOTE} for record in group]
+        counts = Counter(check for checks in right for check in sorted(checks))
         lines.append(f"- {name}: {', '.join(f'{check} {n}' for check, n in counts.most_common(8)) or 'none'}")
     return lines
 
@@ -175,15 +178,17 @@ def _misses(records: Sequence[Record]) -> list[str]:
     for record in records:
         if record["verdict"] == Verdict.FOUND:
             continue
-        seen = sorted({f"{fact['check']} ({fact['blame']}, {_place(fact)})" for fact in record["other"]})
+        noted = record["verdict"] == Verdict.NOTED
+        seen = sorted({_short(fact) for fact in record["right" if noted else "other"]})
         place = record["joint"] or ", ".join(record["links"]) or "all links"
-        instead = f"Instead: {'; '.join(seen[:4])}." if seen else "Nothing new."
+        instead = f"{'A note' if noted else 'Instead'}: {'; '.join(seen[:4])}." if seen else "Nothing new."
         lines.append(f"- {record['fault']}: {record['model']}, {place}: {record['how']}. {instead}")
     return lines
 
 
-def _place(fact: Fact) -> str:
-    return str(fact["joint"] or fact["link"] or (fact["pair"] and " and ".join(fact["pair"])) or "the model")
+def _short(fact: Fact) -> str:
+    place = str(fact["joint"] or fact["link"] or (fact["pair"] and " and ".join(fact["pair"])) or "the model")
+    return f"{fact['check']} ({fact['blame']}, {place})"
 
 
 STUDY = Study(
