@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity, Status
 
@@ -21,16 +22,22 @@ if TYPE_CHECKING:
 def evidence_before_blame(results: Sequence[CheckResult]) -> list[CheckResult]:
     """Return the results with the opinions about each joint as one note, unless an error of fact is about that joint.
 
+    Of a joint whose line a fact doubts, the opinions about its line are left out: the fact names the better one.
+
     Args:
         results: Of all checks of a run.
     """
     facts = {finding.joint for finding in _findings(results, opinion=False) if _proves(finding)}
+    lines = {finding.joint for finding in _findings(results, opinion=False) if _doubts_line(finding)}
     spoken: dict[str | None, list[Finding]] = {}
+    told: list[Finding] = []
     for finding in _findings(results, opinion=True):
-        if finding.joint not in facts and finding.blame is not Blame.ENGINE:  # a crash of the stage is no opinion
-            spoken.setdefault(finding.joint, []).append(finding)
+        if finding.joint in facts or finding.blame is Blame.ENGINE:  # a crash of the stage is no opinion
+            continue
+        group = told if finding.joint in lines and _doubts_line(finding) else spoken.setdefault(finding.joint, [])
+        group.append(finding)
     notes = {id(group[0]): _note(group) for group in spoken.values()}
-    folded = {id(finding) for group in spoken.values() for finding in group}
+    folded = {id(finding) for group in (*spoken.values(), told) for finding in group}
     return [_without_blame(result, notes, folded) if CHECKS[result.check].opinion else result for result in results]
 
 
@@ -40,6 +47,10 @@ def _findings(results: Sequence[CheckResult], *, opinion: bool) -> list[Finding]
 
 def _proves(finding: Finding) -> bool:
     return finding.severity is Severity.ERROR and finding.blame is Blame.KINEMATICS and finding.joint is not None
+
+
+def _doubts_line(finding: Finding) -> bool:
+    return CHECKS[finding.check].feedback is FeedbackRow.LINE
 
 
 def _note(group: Sequence[Finding]) -> Finding:

@@ -274,6 +274,23 @@ class EvidenceSettings(StageConfig):
     """Score of a bearing on both bodies over that of the declared line from which the bearing contradicts it."""
     blocked: float
     """Share of the declared range that the parent blocks, from which a joint of a linkage is doubtful."""
+    neighbour_deg: float
+    """Up to this angle to the declared axis, motion about another line is comparable [deg]."""
+    contact_band: float
+    """Places this much farther apart than the nearest are in contact at rest, fraction of the child's diagonal."""
+    contact_places: int
+    """Samples of a contact from which on it can be told whether half of it opens."""
+    opens: float
+    """Half of the contact may open by this much more than about the line that fits best, fraction of the child's
+    diagonal."""
+    bearing_opens: float
+    """The same where both bodies are round about the line that fits best."""
+    stays_closed: float
+    """About the line that fits best it opens by at most this share."""
+    widest_turn: float
+    """Turns are looked at up to here [deg]."""
+    longest_slide: float
+    """Slides are looked at up to here, fraction of the child's diagonal."""
     type_odds: float
     """Log odds from which the other type is worth a warning."""
     one_sided: float

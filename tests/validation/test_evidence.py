@@ -73,7 +73,8 @@ def test_good_joints_have_no_finding(build: Build, tmp_path: Path) -> None:
 def test_an_axis_turned_by_20_deg_is_off_every_direction(
     build: Build, child: str, about: tuple[float, float, float], tmp_path: Path
 ) -> None:
-    (finding,) = findings(judged(turned(build(), child, 20.0, about), tmp_path))
+    finding, *facts = findings(judged(turned(build(), child, 20.0, about), tmp_path))
+    assert {fact.check for fact in facts} <= {"KV349"}
     assert (finding.check, finding.joint, finding.blame) == ("KV342", f"{child}_joint", Blame.KINEMATICS)
     assert finding.value == pytest.approx(20.0, abs=0.5)
     assert finding.severity in (Severity.ERROR, Severity.WARNING)
@@ -121,6 +122,31 @@ def test_a_pivot_moved_by_a_fifth_of_the_part_is_told(
 ) -> None:
     checks = found(shifted(build(), child, way), tmp_path)
     assert checks & {"KV343", "KV344"}
+
+
+@pytest.mark.parametrize(
+    ("bad", "opens"),
+    [
+        (lambda: turned(edge_door(), "door", 20.0, (1.0, 1.0, 0.0)), 0.025),
+        (lambda: turned(knob(), "knob", 20.0, (1.0, 0.0, 0.4)), 0.01),
+        (lambda: turned(hinge_pin(), "bored_leaf", 20.0, (0.5, 1.0, 0.0)), 0.01),
+        (lambda: shifted(hinge_pin(), "bored_leaf", (1, 1, 0)), 0.01),
+    ],
+)
+def test_a_contact_that_opens_about_a_wrong_line_is_a_fact(bad: Build, opens: float, tmp_path: Path) -> None:
+    known = bad()
+    report = validate(write(known, tmp_path), selected={check.id for check in checks_of("KV34")}, engines=())
+    (finding,) = [finding for finding in report.findings if finding.check.startswith("KV34")]
+    assert (finding.check, finding.severity, finding.blame) == ("KV349", Severity.WARNING, Blame.KINEMATICS)
+    (child,) = [part for part in known.parts if finding.joint == f"{part.name}_joint"]
+    assert finding.value is not None
+    assert finding.limit is not None
+    assert finding.value > finding.limit + opens * child.diagonal
+
+
+def test_a_line_across_a_contact_without_bearing_is_an_opinion(tmp_path: Path) -> None:
+    """Legs whose bearings are not modelled keep their contact best about some line across the declared one."""
+    assert "KV349" not in found(turned(edge_door(), "door", 90.0, (1, 0, 0)), tmp_path)
 
 
 def test_a_pivot_moved_along_the_axis_is_the_same_joint(tmp_path: Path) -> None:
@@ -213,7 +239,7 @@ def test_the_answer_does_not_depend_on_where_the_object_stands(tmp_path: Path) -
     shift[:3, :3] = rotation_about(np.array([0.0, 0.0, 1.0]), 0.7)
     shift[:3, 3] = (12.0, -3.0, 0.4)
     here, there = found(bad, tmp_path / "here"), found(posed(bad, shift), tmp_path / "there")
-    assert here == there == {"KV342"}
+    assert here == there == {"KV342", "KV349"}
     assert found(with_yaw(drawer(), 0.6), tmp_path / "good") == set()
 
 

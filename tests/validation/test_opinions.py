@@ -32,3 +32,14 @@ def test_an_error_of_fact_about_the_same_joint_lets_them_count() -> None:
 def test_a_warning_is_no_proof() -> None:
     told = evidence_before_blame([failed("KV311", "hinge"), failed("KV344", "hinge")])
     assert told[1].findings[0].severity is Severity.NOTE
+
+
+def test_a_fact_about_the_line_takes_the_place_of_the_opinions_about_it() -> None:
+    fact = failed("KV349", "hinge")
+    told = evidence_before_blame([fact, failed("KV342", "hinge"), failed("KV345", "hinge"), failed("KV342", "slide")])
+    assert told[0] == fact
+    assert [[(item.joint, item.severity) for item in result.findings] for result in told[1:]] == [
+        [],
+        [("hinge", Severity.NOTE)],
+        [("slide", Severity.NOTE)],
+    ]

@@ -1,4 +1,4 @@
-"""KV341 to KV348: does the geometry of two links explain the joint between them?
+"""KV341 to KV349: does the geometry of two links explain the joint between them?
 
 KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact about
 the same joint, and are one note per joint else (`kinematify.validation.opinions`). One cause, one finding: a joint with
@@ -128,10 +128,9 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Move the joint's origin onto the hinge line; the message names the line that fits best.
     """
-    line, settings = case.measures.line, case.settings
-    limit = settings.linkage_distance if case.linkage else settings.unknown_distance
-    if case.measures.slides or not case.lines_judged or case.unexplained or line.distance <= limit:
-        return  # a direction that nothing shows has no place
+    if not case.misplaced:
+        return
+    line = case.measures.line
     size = case.measures.weighed.scene.frame.diagonal
     far = f"{line.distance * size:.3g} m" if np.isfinite(line.distance) else "far"
     _doubt(
@@ -141,7 +140,7 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
         f"as a hinge ({case.child} is {size:.3g} m large).",
         _instead(case),
         value=line.distance * size if np.isfinite(line.distance) else size,
-        limit=limit * size,
+        limit=case.farthest * size,
         unit="m",
     )
 
@@ -168,36 +167,18 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
 
     Remedy: Compare with the candidate that the message names, and correct axis and origin.
     """
-    line, settings = case.measures.line, case.settings
-    if case.linkage:
-        limit = settings.linkage_better
-    else:
-        limit = settings.better_slide if case.measures.slides else settings.better
-    if not case.judged_alone or case.unexplained or line.deficit <= limit or _supported(case):
-        return  # of course another one fits better than a direction that nothing shows
-    if case.linkage and not (_contradicted(case) or case.blocked > settings.blocked):
+    if not case.outdone:
         return
+    deficit = case.measures.line.deficit
     _doubt(
         result,
         case,
         f"Another joint of the same type explains the contact of {case.child} and {case.parent} clearly "
-        f"better: its score leads by {line.deficit:.2g}.",
+        f"better: its score leads by {deficit:.2g}.",
         _instead(case),
-        value=line.deficit,
-        limit=limit,
+        value=deficit,
+        limit=case.usual_deficit,
     )
-
-
-def _supported(case: JointCase) -> bool:
-    """Both bodies are round about the declared line about as clearly as about any: then no habit speaks against it."""
-    measures = case.measures
-    return measures.own_bearing > max(case.settings.bearing_score, 0.5 * measures.bearing)
-
-
-def _contradicted(case: JointCase) -> bool:
-    """Both bodies are beyond doubt round about another line."""
-    own = max(case.measures.own_bearing, 1e-4)
-    return case.measures.weighed.scene.has_bearing and case.measures.bearing > case.settings.bearing_lead * own
 
 
 @check(
@@ -400,6 +381,46 @@ def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: flo
             limit=limit,
             unit=unit,
         )
+
+
+@check(
+    "KV349",
+    title="A part stays with what carries it along its line",
+    fails="A part lifts off what carries it, and not about a line nearby",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+    feedback=FeedbackRow.LINE,
+    doubts=True,
+)
+def contact_opens(result: OpenCheck, case: JointCase) -> None:
+    """Where KV342, KV343 or KV344 doubt the line of a joint, its motion is held against that about the line that fits
+    best: half of the places at which child and parent touch at rest do not get farther apart by evidence.opens of the
+    child's size than they do about that other line (evidence.bearing_opens where both bodies are round about it), by
+    visible geometry, over the declared range up to evidence.widest_turn or evidence.longest_slide.
+
+    Why it matters: Bearings and guides do not let go of each other: an axis that is tilted, or beside the hinge, lifts
+    the part off what carries it, and no engine complains.
+
+    Remedy: Move the joint to the configuration that is named and look at the gap; align axis and origin with the
+    line that keeps the contact.
+    """
+    if not (case.unexplained or case.misplaced or case.outdone) or case.opened is None:
+        return
+    own, other = case.opened
+    joint = case.measures.joint
+    value = joint.value + own.at
+    where = f"{value:.3g} m" if case.measures.slides else f"{np.degrees(value):.3g} deg"
+    result.find(
+        f"{case.child} lifts off {case.parent}: at {where} of {joint.source}, half of where they touch at rest is "
+        f"{own.width:.3g} m or more farther apart. About a line nearby it is {max(other.width, 0.0):.3g} m.",
+        _instead(case),
+        joint=joint.source,
+        pair=(case.parent, case.child),
+        q={joint.source: value},
+        value=own.width,
+        limit=max(other.width, 0.0),
+        unit="m",
+    )
 
 
 def _instead(case: JointCase) -> str:

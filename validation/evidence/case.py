@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.hypotheses.line import Line
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
+from kinematify.validation.evidence.opening import Contact
 from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
     from kinematify.validation.evidence.bodies import Bodies
     from kinematify.validation.evidence.measure import JointMeasures
+    from kinematify.validation.evidence.opening import Opening
 
 _LINKAGE = 0.5  # `JointScene.mechanism` from which a pair belongs to a linkage rather than to furniture
 _SMALL = 0.5  # `JointScene.smallness` from which a part is a button or knob
@@ -81,6 +85,76 @@ class JointCase:
     def unexplained(self) -> bool:
         """The axis runs along no direction that the two bodies show."""
         return self.lines_judged and self.measures.line.angle > self.settings.unknown_deg
+
+    @property
+    def misplaced(self) -> bool:
+        """The axis runs far beside every line along its direction that the two bodies show."""
+        if self.measures.slides or not self.lines_judged or self.unexplained:
+            return False  # a direction that nothing shows has no place
+        return self.measures.line.distance > self.farthest
+
+    @property
+    def farthest(self) -> float:
+        """How far beside a line that the bodies show an axis may run, fraction of the child's diagonal."""
+        return self.settings.linkage_distance if self.linkage else self.settings.unknown_distance
+
+    @property
+    def outdone(self) -> bool:
+        """Another joint of its type explains the contact clearly better."""
+        if not self.judged_alone or self.unexplained or self.measures.line.deficit <= self.usual_deficit:
+            return False  # of course another one fits better than a direction that nothing shows
+        if self._supported:
+            return False
+        return not self.linkage or self.contradicted or self.blocked > self.settings.blocked
+
+    @property
+    def usual_deficit(self) -> float:
+        """By how much another joint may score better."""
+        if self.linkage:
+            return self.settings.linkage_better
+        return self.settings.better_slide if self.measures.slides else self.settings.better
+
+    @property
+    def _supported(self) -> bool:
+        """Both bodies are round about the declared line about as clearly as about any: no habit speaks against it."""
+        measures = self.measures
+        return measures.own_bearing > max(self.settings.bearing_score, 0.5 * measures.bearing)
+
+    @property
+    def contradicted(self) -> bool:
+        """Both bodies are beyond doubt round about another line."""
+        own = max(self.measures.own_bearing, 1e-4)
+        return self.measures.weighed.scene.has_bearing and self.measures.bearing > self.settings.bearing_lead * own
+
+    @cached_property
+    def opened(self) -> tuple[Opening, Opening] | None:
+        """How far the contact opens about the declared line and about the one that fits best, if that is much less.
+
+        None where the two bodies touch at too few places to say so, or where the lines are not comparable: far apart in
+        direction, without a bearing about the other one.
+        """
+        measures, settings = self.measures, self.settings
+        joint, line, size = measures.joint, measures.line, measures.weighed.scene.frame.diagonal
+        turned = float(np.degrees(np.arccos(np.clip(abs(line.best_axis @ joint.axis), 0.0, 1.0))))
+        if not (self.contradicted or turned <= settings.neighbour_deg):
+            return None
+        cache = measures.weighed.scene.cache
+        contact = Contact(cache, joint.parent, joint.child, band=settings.contact_band * size)
+        if contact.places < settings.contact_places:
+            return None
+        reach = settings.longest_slide * size if measures.slides else np.radians(settings.widest_turn)
+        lower, upper = max(joint.lower, -reach), min(joint.upper, reach)
+        own = contact.opening(joint.kind, Line(axis=joint.axis, point=joint.pivot), lower, upper)
+        other = min(
+            (
+                contact.opening(joint.kind, Line(axis=sign * line.best_axis, point=line.best_pivot), lower, upper)
+                for sign in (1.0, -1.0)
+            ),
+            key=lambda opening: opening.width,
+        )
+        limit = settings.bearing_opens if self.contradicted else settings.opens
+        clear = own.width - other.width > limit * size and other.width < settings.stays_closed * own.width
+        return (own, other) if clear else None
 
     @property
     def judged_alone(self) -> bool:
