@@ -18,6 +18,7 @@ from kinematify.cli.progress import progress_reporter
     epilog=examples(
         "kinematify fit -o fitted",
         "kinematify fit models/everyday models/robots --rounds 8 --composed 400 -o fitted",
+        "kinematify fit models/everyday --packages -o fitted",
         "kinematify fit --rounds 1 --composed 20 -o reduced",
     ),
 )
@@ -25,6 +26,7 @@ from kinematify.cli.progress import progress_reporter
 @click.option("-o", "--out", type=click.Path(path_type=Path), required=True, help="Folder of weights and tables.")
 @click.option("--rounds", type=click.IntRange(min=0), default=4, show_default=True, help="Objects of every family.")
 @click.option("--composed", type=click.IntRange(min=0), default=150, show_default=True, help="Random mechanisms.")
+@click.option("--packages", is_flag=True, help="Also objects that installed PyPI packages carry.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Draws the generated objects.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
 @json_option
@@ -34,6 +36,7 @@ def command(
     out: Path,
     rounds: int,
     composed: int,
+    packages: bool,
     seed: int,
     jobs: int | None,
     json_to: str | None,
@@ -44,8 +47,12 @@ def command(
     alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
     To ship new weights, copy weights.npz into kinematify/joints/choice.
     """
+    from kinematify.evaluation.fitting.packages import write_installed
     from kinematify.evaluation.fitting.run import as_markdown, run_fit
 
+    if packages:
+        write_installed(out / "packages")
+        folders = (*folders, out / "packages")
     with progress_reporter() as progress:
         report = run_fit(
             folders,
