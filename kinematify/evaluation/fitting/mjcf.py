@@ -77,9 +77,9 @@ def _compiled(document: _Element, path: Path) -> mujoco.MjModel:
         if parent is not None:
             parent.remove(element)
     for element in document.iter("geom", "site"):
-        element.attrib.pop("material", None)
+        element.attrib.pop("material", "")
     for element in document.iter("compiler"):
-        element.attrib.pop("inertiagrouprange", None)  # bodies of shown geometry alone would have no mass
+        element.attrib.pop("inertiagrouprange", "")  # bodies of shown geometry alone would have no mass
     etree.SubElement(document, "compiler", boundmass="1e-3", boundinertia="1e-6", balanceinertia="true")
     spec = mujoco.MjSpec.from_string(etree.tostring(document, encoding="unicode"))
     spec.modelfiledir = str(path.parent)
