@@ -1,4 +1,4 @@
-"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx)."""
+"""What the checks of the untouched file say together, over all engines that loaded it (KV8xx), and about others."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES
-from kinematify.validation.finding import Severity, Status
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Blame, Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,6 +62,36 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
         if check.check.startswith(_FAMILY)
         else check
         for check in checks
+    ]
+
+
+def shown_as_loaded(checks: Sequence[CheckResult]) -> list[CheckResult]:
+    """Make contacts that only a prepared copy shows notes, where an engine moved the joints of the untouched file.
+
+    The copy lets parent and child touch and gives links without collision geometry their visual one, which no engine
+    does by itself.
+
+    Args:
+        checks: All results.
+    """
+    if not any(check.check == _MOVES and "joints" in check.measured and not check.unfinished for check in checks):
+        return list(checks)
+    shown = [finding for check in checks if check.check.startswith(_FAMILY) for finding in check.findings]
+    joints = {finding.joint for finding in shown if finding.severity is not Severity.NOTE}
+    pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
+
+    def told(finding: Finding) -> Finding:
+        counts = finding.blame is not Blame.PHYSICS or finding.joint in joints - {None}
+        if counts or finding.severity is Severity.NOTE or (finding.pair and frozenset(finding.pair) in pairs):
+            return finding
+        return replace(
+            finding,
+            severity=Severity.NOTE,
+            message=f"{finding.message} Only our prepared copy shows it, no engine that loads the file itself.",
+        )
+
+    return [
+        check.with_findings(map(told, check.findings)) if CHECKS[check.check].prepared else check for check in checks
     ]
 
 

@@ -30,7 +30,7 @@ from kinematify.simulation.engines import ENGINES
 from kinematify.validation.finding import Finding, Severity, Status, not_finished
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from kinematify.validation.finding import Blame
 
@@ -77,6 +77,16 @@ class FeedbackRow(StrEnum):
     EXPORTER = "none: files, frames or masses are the exporter's to mend"
 
 
+class Shared(StrEnum):
+    """What a cause and what follows from it must both be about."""
+
+    MODEL = "the model"
+    ENGINE = "the same engine, where what follows names no two bodies"
+    BODY = "a body in common"
+    PAIR = "the same two bodies"
+    JOINT = "the same joint"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Check:
     """A check with its documentation; ids are stable for ever."""
@@ -105,6 +115,10 @@ class Check:
     """Its findings put axis, place, type, parent or direction of a joint in doubt; a robot's task wants to know."""
     opinion: bool = False
     """Its findings are what our own inference holds of the shapes; they blame nobody where no fact agrees."""
+    follows: Mapping[str, Shared] = field(default_factory=dict)
+    """Checks whose findings can be the cause of its own, and what both must be about; the first that fits is taken."""
+    prepared: bool = False
+    """Its findings about contact are seen in a prepared copy; they count where the file as loaded shows it too."""
     needs: tuple[Need, ...] = ()
     """Asked before it runs, with the context: each gives the reason why there is nothing to look at, or None."""
     function: CheckFunction
@@ -206,6 +220,8 @@ def check(
     feedback: FeedbackRow | None = None,
     doubts: bool = False,
     opinion: bool = False,
+    follows: Mapping[str, Shared] | None = None,
+    prepared: bool = False,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:
     """Register the decorated function as a check; see `Check` for the arguments.
@@ -226,6 +242,8 @@ def check(
             feedback=feedback or (FeedbackRow.EXPORTER if id.startswith(_NOT_OURS) else None),
             doubts=doubts,
             opinion=opinion,
+            follows=follows or {},
+            prepared=prepared,
             needs=needs,
             function=function,
             **_documentation(id, function),
@@ -243,9 +261,13 @@ def engine_check(
     severity: Severity,
     blame: Blame,
     feedback: FeedbackRow | None = None,
+    follows: Mapping[str, Shared] | None = None,
+    prepared: bool = False,
     needs: tuple[Need, ...] = (),
 ) -> Callable[[CheckFunction], CheckFunction]:
     """Register the decorated function once for each engine of `ENGINE_FAMILIES`: ``"05"`` is KV405 and KV505.
+
+    Causes in `follows` are ids, or such numbers for checks of the same engine.
 
     In its docstring ``{engine}`` stands for the engine's name, and a paragraph such as ``PyBullet: ...`` is added to
     what that engine's check verifies.
@@ -261,6 +283,8 @@ def engine_check(
                 blame=blame,
                 engines=(engine,),
                 feedback=feedback,
+                follows={family + name if len(name) == 2 else name: shared for name, shared in (follows or {}).items()},
+                prepared=prepared,
                 needs=needs,
             )(function)
         return function

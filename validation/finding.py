@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 
 class Severity(StrEnum):
@@ -84,6 +84,8 @@ class Finding:
     """Plain Python that shows it in the engine, without Kinematify."""
     suppressed: str | None = None
     """Reason given by the user for not counting it; it is still reported."""
+    cause: Finding | None = field(default=None, compare=False, repr=False)
+    """Finding that it follows from and is told under; it has no cause itself."""
 
     def __post_init__(self) -> None:
         if self.q is not None:
@@ -117,3 +119,11 @@ class CheckResult:
     def unfinished(self) -> bool:
         """True if time ran out before it was complete; what it found by then stands."""
         return (self.reason or "").startswith(_NOT_FINISHED)
+
+    def with_findings(self, findings: Iterable[Finding]) -> CheckResult:
+        """Return the result with its findings judged anew: it has not failed if all of them are notes now."""
+        found = tuple(findings)
+        status = self.status
+        if status is Status.FAIL and all(finding.severity is Severity.NOTE for finding in found):
+            status = Status.SKIPPED if self.unfinished else Status.PASS
+        return replace(self, findings=found, status=status)

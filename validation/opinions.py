@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,8 +65,6 @@ def _note(group: Sequence[Finding]) -> Finding:
 
 
 def _without_blame(result: CheckResult, notes: dict[int, Finding], folded: set[int]) -> CheckResult:
-    kept = tuple(notes.get(id(item), item) for item in result.findings if id(item) in notes or id(item) not in folded)
-    counted = any(finding.severity is not Severity.NOTE for finding in kept)
-    if result.status is not Status.FAIL or counted:
-        return replace(result, findings=kept)
-    return replace(result, findings=kept, status=Status.SKIPPED if result.unfinished else Status.PASS)
+    return result.with_findings(
+        notes.get(id(item), item) for item in result.findings if id(item) in notes or id(item) not in folded
+    )

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import ExitStatus
 from kinematify.validation.as_loaded import as_loaded_words
+from kinematify.validation.causes import told_with_consequences
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.validation.causes import Told
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.summary import JointCurve, JointSummary, PairTable
 
@@ -50,6 +52,11 @@ class ValidationReport:
         return tuple(finding for finding in self.findings if finding.suppressed is None)
 
     @property
+    def told(self) -> tuple[Told, ...]:
+        """Findings that follow from no other, the worst first, each with what follows from it."""
+        return told_with_consequences(self.findings)
+
+    @property
     def verdict(self) -> str:
         """``fail`` with an error, ``warn`` with a warning, else ``pass``; suppressed findings do not count."""
         severities = {finding.severity for finding in self.counted}
@@ -82,11 +89,18 @@ class ValidationReport:
             "verdict": self.verdict,
             "as_loaded": self.as_loaded or None,
             "checks": [_check_json(check) for check in self.checks],
-            "findings": [_finding_json(finding) for finding in self.findings],
+            "findings": self._findings_json(),
             "joints": [_joint_json(joint) for joint in self.joints],
             "refinement": _plain(self.refinement),
             "environment": _plain(self.environment),
         }
+
+    def _findings_json(self) -> list[dict[str, Any]]:
+        place = {id(finding): number for number, finding in enumerate(self.findings)}
+        return [
+            _finding_json(finding) | {"follows_from": None if finding.cause is None else place[id(finding.cause)]}
+            for finding in self.findings
+        ]
 
 
 def _check_json(check: CheckResult) -> dict[str, Any]:

@@ -14,9 +14,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.config.validation import load_settings
+from kinematify.errors import DescriptionError
 from kinematify.manipulation.request import Suspicion
+from kinematify.robot.read import read_robot
 from kinematify.simulation.engines import DEFAULT_ENGINES, ENGINES, require_engine
-from kinematify.validation.as_loaded import across_engines
+from kinematify.validation.as_loaded import across_engines, shown_as_loaded
+from kinematify.validation.causes import with_causes
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
@@ -43,6 +46,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.manipulation.request import TaskRequest
+    from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
     from kinematify.validation.isolation import StageEnd
     from kinematify.validation.plan import CheckKey
@@ -252,8 +256,9 @@ class _Run:
             self._explain_rest(Status.SKIPPED, "the run was interrupted")
         self._explain_rest(Status.BLOCKED, "its stage said nothing about it, which is a defect of Kinematify")
         told = [self._result(key) for key in keys(list(self.checks.values()))]
-        results = evidence_before_blame(across_engines(told, self.engines))
+        results = evidence_before_blame(shown_as_loaded(across_engines(told, self.engines)))
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
+        checks = with_causes(checks, _bodies(self.path))
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
         )
@@ -326,6 +331,14 @@ class _Run:
         seconds = 2.0 * (_task_seconds(settings) if result.check.startswith("KV7") else settings.budget.seconds)
         command = f"kinematify validate {shlex.quote(str(self.path))} --budget {seconds:g}"
         return replace(result, reason=f"{result.reason}; to finish: {command}, other options as they were")
+
+
+def _bodies(path: Path) -> Robot | None:
+    """The links and joints of a file; None where it is no tree that could be read."""
+    try:
+        return read_robot(path, geometry="none")
+    except DescriptionError:
+        return None
 
 
 def _task_seconds(settings: ValidationSettings) -> float:

@@ -111,7 +111,13 @@ def _section(check: Check) -> list[str]:
         f"- Verifies: {check.verifies}",
         f"- Why it matters: {check.matters}",
         f"- Remedy: {check.remedy}",
+        *([f"- May follow from: {_causes(check)}"] if check.follows else []),
     ]
+
+
+def _causes(check: Check) -> str:
+    """Checks that can be the cause, with what both must be about."""
+    return ", ".join(f"[{name}](#{name.lower()}) ({shared.value})" for name, shared in check.follows.items())
 
 
 def _cell(text: str) -> str:
@@ -158,4 +164,5 @@ def _as_answer(check: Check) -> dict[str, Any]:
         "verifies": check.verifies,
         "matters": check.matters,
         "remedy": check.remedy,
+        "follows": {name: shared.value for name, shared in check.follows.items()},
     }

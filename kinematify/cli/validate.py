@@ -87,6 +87,9 @@ if TYPE_CHECKING:
     metavar="DIR",
     help="Where films of the task go: beside the first report, or here, if not given.",
 )
+@click.option(
+    "--all", "everything", is_flag=True, help="Tell notes, every place and number, joints and what did not run."
+)
 @click.option("--json", "json_to", metavar="FILE", help="Report as JSON; - is stdout, and then nothing else is.")
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Report as JUnit XML.")
 @click.option("--sarif", type=click.Path(path_type=Path), metavar="FILE", help="Report as SARIF 2.1.0.")
@@ -117,6 +120,7 @@ def command(
     base: tuple[float, float, float, float] | None,
     scale: float | None,
     films: Path | None,
+    everything: bool,
     json_to: str | None,
     junit: Path | None,
     sarif: Path | None,
@@ -154,6 +158,7 @@ def command(
         settings=_settings(config, budget=budget, seed=seed),
         workers=jobs or os.cpu_count() or 1,
         with_pictures=html is not None,
+        everything=everything,
         task=asked,
     )
     try:

@@ -43,6 +43,8 @@ class ValidationRun:
     settings: ValidationSettings
     workers: int
     with_pictures: bool
+    everything: bool = False
+    """Tell notes, places and tables of one model, too."""
     task: TaskRequest | None = None
     outcomes: list[Outcome] = field(default_factory=list)
     pictures: dict[str, bytes] = field(default_factory=dict)
@@ -112,7 +114,7 @@ class ValidationRun:
         if len(self.models) > 1 and not quiet:
             say(describe_all(self.outcomes))
         elif reports and not quiet:
-            say(describe(reports[0]))
+            say(describe(reports[0], everything=self.everything))
         else:
             for outcome in self.outcomes:
                 if isinstance(outcome, Unusable):

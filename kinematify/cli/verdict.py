@@ -1,4 +1,4 @@
-"""What `kinematify validate` says on a terminal: the verdict first, then families, findings and joints."""
+"""What `kinematify validate` says on a terminal: the verdict first, then what is wrong, the worst first."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 import shutil
 import sys
 import textwrap
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ from kinematify.validation.formats.text import (
     NEXT_BEST_HEADINGS,
     configuration,
     family_rows,
+    follow_words,
     joint_rows,
     measure,
     next_best_rows,
@@ -31,8 +33,9 @@ from kinematify.validation.formats.text import (
 from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
+    from kinematify.validation.causes import Told
     from kinematify.validation.finding import Finding
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
@@ -43,6 +46,12 @@ MANY = 3
 _COLORS = {"pass": "green", "warn": "yellow", "fail": "red", "unusable": "red"}
 _SEVERITY_COLORS = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.NOTE: "blue"}
 _WIDEST = 120
+_SCREEN = 30
+"""Lines of a report that nobody has to scroll for."""
+_LONGEST = 120
+"""Lines of a report unless everything is asked for."""
+_PLACES = 6
+"""So many places where the same was found are named."""
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
@@ -53,19 +62,66 @@ def say(text: str) -> None:
     click.echo(text.encode(encoding, "replace").decode(encoding), color=colored)
 
 
-def describe(outcome: Outcome) -> str:
-    """Everything about one model."""
+def describe(outcome: Outcome, *, everything: bool = False) -> str:
+    """One model: what is wrong and what to do, on a screen where that is possible, or everything that is known."""
     if isinstance(outcome, Unusable):
         return f"{_verdict_line(outcome)}\n{_wrapped(printable(outcome.message))}"
-    blocks = [
-        "\n".join(_first_lines(outcome)),
-        format_table(FAMILY_HEADINGS, family_rows(outcome)),
-        "\n".join(_reasons(outcome)),
-        *(_group_text(group) for group in _groups(outcome.findings)),
-        _joint_table(outcome),
-        _next_best(outcome),
+    return "\n\n".join(block for block in (_full if everything else _short)(outcome) if block)
+
+
+def _full(report: ValidationReport) -> list[str]:
+    """All findings with their places, numbers, consequences and code; families, joints, and what did not run."""
+    return [
+        "\n".join(_first_lines(report)),
+        format_table(FAMILY_HEADINGS, family_rows(report)),
+        "\n".join(_reasons(report, (Status.SKIPPED, Status.BLOCKED))),
+        *(_group_text(group) for group in _groups(report.told)),
+        _joint_table(report),
+        _next_best(report),
     ]
-    return "\n\n".join(block for block in blocks if block)
+
+
+def _short(report: ValidationReport) -> list[str]:
+    """Errors and warnings with their remedies.
+
+    Where they fill more than a screen, warnings are told without; what is beyond the longest report is counted.
+    """
+    told = [item for item in report.told if item.finding.suppressed is None]
+    groups = _groups([item for item in told if item.finding.severity is not Severity.NOTE])
+    head = ["\n".join(_first_lines(report)), "\n".join(_reasons(report, (Status.BLOCKED,)))]
+    foot = [_next_best(report), _notes(told), _more(report)]
+    texts = [_short_text(group) for group in groups]
+    if _height([*head, *texts, *foot]) > _SCREEN:
+        texts = [
+            _short_text(group) if group[0].finding.severity is Severity.ERROR else _group_line(group, 0)
+            for group in groups
+        ]
+    shown = len(texts)
+    while shown and _height([*head, *texts[:shown], *foot]) > _LONGEST:
+        shown -= 1
+    left = sum(map(len, groups[shown:]))
+    return [*head, *texts[:shown], f"{counted_words(left, 'more finding')}: --all tells them." if left else "", *foot]
+
+
+def _height(blocks: Sequence[str]) -> int:
+    """Lines of blocks with an empty one between any two."""
+    return sum(block.count("\n") + 2 for block in blocks if block)
+
+
+def _notes(told: Sequence[Told]) -> str:
+    """How many notes there are, by check."""
+    counts = Counter(item.finding.check for item in told if item.finding.severity is Severity.NOTE)
+    listed = ", ".join(f"{check}{f' ({count})' if count > 1 else ''}" for check, count in sorted(counts.items()))
+    return _wrapped(f"{counted_words(counts.total(), 'note')}: {listed}.") if counts else ""
+
+
+def _more(report: ValidationReport) -> str:
+    """What the whole report has besides."""
+    code = ", plain code that shows what engines do" if any(item.reproduction for item in report.findings) else ""
+    return _wrapped(
+        f"--all tells everything: notes, each place and number, what follows from what{code}, the joints, the checks "
+        "that did not run. kinematify explain KV301 tells what a check looks at."
+    )
 
 
 def describe_all(outcomes: Sequence[Outcome]) -> str:
@@ -78,11 +134,12 @@ def describe_all(outcomes: Sequence[Outcome]) -> str:
 
 def describe_briefly(report: ValidationReport) -> str:
     """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
-    errors = _groups([item for item in report.counted if item.severity is Severity.ERROR])
+    told = [item for item in report.told if item.finding.suppressed is None]
+    errors = _groups([item for item in told if item.finding.severity is Severity.ERROR])
     warnings: dict[tuple[str, str | None], list[Finding]] = {}
-    for item in report.counted:
-        if item.severity is Severity.WARNING:
-            warnings.setdefault((item.check, item.engine), []).append(item)
+    for item in told:
+        if item.finding.severity is Severity.WARNING:
+            warnings.setdefault((item.finding.check, item.finding.engine), []).append(item.finding)
     lines = [*_first_lines(report), *map(_group_line, errors)]
     lines += [f"  {_heading(group[0])}{_times(len(group))}" for group in warnings.values()]
     return "\n".join(lines)
@@ -126,11 +183,11 @@ def _unfinished(report: ValidationReport) -> str:
     return f"{counted_words(len(report.unfinished), 'check')} not finished{status}"
 
 
-def _reasons(report: ValidationReport) -> list[str]:
-    """Why checks did not run, a line for each reason."""
+def _reasons(report: ValidationReport, statuses: Collection[Status]) -> list[str]:
+    """Why checks of some statuses did not run, or were not finished, a line for each reason."""
     grouped: dict[tuple[Status, str], list[str]] = {}
     for check in report.checks:
-        if check.status in (Status.SKIPPED, Status.BLOCKED) or check.unfinished:
+        if check.status in statuses or check.unfinished:
             grouped.setdefault((check.status, check.reason or "no reason given"), []).append(check.check)
     return [
         _wrapped(printable(f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}"), 2, 4)
@@ -138,12 +195,13 @@ def _reasons(report: ValidationReport) -> list[str]:
     ]
 
 
-def _groups(findings: Sequence[Finding]) -> list[list[Finding]]:
+def _groups(told: Sequence[Told]) -> list[list[Told]]:
     """Findings that say the same of different places, in the order of the first of each."""
-    grouped: dict[tuple[object, ...], list[Finding]] = {}
-    for finding in findings:
+    grouped: dict[tuple[object, ...], list[Told]] = {}
+    for item in told:
+        finding = item.finding
         key = (finding.check, finding.engine, finding.severity, finding.blame, finding.suppressed)
-        grouped.setdefault((*key, _pattern(finding)), []).append(finding)
+        grouped.setdefault((*key, _pattern(finding)), []).append(item)
     return list(grouped.values())
 
 
@@ -156,15 +214,37 @@ def _pattern(finding: Finding) -> str:
     return _NUMBER.sub("#", text)
 
 
-def _group_text(group: Sequence[Finding]) -> str:
+def _short_text(group: Sequence[Told]) -> str:
+    """What is wrong, where else, what to do, and what follows from it."""
+    first = group[0].finding
+    follows = follow_words(item for told in group for item in told.consequences)
+    lines = [
+        _heading(first, f", {len(group)} times" if len(group) > 1 else ""),
+        _wrapped(printable(first.message), 2, 2),
+        *([_wrapped(printable(f"Also: {_others(group)}."), 2, 2)] if len(group) > 1 else []),
+        _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
+        *([_wrapped(f"Follows from it: {follows}.", 2, 2)] if follows else []),
+    ]
+    return "\n".join(lines)
+
+
+def _others(group: Sequence[Told]) -> str:
+    """Where else the same was found."""
+    places = list(dict.fromkeys(where(item.finding) for item in group[1:]))
+    more = len(places) - _PLACES
+    return "; ".join(places[:_PLACES]) + (f" and {more} more" if more > 0 else "")
+
+
+def _group_text(group: Sequence[Told]) -> str:
     if len(group) < MANY:
         return "\n\n".join(map(_finding_text, group))
-    first = group[0]
-    table = format_table(("where", "at", "measured", "line"), [_group_row(finding) for finding in group])
+    first = group[0].finding
+    table = format_table(("where", "at", "measured", "line"), [_group_row(item.finding) for item in group])
     lines = [
         _heading(first, f", {len(group)} times"),
         _wrapped(f"For example: {printable(first.message)}", 2, 2),
         _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
+        *_consequences([item for told in group for item in told.consequences]),
         *_reproduction(first),
         *_suppressed(first),
         textwrap.indent(table, "  "),
@@ -172,12 +252,22 @@ def _group_text(group: Sequence[Finding]) -> str:
     return "\n".join(lines)
 
 
+def _consequences(findings: Sequence[Finding]) -> list[str]:
+    """What follows from a finding, a paragraph each, with the code that shows the first in an engine."""
+    if not findings:
+        return []
+    lines = [_wrapped(f"{title(item)}: {printable(item.message)}", 4, 6) for item in findings]
+    shown = next((item for item in findings if item.reproduction is not None), None)
+    return ["  Follows from it:", *lines, *([] if shown is None else _reproduction(shown))]
+
+
 def _group_row(finding: Finding) -> tuple[str, ...]:
     cells = (where(finding), configuration(finding.q), measure(finding), str(finding.line or ""))
     return tuple(printable(cell) or "-" for cell in cells)
 
 
-def _finding_text(finding: Finding) -> str:
+def _finding_text(told: Told) -> str:
+    finding = told.finding
     at = configuration(finding.q)
     facts = [
         where(finding),
@@ -191,6 +281,7 @@ def _finding_text(finding: Finding) -> str:
         *([_wrapped(printable(shown), 2, 2)] if shown else []),
         _wrapped(printable(finding.message), 2, 2),
         _wrapped(f"Remedy: {printable(finding.remedy)}", 2, 2),
+        *_consequences(told.consequences),
         *_reproduction(finding),
         *_suppressed(finding),
     ]
@@ -232,15 +323,16 @@ def _brief(outcome: Outcome) -> str:
     if isinstance(outcome, Unusable):
         return describe(outcome)
     lines = _first_lines(outcome)
-    for group in _groups([finding for finding in outcome.counted if finding.severity is not Severity.NOTE]):
-        lines.append(_group_line(group))
+    told = [item for item in outcome.told if item.finding.suppressed is None]
+    lines += map(_group_line, _groups([item for item in told if item.finding.severity is not Severity.NOTE]))
     return "\n".join(lines)
 
 
-def _group_line(group: Sequence[Finding]) -> str:
-    about = where(group[0])
-    message = f"{about}: {group[0].message}" if about else group[0].message
-    return _wrapped(f"{_heading(group[0])}{_times(len(group))}: {printable(message)}", 2, 4)
+def _group_line(group: Sequence[Told], indent: int = 2) -> str:
+    first = group[0].finding
+    about = where(first)
+    message = f"{about}: {first.message}" if about else first.message
+    return _wrapped(f"{_heading(first)}{_times(len(group))}: {printable(message)}", indent, indent + 2)
 
 
 def _times(count: int) -> str:

@@ -128,6 +128,11 @@ class Scene:
         moving = [leads[joints[name]] for name in ways[0] ^ ways[1]]
         return frozenset(np.flatnonzero(np.any(np.abs(moving) > 0.0, axis=0)).tolist() if moving else ())
 
+    def carries(self, pair: Pair) -> bool:
+        """Whether one of the two bodies carries the other, perhaps with bodies between them."""
+        first, second = (self._ways[self.bodies[index].group] for index in pair)
+        return first <= second or second <= first
+
     @cached_property
     def affected(self) -> tuple[tuple[Pair, ...], ...]:
         """For every leader the pairs that it moves against each other."""

@@ -132,11 +132,11 @@ def test_only_errors_change_the_exit_status(
     assert (status, capsys.readouterr().out.split()[0]) == expected
 
 
-def test_terminal_report_has_the_verdict_first_and_then_everything(
+def test_everything_is_told_when_it_is_asked_for(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     answered["chest.urdf"] = full_report()
-    assert run(["validate", str(chest)]) == 1
+    assert run(["validate", str(chest), "--all"]) == 1
     text = capsys.readouterr().out
     assert "2 errors, 1 warning, 1 note; 1 finding suppressed; 2 of 5 checks ran, 1 skipped, 2 blocked; 2.5 s" in text
     assert text.index("FAIL") < text.index("KV3 kinematics by geometry") < text.index("error KV396")
@@ -153,7 +153,74 @@ def test_terminal_report_has_the_verdict_first_and_then_everything(
         assert part in text, part
 
 
-def test_many_findings_of_a_kind_are_a_table_with_every_number(
+def test_a_report_begins_with_the_verdict_and_tells_what_counts(
+    answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answered["chest.urdf"] = full_report()
+    assert run(["validate", str(chest)]) == 1
+    text = capsys.readouterr().out
+    assert text.startswith("FAIL")
+    assert len(text.splitlines()) <= 30
+    for part in (
+        "error KV396 Doors & drawers of KV396 jam",
+        "Remedy: Turn the axis of hinge_1.",
+        "warning KV396",
+        "blocked (KV496): no mesh",
+        "1 note: KV396.",
+        "--all tells everything",
+    ):
+        assert part in text, part
+    for part in ("the seal is soft", "it does not apply", "They touch at rest", "free travel"):
+        assert part not in text, part
+
+
+def test_no_report_is_longer_than_it_may_be(
+    answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = [f"door {chr(97 + k % 26)}{chr(97 + k // 26)}" for k in range(200)]
+    answered["chest.urdf"] = report(result(*(finding(message=f"The {name} jams.", joint=None) for name in names)))
+    run(["validate", str(chest)])
+    lines = capsys.readouterr().out.splitlines()
+    assert 100 < len(lines) <= 120
+    shown = sum(line.startswith("error KV396") for line in lines)
+    assert f"{200 - shown} more findings: --all tells them." in lines
+    run(["validate", str(chest), "--all"])
+    text = capsys.readouterr().out
+    assert all(f"The {name} jams." in text for name in names)
+
+
+def test_warnings_beyond_a_screen_are_told_without_their_remedies(
+    answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    doors = [finding(message=f"The door {chr(97 + k)} jams.", joint=None, severity=Severity.WARNING) for k in range(12)]
+    answered["chest.urdf"] = report(result(*doors))
+    run(["validate", str(chest)])
+    text = capsys.readouterr().out
+    assert text.count("Remedy:") == 0
+    assert text.count("warning KV396 Doors & drawers of KV396 jam") == 12
+
+
+def test_what_follows_from_a_finding_is_told_under_it(
+    answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cause = finding()
+    stops = [
+        finding(check="KV496", engine="mujoco", message="It stops.", cause=cause, reproduction="import mujoco")
+        for _ in range(2)
+    ]
+    answered["chest.urdf"] = report(result(cause), result(*stops, check="KV496", engine="mujoco"))
+    run(["validate", str(chest)])
+    text = capsys.readouterr().out
+    assert ": 1 error, no warnings" in text.splitlines()[0]
+    assert "Follows from it: KV496 [mujoco] 2 times." in text
+    assert "It stops." not in text
+    run(["validate", str(chest), "--all"])
+    text = capsys.readouterr().out
+    assert "KV496 Doors & drawers of KV496 jam [mujoco]: It stops." in text
+    assert "import mujoco" in text
+
+
+def test_many_findings_of_a_kind_are_told_once(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     many = [
@@ -165,6 +232,10 @@ def test_many_findings_of_a_kind_are_a_table_with_every_number(
     text = capsys.readouterr().out
     assert "40 times" in text
     assert text.count("Remedy:") == 1
+    assert "Also: part_1 - body; part_2 - body;" in text
+    assert "and 33 more." in text
+    run(["validate", str(chest), "--all"])
+    text = capsys.readouterr().out
     assert all(f"part_{k} - body" in text and f"{k}.5 mm, limit 1 mm" in text for k in range(40))
 
 

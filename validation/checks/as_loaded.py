@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.simulation.loaded_file import Unloadable
-from kinematify.validation.check import OpenCheck, check
+from kinematify.validation.check import OpenCheck, Shared, check
+from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late
 from kinematify.validation.finding import Blame, Severity
 
@@ -40,6 +42,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
     engines=_ENGINES,
+    follows=dict.fromkeys(NOT_A_BODY, Shared.BODY),
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
@@ -55,6 +58,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"{context.title} does not open the file as it is: {context.loading}.",
             _remedy_of_loading(context, str(context.loading)),
+            link=_named_link(context, str(context.loading)),
         )
         return
     result.measured["joints"] = float(len(context.loaded.joints))
@@ -64,6 +68,11 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
             joint=name,
         )
+
+
+def _named_link(context: AsLoadedContext, message: str) -> str | None:
+    """Return the link that an engine's message is about; None if it names none in quotes."""
+    return next((name for name in re.findall(r"'([^']+)'", message) if name in context.mechanism.links), None)
 
 
 def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
@@ -85,6 +94,7 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
+    follows=IN_ENGINES,
     needs=(not_loaded,),
 )
 def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -118,6 +128,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
+    follows={**IN_ENGINES, "KV802": Shared.PAIR},
     needs=(not_loaded, nothing_moves, late),
 )
 def stays(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -196,14 +207,15 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
+    follows={**IN_ENGINES, "KV802": Shared.PAIR, "KV803": Shared.ENGINE},
     needs=(not_loaded, nothing_moves, late),
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint is pushed from rest to both ends by as_loaded.force or as_loaded.torque on top
     of declared friction and damping, its followers with it, the others held, gravity off. It has to reach
     as_loaded.reach of what exact geometry leaves free of its range, of the whole range where that is not known. What
-    does not get there without contacts either, or has no free way at all (KV31x), is a note. PyBullet is asked with
-    `URDF_USE_SELF_COLLISION`: without it links pass through each other.
+    does not get there without contacts either, or has no free way at all (KV31x), is a note; what gets over half of
+    its way a warning. PyBullet is asked with `URDF_USE_SELF_COLLISION`: without it links pass through each other.
 
     Why it matters: A drawer that jams in the simulator is of no use, whatever its surfaces would allow.
 
@@ -240,13 +252,21 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
         else f"Check damping, friction, mass and limits of {travel.joint}.",
         joint=travel.joint,
         pair=overlap.links if overlap is not None and jammed else None,
-        severity=None if jammed and context.free(travel) is not None else Severity.NOTE,
+        severity=_severity(context, run) if jammed else Severity.NOTE,
         q={travel.joint: stop},
         value=stop,
         limit=push.target,
         unit=travel.unit,
         reproduction=context.loaded.lines_of_push(push, context.values, run.pushed.steps),
     )
+
+
+def _severity(context: AsLoadedContext, run: HandRun) -> Severity | None:
+    """How bad it is that contacts keep a joint from its end: over half of the way it works, and it is a warning."""
+    if context.free(run.travel) is None:
+        return Severity.NOTE
+    way = abs(run.push.target - run.travel.rest)
+    return Severity.WARNING if abs(run.pushed.farthest - run.travel.rest) > 0.5 * way else None
 
 
 def _cause(overlap: Overlap | None, *, jammed: bool) -> str:

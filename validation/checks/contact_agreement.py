@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.validation.check import check
+from kinematify.validation.check import Shared, check
+from kinematify.validation.checks.follow import IN_ENGINES
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -53,6 +54,8 @@ class _Disagreement:
     fails="An engine sees a collision that the exact geometry does not have",
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
+    follows={**IN_ENGINES, "KV802": Shared.PAIR},
+    prepared=True,
 )
 def contacts_differ(result: OpenCheck, left: EngineResults) -> None:
     """Pairs of links that overlap in one engine by more than agreement.contact_depth and do not touch in the other,

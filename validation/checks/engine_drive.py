@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
-from kinematify.validation.check import FeedbackRow, engine_check
+from kinematify.validation.check import FeedbackRow, Shared, engine_check
+from kinematify.validation.checks.follow import IN_ENGINES, ON_THE_WAY
 from kinematify.validation.checks.needs import late, not_driven, nothing_moves
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.words import SLIMMER, UNSEEN
@@ -27,14 +28,16 @@ if TYPE_CHECKING:
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.NOT_REACHED,
+    follows={**ON_THE_WAY, **IN_ENGINES, "KV804": Shared.JOINT, "KV225": Shared.JOINT},
+    prepared=True,
     needs=(nothing_moves, late),
 )
 def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     """One joint after the other is driven from rest to both ends by a position servo, the others held. Each must
     arrive within engines.reach of its range. A joint that its own base stops is an error if the surfaces that the file
     declares meet, the visible ones too; where only collision geometry meets or convex stand-ins are in the way it is a
-    warning, and a note where parts are in the way that can move themselves, a robot reaches itself within its ranges,
-    or that pass each other in every engine unless their contacts are asked for. A tracking error
+    warning, and a note where they are no neighbours (KV311 judges those), or pass each other in every engine unless
+    their contacts are asked for. A tracking error
     above engines.tracking is a note.
 
     PyBullet: Pairs that touch at rest once meshes are inflated by 1 mm do not act on each other, since PyBullet would
@@ -63,6 +66,8 @@ def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
+    follows={**ON_THE_WAY, **IN_ENGINES, "05": Shared.PAIR, "KV804": Shared.JOINT},
+    prepared=True,
     needs=(not_driven,),
 )
 def little_penetration(result: OpenCheck, context: EngineContext) -> None:
@@ -95,6 +100,7 @@ def little_penetration(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
+    follows={"KV221": Shared.JOINT, "KV207": Shared.BODY},
     needs=(not_driven,),
 )
 def limits_hold(result: OpenCheck, context: EngineContext) -> None:
@@ -173,7 +179,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
     result.find(
         f"{stops}: {why}.",
         remedy,
-        severity=_severity(context, index, real=real, certain=seen and travel.limited),
+        severity=_severity(context, index, certain=seen and travel.limited),
         blame=Blame.KINEMATICS if seen else Blame.PHYSICS,
         pair=pair,
         **facts,  # type: ignore[arg-type]
@@ -202,17 +208,16 @@ def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, 
     return real, real and (not simplified(declared) or ask(shapes_of=visible_shapes))
 
 
-def _severity(context: EngineContext, index: int, *, real: bool, certain: bool) -> Severity:
+def _severity(context: EngineContext, index: int, *, certain: bool) -> Severity:
     """How bad it is that a pair stops a joint.
 
     By default, MuJoCo lets neighbours pass each other but for those of a root that is fixed to the world, and PyBullet
-    all of them. Parts that both move can get out of each other's way: a robot reaches itself within its ranges.
+    all of them. Of other pairs the exact geometry knows whether another joint clears the way (KV311).
     """
     pair = tuple(sorted(context.drives.sweep.bodies[index].tolist()))
-    neighbours = pair in context.mechanism.neighbours
-    if certain and neighbours and pair[0] == 0:
-        return Severity.ERROR
-    return Severity.WARNING if pair[0] == 0 and (neighbours or real) else Severity.NOTE
+    if pair not in context.mechanism.neighbours or pair[0] != 0:
+        return Severity.NOTE
+    return Severity.ERROR if certain else Severity.WARNING
 
 
 def _blocking_pair(context: EngineContext, driven: Driven) -> int | None:
@@ -247,12 +252,10 @@ def _find_lag(result: OpenCheck, context: EngineContext, driven: Driven) -> None
 def _find_penetration(result: OpenCheck, context: EngineContext, pair: int, excess: float, driven: Driven) -> None:
     first, second = names = context.drives.sweep.pair(pair, context.mechanism.links)
     travel = context.travel(driven)
-    real = excess > stand_in_error(context.prepared, names)
     result.find(
         f"While {travel.joint} is driven to {driven.drive.end:.4g} {travel.unit}, {first} and {second} get "
         f"{(excess + context.drives.sweep.tolerance) * 1e3:.3g} mm deeper into each other than at rest.",
         f"Correct the joint, or the collision geometry of {first} and {second}.",
-        blame=Blame.KINEMATICS if real else Blame.PHYSICS,
         joint=travel.joint,
         pair=names,
         value=excess + context.drives.sweep.tolerance,

@@ -8,7 +8,8 @@ import numpy as np
 
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.contacts import stand_in_error, stand_in_reason
-from kinematify.validation.check import FeedbackRow, engine_check
+from kinematify.validation.check import FeedbackRow, Shared, engine_check
+from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late, no_geometry, nothing_moves
 from kinematify.validation.finding import Blame, Severity
 
@@ -32,6 +33,8 @@ _TOLD_PAIRS = 8
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
+    follows=IN_ENGINES,
+    prepared=True,
 )
 def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
     """At rest, no two links overlap by more than engines.contact_depth as the engine sees them (convex pieces). Links
@@ -70,6 +73,7 @@ def starts_without_contact(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.SINKS,
+    follows={"KV226": Shared.JOINT, "KV221": Shared.JOINT},
     needs=(nothing_moves, late),
 )
 def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:
@@ -97,6 +101,7 @@ def holds_under_gravity(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
+    follows=NOT_A_BODY,
     needs=(nothing_moves, late),
 )
 def energy_does_not_grow(result: OpenCheck, context: EngineContext) -> None:

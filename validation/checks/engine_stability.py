@@ -12,6 +12,7 @@ import numpy as np
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import FeedbackRow, engine_check
+from kinematify.validation.checks.follow import NOT_A_BODY
 from kinematify.validation.checks.needs import late, nothing_moves
 from kinematify.validation.finding import Blame, Severity
 
@@ -32,6 +33,7 @@ _TOLD = 10
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.UNSTABLE,
+    follows=NOT_A_BODY,
 )
 def stable(result: OpenCheck, context: EngineContext) -> None:
     """No value becomes infinite or not a number, and nothing moves faster than engines.explosion times the speed of a
@@ -56,6 +58,7 @@ def stable(result: OpenCheck, context: EngineContext) -> None:
     severity=Severity.WARNING,
     blame=Blame.ENGINE,
     feedback=FeedbackRow.EXPORTER,
+    follows=NOT_A_BODY,
 )
 def no_warnings(result: OpenCheck, context: EngineContext) -> None:
     """Loading and all runs give none of the engine's own warnings; those that tell nothing about the model are left

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.check import FeedbackRow, Shared, check
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     feedback=FeedbackRow.NOT_CARRIED,
     doubts=True,
     opinion=True,
+    follows={"KV303": Shared.JOINT},
 )
 def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     """At rest, every moving body touches the body that carries it, or at least no other one. A child that is more than
@@ -81,6 +82,7 @@ def hangs_elsewhere(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
     doubts=True,
     opinion=True,
+    follows={"KV341": Shared.JOINT},
 )
 def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     """The axis lies within evidence.unknown_deg of a direction that the two bodies show: axes of round surfaces and
@@ -118,6 +120,7 @@ def unknown_direction(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
     doubts=True,
     opinion=True,
+    follows={"KV341": Shared.JOINT},
 )
 def unknown_place(result: OpenCheck, case: JointCase) -> None:
     """A turning joint's axis runs within evidence.unknown_distance of the child's size (in linkages
@@ -154,6 +157,7 @@ def unknown_place(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.LINE,
     doubts=True,
     opinion=True,
+    follows={"KV341": Shared.JOINT},
 )
 def another_fits(result: OpenCheck, case: JointCase) -> None:
     """The declared joint is scored beside all candidates of its type by the cues of the inference (room, contact near
@@ -190,6 +194,7 @@ def another_fits(result: OpenCheck, case: JointCase) -> None:
     feedback=FeedbackRow.TYPE,
     doubts=True,
     opinion=True,
+    follows={"KV341": Shared.JOINT},
 )
 def other_type(result: OpenCheck, case: JointCase) -> None:
     """Shape and room of the part do not speak for the other type of joint: plates hinge, boxes in a cavity slide,
@@ -243,6 +248,7 @@ def _type_open(case: JointCase) -> bool:
     blame=Blame.KINEMATICS,
     doubts=True,
     opinion=True,
+    follows={"KV341": Shared.JOINT},
 )
 def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     """With a one-sided range (evidence.one_sided), the permitted side does not lead into the parent within
@@ -290,6 +296,7 @@ def opens_inwards(result: OpenCheck, case: JointCase) -> None:
     fails="A slide leaves its parent",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
+    follows={"KV321": Shared.JOINT, "KV320": Shared.JOINT},
 )
 def leaves_guides(result: OpenCheck, case: JointCase) -> None:
     """At the end of its range, a part that slides by more than its own length along the axis is not evidence.far_gap

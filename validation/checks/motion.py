@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.check import FeedbackRow, Shared, check
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.words import (
     SLIMMER,
@@ -87,10 +87,12 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.OTHER_PARENT,
+    follows={"KV312": Shared.JOINT, "KV310": Shared.JOINT},
 )
 def into_others(result: OpenCheck, motion: JointMotion) -> None:
     """While each joint moves alone over its range, bodies that are no neighbours do not meet. If another joint can
-    clear the way (a door before the drawer behind it), it is a note.
+    clear the way (a door before the drawer behind it), it is a note, and so is a chain that folds onto itself beyond
+    half of the joint's way, as arms and fingers do.
 
     Why it matters: Parts that always meet hang on the wrong parent, or the range is too wide.
 
@@ -100,7 +102,8 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
     found = [m for side in sweep.sides for m in side.meetings if m.pair not in sweep.own and m.inside]
     if not found:
         return
-    stuck = [meeting for meeting in found if not motion.clearable(meeting)]
+    folding = [meeting for meeting in found if _folds(motion, meeting)]
+    stuck = [meeting for meeting in found if meeting not in folding and not motion.clearable(meeting)]
     worst = max(stuck or found, key=lambda meeting: meeting.depth)
     more = f" ({len(found) - 1} more pairs meet.)" if len(found) > 1 else ""
     begin = f"Moving {motion.joint} alone, {_words(motion, worst)}, from {_value(motion, worst.first)} on"
@@ -113,6 +116,15 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
             "If one of them carries the other, correct <parent>; otherwise end the range before, or correct the axis.",
             severity=Severity.WARNING,
         )
+    elif worst in folding:
+        _meet(
+            result,
+            motion,
+            worst,
+            f"{begin}: the chain folds onto itself.{more}",
+            "Nothing to do; a planner must keep them apart.",
+            severity=Severity.NOTE,
+        )
     else:
         _meet(
             result,
@@ -124,6 +136,13 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
         )
 
 
+def _folds(motion: JointMotion, meeting: Meeting) -> bool:
+    """Whether a body meets one that carries it, with others between them, on the second half of the joint's way."""
+    rest = motion.sweep.travel.rest
+    way = motion.side(1.0 if meeting.first > rest else -1.0).declared - rest
+    return motion.scene.carries(meeting.pair) and abs(meeting.first - rest) > 0.5 * abs(way)
+
+
 @check(
     "KV312",
     title="Limits fit the free travel",
@@ -131,6 +150,7 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
     severity=Severity.ERROR,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.END,
+    follows={"KV310": Shared.JOINT},
 )
 def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
@@ -183,6 +203,7 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.DERAILED,
     doubts=True,
+    follows={"KV321": Shared.JOINT},
 )
 def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
     """Along the range, the gap between child and parent grows by less than geometry.lost of the model's size; beyond

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.validation.check import FeedbackRow, check
+from kinematify.validation.check import FeedbackRow, Shared, check
+from kinematify.validation.checks.follow import AT_REST
 from kinematify.validation.finding import Blame, Severity, not_finished
 from kinematify.validation.geometry.words import configuration, in_document_order, joint_value, length
 
@@ -25,6 +26,7 @@ def _two_joints(look: GeometryLook) -> str | None:
     fails="Two joints at once bring bodies together",
     severity=Severity.NOTE,
     blame=Blame.KINEMATICS,
+    follows={"KV311": Shared.PAIR},
     needs=(_two_joints,),
 )
 def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
@@ -64,6 +66,7 @@ def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
     fails="Configurations of all joints collide",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
+    follows={"KV301": Shared.PAIR, "KV311": Shared.PAIR},
     needs=(lambda look: not_finished("time ran out before it") if look.random is None else None,),
 )
 def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
@@ -111,6 +114,8 @@ def _two_bodies_that_collide(look: GeometryLook) -> str | None:
     severity=Severity.WARNING,
     blame=Blame.PHYSICS,
     feedback=FeedbackRow.COLLISION,
+    follows=AT_REST,
+    prepared=True,
     needs=(_two_bodies_that_collide,),
 )
 def hulls_block(result: OpenCheck, look: GeometryLook) -> None:

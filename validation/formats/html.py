@@ -20,6 +20,7 @@ from kinematify.validation.formats.text import (
     configuration,
     family_rows,
     figures,
+    follow_words,
     joint_rows,
     measure,
     next_best_rows,
@@ -32,6 +33,7 @@ from kinematify.validation.outcome import Unusable, counted_words, severity_coun
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.validation.causes import Told
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
@@ -172,10 +174,10 @@ def _family_cells(report: ValidationReport) -> list[tuple[str, ...]]:
 
 
 def _findings(index: int, report: ValidationReport, *, with_viewer: bool) -> str:
-    told = [finding for finding in report.findings if not _is_pair_note(finding)]
+    told = [item for item in report.told if not _is_pair_note(item)]
     cards = (
-        _finding(finding, f"finding-{index}-{k + 1}", _shown(index, report, finding) if with_viewer else "")
-        for k, finding in enumerate(told)
+        _finding(item, f"finding-{index}-{k + 1}", _shown(index, report, item.finding) if with_viewer else "")
+        for k, item in enumerate(told)
     )
     return "".join(cards) or "<p>None.</p>"
 
@@ -188,7 +190,8 @@ def _shown(index: int, report: ValidationReport, finding: Finding) -> str:
     return f"<p>{show_button(index, q, links, 'Show in 3-D')}</p>" if links or q else ""
 
 
-def _finding(finding: Finding, anchor: str, button: str) -> str:
+def _finding(told: Told, anchor: str, button: str) -> str:
+    finding = told.finding
     facts = [
         where(finding),
         finding.engine or "",
@@ -207,9 +210,23 @@ def _finding(finding: Finding, anchor: str, button: str) -> str:
         f"<p>{text(finding.message)}</p><p>Remedy: {text(finding.remedy)}</p>"
         + (f"<pre>{text(finding.reproduction)}</pre>" if finding.reproduction else "")
         + (f"<p>Suppressed: {text(finding.suppressed or '')}</p>" if shut else "")
+        + _consequences(told.consequences)
         + button
         + "</div>"
     )
+
+
+def _consequences(findings: Sequence[Finding]) -> str:
+    """What follows from a finding, folded up; nothing if nothing does."""
+    if not findings:
+        return ""
+    items = "".join(
+        f'<li><a href="#check-{item.check}">{text(title(item))}</a>: {text(item.message)}'
+        + (f"<pre>{text(item.reproduction)}</pre>" if item.reproduction else "")
+        + "</li>"
+        for item in findings
+    )
+    return f"<details><summary>Follows from it: {text(follow_words(findings))}</summary><ul>{items}</ul></details>"
 
 
 def _joints(index: int, report: ValidationReport) -> str:
@@ -238,7 +255,7 @@ def _rounds(index: int, report: ValidationReport) -> str:
 
 def _pairs(index: int, report: ValidationReport) -> str:
     """Notes about pairs, such as why they may touch: often hundreds, so a table and not a card each."""
-    notes = [finding for finding in report.findings if _is_pair_note(finding)]
+    notes = [item.finding for item in report.told if _is_pair_note(item)]
     if not notes:
         return ""
     rows = [tuple(map(text, (where(f), title(f), measure(f), f.message))) for f in notes]
@@ -246,8 +263,8 @@ def _pairs(index: int, report: ValidationReport) -> str:
     return f"<details><summary>{len(rows)} notes on pairs, such as why they may touch</summary>{inner}</details>"
 
 
-def _is_pair_note(finding: Finding) -> bool:
-    return finding.severity is Severity.NOTE and finding.pair is not None
+def _is_pair_note(told: Told) -> bool:
+    return told.finding.severity is Severity.NOTE and told.finding.pair is not None and not told.consequences
 
 
 def _checks(index: int, report: ValidationReport) -> str:

@@ -66,7 +66,8 @@ def _add_case(suite: _Element, model: str, check: CheckResult) -> None:
         name=printable(lasting_title(check)),
         time=f"{check.seconds:.3f}",
     )
-    failing = [f for f in check.findings if f.severity is Severity.ERROR and f.suppressed is None]
+    counted = [finding for finding in check.findings if finding.suppressed is None and finding.cause is None]
+    failing = [finding for finding in counted if finding.severity is Severity.ERROR]
     others = [finding for finding in check.findings if finding not in failing]
     if failing:
         # A check that fell over did not come to an answer: that is an error of the test, not a failure of the model.
@@ -86,6 +87,7 @@ def _told(finding: Finding) -> str:
         f"{finding.severity.value} ({finding.blame.value}): {finding.message}",
         *(["  " + "; ".join(about)] if about else []),
         f"  Remedy: {finding.remedy}",
+        *([f"  Follows from: {finding.cause.message}"] if finding.cause is not None else []),
         *([f"  Suppressed: {finding.suppressed}"] if finding.suppressed is not None else []),
     ]
     return printable("\n".join(lines))

@@ -12,12 +12,21 @@ from urllib.parse import quote
 from kinematify import __version__
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.text import configuration, family, measure, printable, title, where
+from kinematify.validation.formats.text import (
+    configuration,
+    family,
+    follow_words,
+    measure,
+    printable,
+    title,
+    where,
+)
 from kinematify.validation.outcome import Unusable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.validation.causes import Told
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
     from kinematify.validation.outcome import Outcome
@@ -36,7 +45,7 @@ def as_sarif(outcomes: Sequence[Outcome]) -> str:
         "tool": {"driver": _driver()},
         "columnKind": "utf16CodeUnits",
         "invocations": [_invocation(outcomes)],
-        "results": [_result(report, finding, index) for report in reports for finding in report.findings],
+        "results": [_result(report, told, index) for report in reports for told in report.told],
     }
     document = {"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(document, indent=2, allow_nan=False) + "\n"
@@ -74,9 +83,11 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() and letter.isascii() else " " for letter in text).split()
 
 
-def _result(report: ValidationReport, finding: Finding, index: dict[str, int]) -> dict[str, Any]:
+def _result(report: ValidationReport, told: Told, index: dict[str, int]) -> dict[str, Any]:
+    finding, follows = told.finding, follow_words(told.consequences)
     about = [part for part in (where(finding), configuration(finding.q), measure(finding)) if part]
-    text = printable(" ".join([finding.message, *([f"({'; '.join(about)})"] if about else []), finding.remedy]))
+    more = [*([f"({'; '.join(about)})"] if about else []), finding.remedy]
+    text = printable(" ".join([finding.message, *more, *([f"Follows from it: {follows}."] if follows else [])]))
     result: dict[str, Any] = {
         "ruleId": finding.check,
         "ruleIndex": index[finding.check],
@@ -84,7 +95,7 @@ def _result(report: ValidationReport, finding: Finding, index: dict[str, int]) -
         "message": {"text": text},
         "locations": [_location(report.model, finding)],
         "partialFingerprints": {"kinematify/v1": _fingerprint(finding)},
-        "properties": _properties(finding),
+        "properties": _properties(told),
     }
     if finding.suppressed is not None:
         result["suppressions"] = [{"kind": "external", "justification": printable(finding.suppressed)}]
@@ -123,7 +134,8 @@ def _fingerprint(finding: Finding) -> str:
     return hashlib.sha256(repr(names).encode("utf-8", "backslashreplace")).hexdigest()[:32]
 
 
-def _properties(finding: Finding) -> dict[str, Any]:
+def _properties(told: Told) -> dict[str, Any]:
+    finding = told.finding
     values: dict[str, Any] = {
         "title": title(finding),
         "blame": finding.blame.value,
@@ -133,6 +145,7 @@ def _properties(finding: Finding) -> dict[str, Any]:
         "unit": finding.unit,
         "q": dict(finding.q) if finding.q is not None else None,
         "remedy": printable(finding.remedy),
+        "consequences": [printable(f"{title(item)}: {item.message}") for item in told.consequences] or None,
     }
     return {key: value for key, value in values.items() if value is not None and _is_json(value)}
 

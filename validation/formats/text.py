@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from kinematify.validation.check import FAMILIES
@@ -11,7 +12,7 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Finding, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.report import ValidationReport
@@ -144,6 +145,15 @@ def title(told: CheckResult | Finding) -> str:
     """Id, title and engine of a check: what is wrong of a finding or a check that failed, else what should be."""
     failed = isinstance(told, Finding) or told.status is Status.FAIL
     return _titled(told, CHECKS[told.check].fails) if failed else lasting_title(told)
+
+
+def follow_words(consequences: Iterable[Finding]) -> str:
+    """Which checks say what follows from a finding, in which engine and how often; empty if none does."""
+    counts = Counter((item.check, item.engine) for item in consequences)
+    return ", ".join(
+        f"{check}{f' [{engine}]' if engine else ''}{f' {count} times' if count > 1 else ''}"
+        for (check, engine), count in counts.items()
+    )
 
 
 def lasting_title(told: CheckResult | Finding) -> str:

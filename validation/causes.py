@@ -1,0 +1,118 @@
+"""One cause, one finding: what follows from another finding is told under it and not counted beside it.
+
+Which checks can be the cause of which stands at each check (`Check.follows`), and what both must be about.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from kinematify.robot.robot import rigid_groups
+from kinematify.validation.check import Shared
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from kinematify.robot.robot import Robot
+    from kinematify.validation.finding import CheckResult, Finding
+
+_ORDER = tuple(Severity)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Told:
+    """A finding that follows from no other, with those that follow from it."""
+
+    finding: Finding
+    consequences: tuple[Finding, ...] = ()
+
+
+def told_with_consequences(findings: Iterable[Finding]) -> tuple[Told, ...]:
+    """Return the findings without a cause, in their order, each with what follows from it."""
+    findings = tuple(findings)
+    under: dict[int, list[Finding]] = {}
+    for finding in findings:
+        if finding.cause is not None:
+            under.setdefault(id(finding.cause), []).append(finding)
+    return tuple(
+        Told(finding=finding, consequences=tuple(under.get(id(finding), ())))
+        for finding in findings
+        if finding.cause is None
+    )
+
+
+def with_causes(results: Sequence[CheckResult], robot: Robot | None) -> tuple[CheckResult, ...]:
+    """Name the cause of every finding that follows from another one.
+
+    A cause is as bad as the worst that follows from it, and where it is suppressed, so is what follows.
+
+    Args:
+        results: Of all checks of a run, suppressed findings marked.
+        robot: The model, which tells what is one body; None if it cannot be read, and every link is one.
+    """
+    findings = [finding for result in results for finding in result.findings]
+    subjects = _Subjects(robot)
+    above = {id(item): cause for item in findings if (cause := _cause(item, findings, subjects)) is not None}
+    roots: dict[int, Finding] = {}
+    for finding in findings:
+        root = finding
+        while id(root) in above:
+            root = above[id(root)]
+        roots[id(finding)] = root
+    final: dict[int, Finding] = {}
+    for root in findings:
+        if id(root) not in above:
+            followers = [item for item in findings if roots[id(item)] is root and item.suppressed is None]
+            final[id(root)] = replace(root, severity=_worst([root, *followers]))
+    for finding in findings:
+        if id(finding) in above:
+            cause = final[id(roots[id(finding)])]
+            final[id(finding)] = replace(finding, cause=cause, suppressed=finding.suppressed or cause.suppressed)
+    return tuple(replace(result, findings=tuple(final[id(item)] for item in result.findings)) for result in results)
+
+
+def _cause(finding: Finding, findings: Sequence[Finding], subjects: _Subjects) -> Finding | None:
+    """Return the worst finding that a finding directly follows from; a note explains nothing worse than a note."""
+    follows = CHECKS[finding.check].follows
+    fits = [
+        other
+        for check, shared in follows.items()
+        for other in findings
+        if other.check == check and other is not finding and subjects.share(other, finding, shared)
+    ]
+    fits = [item for item in fits if item.severity is not Severity.NOTE or finding.severity is Severity.NOTE]
+    return min(fits, key=lambda item: _ORDER.index(item.severity), default=None)
+
+
+def _worst(findings: Sequence[Finding]) -> Severity:
+    return min((item.severity for item in findings), key=_ORDER.index)
+
+
+class _Subjects:
+    """What findings are about, by bodies: engines and checks name different links of one body."""
+
+    def __init__(self, robot: Robot | None) -> None:
+        groups = () if robot is None else rigid_groups(robot)
+        self._body = {link: group.links[0] for group in groups for link in group.links}
+        self._joints = {} if robot is None else robot.joint_by_name
+
+    def share(self, cause: Finding, finding: Finding, shared: Shared) -> bool:
+        """Whether two findings are both about what a cause and its consequence must share."""
+        if shared is Shared.MODEL:
+            return True
+        if shared is Shared.ENGINE:
+            return finding.pair is None and cause.engine is not None and cause.engine == finding.engine
+        if shared is Shared.JOINT:
+            return cause.joint is not None and cause.joint == finding.joint
+        first, second = self._bodies(cause), self._bodies(finding)
+        if shared is Shared.PAIR:
+            return len(first) == len(second) == 2 and first == second
+        return bool(first & second)
+
+    def _bodies(self, finding: Finding) -> set[str]:
+        joint = self._joints.get(finding.joint or "")
+        links = finding.pair or ((finding.link,) if finding.link else ()) or ((joint.child,) if joint else ())
+        return {self._body.get(link, link) for link in links}
