@@ -103,12 +103,12 @@ class _Subjects:
         """Whether two findings are both about what a cause and its consequence must share."""
         if shared is Shared.MODEL:
             return True
-        if shared is Shared.ENGINE:
-            return finding.pair is None and cause.engine is not None and cause.engine == finding.engine
+        if shared is Shared.CONTACT and finding.pair is None:
+            return cause.engine is not None and cause.engine == finding.engine
         if shared is Shared.JOINT:
             return cause.joint is not None and cause.joint == finding.joint
         first, second = self._bodies(cause), self._bodies(finding)
-        if shared is Shared.PAIR:
+        if shared in (Shared.PAIR, Shared.CONTACT):
             return len(first) == len(second) == 2 and first == second
         return bool(first & second)
 

@@ -81,9 +81,9 @@ class Shared(StrEnum):
     """What a cause and what follows from it must both be about."""
 
     MODEL = "the model"
-    ENGINE = "the same engine, where what follows names no two bodies"
     BODY = "a body in common"
     PAIR = "the same two bodies"
+    CONTACT = "the same two bodies, or the same engine where what follows names none"
     JOINT = "the same joint"
 
 

@@ -102,6 +102,8 @@ class PhysicsSettings(StageConfig):
     """Centres of mass may lie so far outside the hull, fraction of the body's diagonal."""
     centre_far: float
     """Beyond this it is an error, fraction of the body's diagonal."""
+    frame_share: float
+    """Links without geometry are taken for frames up to this fraction of the body's mass."""
     full_turn: float
     """Wider ranges of hinges are a warning unless they are round numbers of degrees [rad]."""
     widest_turn: float

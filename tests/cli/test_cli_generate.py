@@ -69,7 +69,7 @@ def test_the_status_follows_the_verdict(tmp_path):
 def test_the_short_verdict_tells_errors_in_full_and_counts_warnings(monkeypatch):
     add_checks(monkeypatch)
     warning = finding(severity=Severity.WARNING, message="It is tight.")
-    said = describe_briefly(report(result(finding(), warning, warning)))
+    said = " ".join(describe_briefly(report(result(finding(), warning, warning))).split())
     assert "FAIL" in said
     assert "overlaps by 5" in said
     assert "(2 times)" in said

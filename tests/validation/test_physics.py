@@ -238,6 +238,25 @@ def test_a_centre_of_mass_outside_the_geometry_is_found(good: Path, x: str, seve
     assert {finding.link for finding in found} <= {"door"}
 
 
+def test_a_sensor_that_is_not_modelled_may_weigh_a_gram_in_one_point(good: Path) -> None:
+    removed(good, "//link[@name='knob']/visual | //link[@name='knob']/collision")
+    edited(good, "//link[@name='knob']/inertial/mass", value="0.001")
+    edited(good, "//link[@name='knob']/inertial/inertia", ixx="1e-12", iyy="1e-12", izz="1e-12")
+    assert not counted(edited(good, "//link[@name='knob']/inertial/origin", xyz="0 -0.5 0"))
+    edited(good, "//link[@name='knob']/inertial/mass", value="2.0")
+    assert only(good, "KV208").link == "knob"  # half of the drawer's mass is no sensor
+
+
+def test_a_base_without_mass_is_how_pybullet_is_told_that_it_stands(good: Path) -> None:
+    edited(good, "//link[@name='body']/inertial/mass", value="0")
+    assert [finding.severity for finding in checked(good)["KV202"].findings] == [Severity.NOTE]
+
+
+def test_the_mass_that_is_suggested_is_that_of_the_link_and_not_of_all_that_it_is_fixed_to(good: Path) -> None:
+    finding = only(edited(good, "//link[@name='knob']/inertial/mass", value="0"), "KV202")
+    assert f"{1000.0 * 0.03 * 0.06 * 0.03:.3g} kg" in finding.remedy
+
+
 # ---- joints ----------------------------------------------------------------------------------------------------------
 
 

@@ -128,7 +128,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
-    follows={**IN_ENGINES, "KV802": Shared.PAIR},
+    follows={**IN_ENGINES, "KV802": Shared.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
 def stays(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -207,7 +207,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_ENGINES,
-    follows={**IN_ENGINES, "KV802": Shared.PAIR, "KV803": Shared.ENGINE},
+    follows={**IN_ENGINES, "KV802": Shared.CONTACT, "KV803": Shared.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:

@@ -130,7 +130,7 @@ def moments_out_of_proportion(result: OpenCheck, physics: Physics) -> None:
 )
 def radii_of_gyration(result: OpenCheck, physics: Physics) -> None:
     """The largest radius of gyration lies between `gyration_small` and `gyration_large` times the distance of the
-    outermost point of the body from the centre of mass.
+    outermost point of the body from the centre of mass; the lower bound is for links that have geometry of their own.
 
     Why it matters: An inertia copied from another link, or in another unit, makes joints sluggish or nervous.
 
@@ -188,7 +188,9 @@ def _misfit(physics: Physics, body: Body, link: Link, inertial: Inertial) -> _Mi
     radius = float(np.sqrt(moments[2] / inertial.mass))
     farthest = _farthest(body.room, _centre(body, link, inertial))
     large = radius > settings.gyration_large * farthest
-    if not large and own is not None:
+    if not large:
+        if own is None:
+            return None  # a sensor that is not modelled may be as small as it likes
         farthest = _farthest(own, inertial.center_of_mass)
     if farthest == 0.0 or not (large or radius < settings.gyration_small * farthest):
         return None
@@ -216,7 +218,8 @@ def _centre(body: Body, link: Link, inertial: Inertial) -> FloatArray:
 )
 def centres_outside(result: OpenCheck, physics: Physics) -> None:
     """The centre of mass lies in the hull of the body, inflated by `centre_outside` of its diagonal; beyond
-    `centre_far` it is an error.
+    `centre_far` it is an error. Links without geometry count above `frame_share` of the body's mass: below, they are
+    frames and sensors with a mass that stands for nothing.
 
     Why it matters: Gravity turns the part the wrong way, and joints need torques that they do not need in truth.
 
@@ -226,7 +229,8 @@ def centres_outside(result: OpenCheck, physics: Physics) -> None:
     settings = physics.settings
     for body, link, inertial in _weighed(physics):
         room = body.room
-        if room is None or room.diagonal == 0.0:
+        frame = link.name not in body.rooms and inertial.mass <= settings.frame_share * body.mass
+        if room is None or room.diagonal == 0.0 or frame:
             continue
         outside = room.outside(_centre(body, link, inertial))
         if outside > settings.centre_outside * room.diagonal:

@@ -52,14 +52,14 @@ def missing_masses(result: OpenCheck, physics: Physics) -> None:
             + (" and no geometry: MuJoCo refuses it." if frame else ": PyBullet gives it 1 kg, Pinocchio nothing."),
             "Add a small mass and inertia, such as 0.001 kg and 1e-7 kg m2."
             if frame
-            else f"Add an <inertial>{_suggested(body)}.",
+            else f"Add an <inertial>{_suggested(body.room)}.",
             link=body.called,
             line=physics.model.link_by_name[body.called].line,
         )
 
 
-def _suggested(body: Body) -> str:
-    volume = None if body.room is None else body.room.solid
+def _suggested(room: Room | None) -> str:
+    volume = None if room is None else room.solid
     return "" if volume is None else f"; at 1000 kg/m3 its geometry has {1000.0 * volume:.3g} kg"
 
 
@@ -71,32 +71,28 @@ def _suggested(body: Body) -> str:
     blame=Blame.PHYSICS,
 )
 def masses_not_positive(result: OpenCheck, physics: Physics) -> None:
-    """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, a note for
-    scenery without joints, and a warning where the link does not move or others of its body have a mass.
+    """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, a note for a
+    base that does not move, and a warning where others of its body have a mass.
 
     Why it matters: MuJoCo refuses such a body if it moves; PyBullet freezes it where it is.
 
     Remedy: Write the true mass in kilograms.
     """
-    still = not any(body.moves for body in physics.bodies)
     for body in physics.bodies:
         for link in body.links:
             inertial = link.inertial
-            if inertial is None or inertial.mass > 0.0:
-                continue
-            _not_positive(result, physics, body, link, inertial, still=still)
+            if inertial is not None and inertial.mass <= 0.0:
+                _not_positive(result, body, link, inertial)
 
 
-def _not_positive(
-    result: OpenCheck, physics: Physics, body: Body, link: Link, inertial: Inertial, *, still: bool
-) -> None:
+def _not_positive(result: OpenCheck, body: Body, link: Link, inertial: Inertial) -> None:
     """Zero is harmless for a frame that is fixed to a mass, and PyBullet's sign for a base that never moves."""
     frame = link.name not in body.rooms
     if inertial.mass == 0.0 and frame and (body.mass > 0.0 or not body.moves):
         return
     refused = body.moves and body.mass == 0.0
     certain = inertial.mass < 0.0 or (refused and not frame)
-    note = inertial.mass == 0.0 and not body.moves and still
+    note = inertial.mass == 0.0 and not body.moves
     consequence = (
         "no engine can compute with that"
         if inertial.mass < 0.0
@@ -108,7 +104,7 @@ def _not_positive(
     )
     result.find(
         f"The link {link.name} has a mass of {inertial.mass:g} kg: {consequence}.",
-        f"Write the true mass{_suggested(body)}.",
+        f"Write the true mass{_suggested(body.rooms.get(link.name))}.",
         severity=Severity.ERROR if certain else Severity.NOTE if note else Severity.WARNING,
         link=link.name,
         value=inertial.mass,
