@@ -76,6 +76,7 @@ if TYPE_CHECKING:
 @click.option("--up", type=click.Choice(["auto", "y", "z"]), default="auto", help="Axis that points up in the parts.")
 @click.option("--scale", type=float, default=1.0, metavar="FACTOR", help="Metres per unit of the parts.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder to make.")
+@click.option("--lenient", is_flag=True, help="Leave out what is not understood of a sentence, instead of refusing it.")
 @click.option("--infer", "inferred", is_flag=True, help="Find the joints again from the parts alone, and compare.")
 @collision_option
 @click.option("--force", is_flag=True, help="Replace OUT if it is a model folder.")
@@ -102,6 +103,7 @@ def command(
     up: str,
     scale: float,
     out: Path | None,
+    lenient: bool,
     inferred: bool,
     collision: str | None,
     force: bool,
@@ -110,6 +112,9 @@ def command(
     json_to: str | None,
 ) -> int:
     """Build what a sentence or a category asks for, with its exact joints, and validate it.
+
+    What is asked for and cannot be built (an object, a part, a count, a side, a size, a colour) is named, and it ends
+    with 2; --lenient builds the rest.
 
     OUT becomes a model folder: model.urdf, meshes/, preview.png, the verdict on the model in validation.html and
     validation.json, and what is known of it: truth.json (joints) and source.json (parameters). parts/ holds one mesh
@@ -155,7 +160,9 @@ def command(
         raise click.UsageError("Give either --text or --category (or --corpus, or --list to see what there is).")
     if settings and text is not None:
         raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
-    request = from_text(text) if text is not None else from_category(category or "", _pairs(settings))
+    if lenient and text is None:
+        raise click.UsageError("--lenient is about the words of --text. Leave it out.")
+    request = from_text(text, lenient=lenient) if text is not None else from_category(category or "", _pairs(settings))
     generation = Generation(
         request,
         seed,

@@ -61,6 +61,8 @@ class Family:
     """Adds bodies and joints to the workshop."""
     material: str = "wood"
     """Of its base, if nothing is asked for."""
+    part_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """How people call its parts, besides the names that they have without their numbers."""
 
     @property
     def all_parameters(self) -> tuple[Parameter, ...]:
@@ -140,12 +142,12 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
         InputError: A parameter is unknown or out of its bounds; the message names the nearest or the bounds.
     """
     rng = np.random.default_rng(seed)
-    checked = {key: _checked(family, key, value) for key, value in given.items()}
+    asked = {key: checked(family, key, value) for key, value in given.items()}
     values = {
         p.name: _drawn(p, rng) if seed is not None and p.name not in _ONLY_ASKED_FOR else p.default
         for p in family.all_parameters
     }
-    values.update(checked)
+    values.update(asked)
     workshop = Workshop(
         family.name, material=str(values["material"]) or family.material, color=str(values["color"]) or None
     )
@@ -179,7 +181,12 @@ def _drawn(parameter: Parameter, rng: np.random.Generator) -> Value:
     return low + share * (high - low)
 
 
-def _checked(family: Family, name: str, value: Any) -> Value:
+def checked(family: Family, name: str, value: Any) -> Value:
+    """Return a value of a parameter as its type says.
+
+    Raises:
+        InputError: There is no such parameter, or the value is out of its bounds.
+    """
     parameter = next((p for p in family.all_parameters if p.name == name), None)
     if parameter is None:
         known = [p.name for p in family.all_parameters]

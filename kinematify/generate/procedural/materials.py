@@ -19,22 +19,29 @@ class Material:
 
 
 MATERIALS = {
-    "wood": Material(density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "oak", "pine", "timber", "mdf")),
+    "wood": Material(density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "timber", "mdf")),
+    "oak": Material(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken")),
+    "pine": Material(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",)),
+    "walnut": Material(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",)),
     "steel": Material(density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless")),
     "metal": Material(
         density=2700.0,
         color=(0.70, 0.72, 0.75),
-        words=("metal", "metallic", "aluminium", "aluminum", "brass", "copper", "bronze", "chrome"),
+        words=("metal", "metallic", "aluminium", "aluminum"),
     ),
+    "brass": Material(density=8500.0, color=(0.78, 0.62, 0.26), words=("brass",)),
+    "copper": Material(density=8960.0, color=(0.72, 0.45, 0.30), words=("copper",)),
+    "chrome": Material(density=7850.0, color=(0.82, 0.84, 0.86), words=("chrome", "chromed")),
     "plastic": Material(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon")),
-    "glass": Material(density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed")),
+    "glass": Material(density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent")),
+    "mirror": Material(density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored")),
     "rubber": Material(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",)),
-    "ceramic": Material(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain", "stone")),
+    "ceramic": Material(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain")),
     "cardboard": Material(density=700.0, color=(0.76, 0.62, 0.45), words=("cardboard", "paper")),
 }
 """Keyed by name."""
 
-COLORS: dict[str, RGB] = {
+_PLAIN: dict[str, RGB] = {
     "white": (0.95, 0.95, 0.94),
     "black": (0.10, 0.10, 0.11),
     "grey": (0.55, 0.56, 0.58),
@@ -49,8 +56,23 @@ COLORS: dict[str, RGB] = {
     "purple": (0.45, 0.26, 0.58),
     "silver": (0.75, 0.76, 0.78),
     "gold": (0.80, 0.65, 0.25),
+    "turquoise": (0.25, 0.66, 0.66),
 }
-"""Keyed by name."""
+_SHADES = {"dark": (0.0, 0.45), "light": (1.0, 0.4)}
+"""What a colour is mixed with, and the share of that."""
+
+COLORS: dict[str, RGB] = _PLAIN | {
+    f"{shade} {name}": (
+        round(red + share * (end - red), 3),
+        round(green + share * (end - green), 3),
+        round(blue + share * (end - blue), 3),
+    )
+    for shade, (end, share) in _SHADES.items()
+    for name, (red, green, blue) in _PLAIN.items()
+}
+"""Keyed by name, `red` or `dark red`."""
+COLOR_WORDS = {name: name for name in COLORS} | {"golden": "gold", "gray": "grey"}
+"""Every word for a colour -> its name."""
 
 
 def color_of(material: str, color: str | None) -> RGB:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family, Value
+    from kinematify.generate.procedural.language.parts import PartRequirement
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,25 +28,40 @@ class Request:
     understood: tuple[str, ...] = ()
     """Short phrases, for a sentence."""
     ignored: tuple[str, ...] = ()
-    """Words of a sentence that mean nothing here."""
+    """Words of a sentence that were not understood."""
+    requirements: tuple[PartRequirement, ...] = ()
+    """What is asked of its parts, besides the values."""
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object; a seed draws what was not asked for.
 
         Raises:
-            InputError: A value is out of its bounds.
+            InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
-        return build(FAMILIES[self.family], self.values, seed=seed)
+        blueprint = build(FAMILIES[self.family], self.values, seed=seed)
+        for requirement in self.requirements:
+            blueprint = requirement.applied(blueprint)
+        return blueprint
 
 
-def from_text(sentence: str) -> Request:
+def from_text(sentence: str, *, lenient: bool = False) -> Request:
     """Read a sentence.
+
+    Args:
+        sentence: English.
+        lenient: Leave out what is not understood, instead of refusing the sentence.
 
     Raises:
         InputError: It cannot be understood; see `understand`.
     """
-    meant = understand(sentence, FAMILIES)
-    return Request(family=meant.family, values=meant.values, understood=meant.understood, ignored=meant.ignored)
+    meant = understand(sentence, FAMILIES, lenient=lenient)
+    return Request(
+        family=meant.family,
+        values=meant.values,
+        understood=meant.understood,
+        ignored=meant.ignored,
+        requirements=meant.requirements,
+    )
 
 
 def from_category(name: str, settings: Mapping[str, str]) -> Request:

@@ -15,7 +15,8 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.understand import understand
 from kinematify.generate.procedural.layout import parse_layout
-from kinematify.generate.procedural.materials import COLORS
+from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.request import from_text
 
 SENTENCES = {
     name: yaml.safe_load(Path(__file__).with_name(name).read_text(encoding="utf-8"))
@@ -26,15 +27,14 @@ EXACT_SHARE = 0.9
 
 def wrong(item: dict[str, Any]) -> list[str]:
     """What of a sentence came out differently from what a reader expects."""
-    meant = understand(item["text"], FAMILIES)
+    meant = from_text(item["text"])
     if meant.family != item["family"]:
         return [f"family {meant.family}"]
-    made = build(FAMILIES[meant.family], meant.values)
+    made = meant.build()
     stands_open = any(made.parameters[name] for name in ("open", "open_angle", "open_distance"))
     shut = {k: v for k, v in meant.values.items() if not k.startswith("open")}
     closed = build(FAMILIES[meant.family], shut) if stands_open else made
-    found = [f"ignored {word}" for word in meant.ignored]
-    found += [f"{k}: {n}" for k, n in item.get("parts", {}).items() if len(bodies(made, k)) != n]
+    found = [f"{k}: {n}" for k, n in item.get("parts", {}).items() if len(bodies(made, k)) != n]
     found += [f"joints {len(made.joints)}" for n in [item.get("joints")] if n is not None and len(made.joints) != n]
     extents = np.ptp(closed.parts[0].bounds, axis=0)
     sizes = item.get("size", {})
@@ -45,9 +45,11 @@ def wrong(item: dict[str, Any]) -> list[str]:
             found += [f"{first} not {key} {second}"] if one.min() <= other.max() else []
     found += [
         f"{name} {made.parameters[name]}"
-        for name in ("open", "material", "handle", "color")
+        for name in ("material", "handle", "color")
         if name in item and made.parameters[name] != item[name]
     ]
+    shares = {made.parameters["open"], *(joint.value / (joint.upper + joint.value) for joint in made.joints)}
+    found += [f"open {shares}"] if "open" in item and not np.isclose(list(shares), item["open"]).any() else []
     found += [
         f"{name} {made.parameters.get(name)}"
         for name, value in item.get("values", {}).items()
@@ -80,22 +82,90 @@ def heights(made: Blueprint, kind: str, axis: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", list(SENTENCES))
-def test_nine_of_ten_sentences_come_out_exactly(name):
-    faults = {item["text"]: wrong(item) for item in SENTENCES[name]}
-    bad = {text: found for text, found in faults.items() if found}
-    assert len(bad) <= (1.0 - EXACT_SHARE) * len(faults), bad
+def test_sentences_come_out_exactly_or_are_refused_and_nine_of_ten_come_out(name):
+    refused = 0
+    for item in SENTENCES[name]:
+        try:
+            assert not wrong(item), item["text"]
+        except InputError:
+            refused += 1
+    assert refused <= (1.0 - EXACT_SHARE) * len(SENTENCES[name])
 
 
-def test_what_was_understood_and_what_was_not_is_said():
-    meant = understand("a red cabinet with two doors and a hologram, 80 cm wide", FAMILIES)
-    assert meant.ignored == ("hologram",)
+def test_what_is_not_understood_is_refused_by_its_words_and_left_out_if_that_is_asked_for():
+    text = "a red cabinet with two doors and a holographic display, 80 cm wide"
+    with pytest.raises(InputError, match=r"with a cabinet or chest: 'holographic display'\. Nothing else"):
+        understand(text, FAMILIES)
+    meant = understand(text, FAMILIES, lenient=True)
+    assert meant.ignored == ("holographic display",)
     assert {"2 doors", "width 0.8 m", "red"} <= set(meant.understood)
 
 
-def test_the_colour_of_a_handle_is_left_out_and_said():
-    meant = understand("a white nightstand with one drawer and gold knobs", FAMILIES)
-    assert (meant.values["color"], meant.values["handle"]) == ("white", "knob")
-    assert meant.ignored == ("gold",)
+def test_slips_of_spelling_are_told_and_mended_only_if_that_is_asked_for():
+    with pytest.raises(InputError, match="drawer for drawrs"):
+        understand("a cabinet with three drawrs", FAMILIES)
+    meant = understand("a cabnet with thre drawrs", FAMILIES, lenient=True)
+    assert (meant.family, meant.values["drawers"]) == ("cabinet", 3)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a truck", "truck"),
+        ("a door handle", "door handle"),
+        ("two cabinet doors", "cabinet"),
+        ("two nightstands", "two"),
+        ("a laptop bag", "bag"),
+        ("a wardrobe with two sliding doors", "sliding"),
+        ("a microwave with a handle on the left", "left"),
+        ("an oven with a door that opens to the left", "opens left"),
+        ("a fridge of 180 cm", "180 cm"),
+        ("a cabinet with small drawers", "small"),
+        ("a robot arm with seven joints and a three finger gripper", "three finger gripper"),
+        ("a humanoid robot holding a laptop", "holding"),
+        ("an oven with golden knobs and a spinning door", "spinning"),
+        ("a 2 km fridge", "2 km"),
+    ],
+)
+def test_nothing_else_is_built_than_what_is_asked_for(text, words):
+    with pytest.raises(InputError, match=words):
+        from_text(text)
+
+
+def test_parts_are_asked_for_by_their_names_and_by_how_they_move():
+    for text in (
+        "a toilet with a seat and a lid",
+        "a suitcase with a telescopic handle",
+        "an excavator with a bucket",
+        "an oven whose door opens downwards",
+        "a microwave with a door that opens to the left",
+        "a window with two panes",
+    ):
+        assert from_text(text).build().joints
+
+
+def test_a_colour_or_material_is_that_of_the_parts_it_is_said_of():
+    made = from_text("a green cabinet with two glass doors and a red drawer").build()
+    looks = {part.name.rstrip("0123456789_"): (part.color, part.density) for part in made.parts}
+    assert looks["body"][0] == COLORS["green"]
+    assert looks["drawer"][0] == COLORS["red"]
+    assert looks["door"] == (MATERIALS["glass"].color, MATERIALS["glass"].density)
+
+
+def test_the_drawer_that_is_named_stands_open_and_no_other():
+    made = from_text("a cabinet with three drawers, the top drawer pulled out by 20 cm").build()
+    assert [joint.value for joint in made.joints] == [0.2, 0.0, 0.0]
+    lids = from_text("a toilet with its lid two thirds open").build().joint_above
+    assert lids["lid"].value == pytest.approx(2.0 / 3.0 * (lids["lid"].upper + lids["lid"].value))
+    assert lids["seat"].value == 0.0
+    with pytest.raises(InputError, match=r"no further than 0\.386 m"):
+        from_text("a cabinet with three drawers, the top drawer pulled out by 2 m")
+
+
+def test_small_and_tall_are_ends_of_what_is_usual():
+    small, tall = understand("a small box", FAMILIES).values, understand("a tall, narrow cupboard", FAMILIES).values
+    assert small["width"] < 0.3
+    assert (tall["height"], tall["width"]) == (1.8, 0.4)
 
 
 def test_the_colour_reaches_the_bodies():
@@ -112,9 +182,10 @@ def test_the_colour_reaches_the_bodies():
         ("ein Schrank mit zwei Türen", "names nothing"),
         ("шкаф с двумя дверями", "not English"),
         ("eine Kommode mit drei Schubladen", "in English"),
+        ("a drawer with no front", "drawer"),
         ("a spaceship", "names nothing"),
         ("a spaceship with a door", "names nothing"),
-        ("a door with no hinge that swings", "needs a hinge"),
+        ("a door with no hinge that swings", "no hinge"),
         ("a chest of 5 drawers in 3 rows and 2 columns", "Say one of them"),
         ("a cabinet with -3 drawers", "negative"),
         ("a cabinet with minus two drawers", "negative"),
@@ -134,7 +205,7 @@ def test_what_cannot_be_understood_is_refused(text, reason):
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("a cabinet with 500 drawers", "from 0 to 12"),
+        ("a cabinet with 500 drawers", "from 0 to 12. The text says '500 drawers'"),
         ("a cabinet with a million drawers", "from 0 to 12"),
         ("a cabinet with 1,000 drawers", "from 0 to 12"),
         ("a cabinet with 1e9 drawers", "from 0 to 12"),
@@ -146,9 +217,8 @@ def test_what_cannot_be_understood_is_refused(text, reason):
     ],
 )
 def test_what_cannot_be_built_is_refused_with_its_bounds(text, reason):
-    meant = understand(text, FAMILIES)
     with pytest.raises(InputError, match=reason):
-        build(FAMILIES[meant.family], meant.values)
+        from_text(text).build()
 
 
 @pytest.mark.parametrize(
@@ -183,7 +253,6 @@ def test_names_may_be_counted_and_say_a_kind_and_parts_may_be_refused(text, valu
         ("a laptop, 100° open", {"open_angle": np.radians(100)}),
         ("a cabinet with four drawers pulled out by 20 cm", {"drawers": 4, "doors": 0, "open_distance": 0.2}),
         ("scissors, open 30 %", {"open": 0.3}),
-        ("a toilet with its lid two thirds open", {"open": pytest.approx(2 / 3)}),
         ("a robot arm with 6 degrees of freedom", {"joints": 6}),
         ("a globe tilted by 23 degrees", {"tilt": pytest.approx(np.radians(23))}),
         ("a door 6 ft 8 in high", {"height": pytest.approx(2.032)}),

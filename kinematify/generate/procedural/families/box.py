@@ -92,6 +92,7 @@ FAMILY = Family(
         "toolbox",
         "tool box",
         "jewelry box",
+        "jewellery box",
         "crate",
         "case",
         "container",

@@ -195,7 +195,7 @@ FAMILY = Family(
             words=("leaf", "wing", "door"),
             help="That move; a folding door has two at least.",
         ),
-        Parameter(name="panels", default=2, bounds=(0, 4), usual=(0, 4), words=("panel",), help="In every leaf."),
+        Parameter(name="panels", default=2, bounds=(0, 8), usual=(0, 4), words=("panel",), help="In every leaf."),
         Parameter(
             name="handle",
             default="lever",

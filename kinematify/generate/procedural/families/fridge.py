@@ -99,7 +99,7 @@ FAMILY = Family(
             choice_words={
                 "top": ("freezer on top", "freezer above", "top freezer"),
                 "bottom": ("freezer below", "freezer at the bottom", "bottom freezer"),
-                "side": ("side by side",),
+                "side": ("side by side", "american"),
             },
         ),
         Parameter(

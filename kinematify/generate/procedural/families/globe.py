@@ -77,6 +77,7 @@ FAMILY = Family(
     title="globe",
     words=("globe", "world globe", "earth globe", "desk globe", "terrestrial globe"),
     material="plastic",
+    part_words={"base": ("stand",)},
     parameters=(
         Parameter(name="diameter", default=0.25, unit="m", bounds=(0.1, 0.8), usual=(0.16, 0.36), help="Of the ball."),
         Parameter(name="post", default=0.05, unit="m", bounds=(0.03, 0.4), usual=(0.03, 0.12), help="Its height."),

@@ -47,6 +47,7 @@ FAMILY = Family(
     title="laptop",
     words=("laptop", "notebook", "notebook computer", "laptop computer", "portable computer"),
     material="metal",
+    part_words={"screen": ("lid", "display")},
     parameters=(
         Parameter(name="width", default=0.34, unit="m", bounds=(0.2, 0.5), usual=(0.28, 0.4), help="Outer width."),
         Parameter(name="depth", default=0.24, unit="m", bounds=(0.15, 0.4), usual=(0.2, 0.28), help="Outer depth."),

@@ -137,7 +137,7 @@ def _add_wheels(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="suitcase",
     title="suitcase",
-    words=("suitcase", "trolley case", "luggage", "travel case", "roller suitcase", "carry on", "trolley"),
+    words=("suitcase", "trolley case", "luggage", "travel case", "roller suitcase", "carry on"),
     material="plastic",
     parameters=(
         Parameter(name="width", default=0.4, unit="m", bounds=(0.3, 0.7), usual=(0.34, 0.5), help="Of the shells."),

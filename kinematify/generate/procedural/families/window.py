@@ -134,7 +134,7 @@ def _add_handle(
 FAMILY = Family(
     name="window",
     title="window",
-    words=("window", "skylight", "sash window"),
+    words=("window", "skylight"),
     material="wood",
     parameters=(
         Parameter(name="width", default=1.0, unit="m", bounds=(0.6, 4.0), usual=(0.6, 1.6), help="Outer width."),

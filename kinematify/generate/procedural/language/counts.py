@@ -114,6 +114,8 @@ def _place_before(reading: Reading, k: int) -> str | None:
 def _is_one(reading: Reading, where: range) -> bool:
     """`left door`, in the singular and at a place, is one."""
     last = reading.tokens[where.stop - 1]
+    if reading.text(where.start - 2) == "the":  # the upper one of those that there are
+        return False
     return _place_before(reading, where.start) is not None and last.given == last.text
 
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.parts import PLACES, PartRequirement
 from kinematify.generate.procedural.language.sizes import angle_at, length_at
 
 if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Value
+    from kinematify.generate.procedural.language.parts import PartReader
     from kinematify.generate.procedural.language.reading import Reading
 
 OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0, "opened": 1.0, "unfolded": 1.0}
@@ -19,39 +22,80 @@ FRACTIONS = {
 }  # fmt: skip
 """Words for a share of the way."""
 _OUT = (("pulled", "out"), ("pull", "out"), ("swung", "out"), ("slid", "out"))  # as good as opened
-_OPENABLE = ("door", "lid", "drawer", "flap", "cover", "leaf", "window", "sash", "screen")
+_VERBS = ("opens", "opening")  # say where something goes, not that it stands open
 _NOT_A_STATE = ("shelf", "compartment", "front", "field")  # an open shelf is no state
 _CLAUSE_ENDS = (",", ";", ".", ":", "with", "and")
-_FILLING = ("by", "at", "to", "of", "the", "way", "up", "about", "an", "a", "per", "cent", "percent", "%")
+_FILLING = (
+    "standing",
+    "stands",
+    "by",
+    "at",
+    "to",
+    "of",
+    "the",
+    "way",
+    "up",
+    "about",
+    "an",
+    "a",
+    "per",
+    "cent",
+    "percent",
+    "%",
+)
 _REACH = 5  # words to either side of the state
+
+_HOW = {"open": "share", "open_angle": "angle", "open_distance": "distance"}
 
 _Amount = tuple[str, "Value", str, tuple[int, ...]]
 
 
-def read_openness(reading: Reading) -> None:
-    """Take up `half open`, `ajar`, `opened by 30 degrees`, `pulled out 20 cm`, `open 30 %`."""
+def read_openness(reading: Reading, parts: PartReader) -> None:
+    """Take up `half open`, `ajar`, `opened by 30 degrees`, `the top drawer pulled out 20 cm`, `open 30 %`."""
     for k, token in enumerate(reading.tokens):
         out = (token.text, reading.text(k + 1)) in _OUT
-        if k in reading.used or not (out or token.text in OPENNESS) or reading.text(k + 1) in _NOT_A_STATE:
+        state = token.text in OPENNESS and token.given not in _VERBS and reading.text(k + 1) not in _NOT_A_STATE
+        if k in reading.used or not (out or state):
             continue
         share = 1.0 if out else OPENNESS[token.text]
         clause = _clause(reading, k)
-        amount = _amount(reading, clause) if share == 1.0 else None
+        amount = _amount(reading, [i for i in clause if i not in reading.used]) if share == 1.0 else None
         name, value, said, where = amount or ("open", share, f"{share:.0%} open", ())
-        fillers = {i for i in clause if reading.text(i) in _FILLING or reading.text(i) in FRACTIONS}
-        reading.take(name, value, said, k, *([k + 1] if out else []), *where, *fillers)
-        reading.used.update(i for i in clause if reading.text(i) in _OPENABLE)  # `its door ajar`
+        fillers = [i for i in clause if reading.text(i) in _FILLING or reading.text(i) in FRACTIONS]
+        words = (k, *([k + 1] if out else []), *where, *fillers)
+        opened = (_HOW[name], float(value))
+        if not _open_parts(reading, parts, clause, opened, words):
+            reading.take(name, value, said, *words)
+
+
+def _open_parts(
+    reading: Reading, parts: PartReader, clause: list[int], opened: tuple[str, float], words: tuple[int, ...]
+) -> bool:
+    """Take up that parts which are named stand open; False where none are, or all that open at all."""
+    named = [(first, end, stems) for first, end, stems in parts.nouns() if first in clause]
+    if not named:
+        return False
+    first, end, stems = named[-1] if named[-1][0] < words[0] else named[0]
+    place = reading.text(first - 1) if reading.text(first - 1) in PLACES else ""
+    said = parts.said(*({first - 1} if place else ()), *range(first, end), *words)
+    wanted = PartRequirement(nouns=stems, words=said, place=place, opened=opened)
+    opening = {joint.child for joint in build(reading.family, {**reading.values, "open": 1.0}).joints if joint.value}
+    if set(wanted.of(parts.made)) == opening:
+        reading.used.update(range(first, end))
+        return False
+    wanted.applied(parts.made)
+    return parts.require(wanted, *words, *range(first, end), *({first - 1} if place else ()))
 
 
 def _clause(reading: Reading, k: int) -> list[int]:
-    """Words around word k that belong to the same statement and are not taken up."""
+    """Words around word k that belong to the same statement."""
     places = []
     for step in (-1, 1):
         at = k + step
         while abs(at - k) <= _REACH and reading.text(at) and reading.text(at) not in _CLAUSE_ENDS:
             places.append(at)
             at += step
-    return sorted(place for place in places if place not in reading.used)
+    return sorted(places)
 
 
 def _amount(reading: Reading, clause: list[int]) -> _Amount | None:

@@ -23,6 +23,8 @@ class Reading:
     values: dict[str, Value] = field(default_factory=dict)
     understood: list[str] = field(default_factory=list)
     used: set[int] = field(default_factory=set)
+    said: dict[str, str] = field(default_factory=dict)
+    """Words that set a parameter, as they were written."""
     named: frozenset[int] = frozenset()
     """Where the family is named; a choice may be part of its name."""
     counted: set[int] = field(default_factory=set)
@@ -47,6 +49,7 @@ class Reading:
             )
         if before is None:
             self.understood.append(said)
+            self.said[name] = " ".join(self.tokens[k].given for k in sorted(set(where))) or said
         self.values[name] = value
         self.used.update(where)
 

@@ -22,6 +22,12 @@ DIMENSIONS = {
     "reach": ("reach",),
 }
 """Words for a size, keyed by the parameter that they mean."""
+SIZE_WORDS = {
+    "small": (0, ()), "mini": (0, ()), "tiny": (0, ()), "little": (0, ()), "compact": (0, ()), "big": (1, ()),
+    "huge": (1, ()), "large": (1, ()), "tall": (1, ("height",)), "low": (0, ("height",)), "wide": (1, ("width",)),
+    "narrow": (0, ("width",)), "long": (1, ("length", "width")),
+}  # fmt: skip
+"""Words for a size without a number: which end of what is usual, and of which sizes; of all where none is named."""
 JOINING = ("x", "by")
 """Between numbers that are multiplied."""
 _INSTEAD = {
@@ -42,6 +48,27 @@ def read_sizes(reading: Reading) -> None:
     _lengths(reading)
     _products(reading)
     _refuse_sizes_without_unit(reading)
+
+
+def read_size_words(reading: Reading) -> None:
+    """`a small box`, `a tall, narrow cupboard`: an end of what is usual, for what was not said in numbers."""
+    first = min(reading.named)
+    for k, token in enumerate(reading.tokens[:first]):
+        between = reading.tokens[k + 1 : first]
+        if token.text not in SIZE_WORDS or k in reading.used or any(reading.number(k) for k in range(k + 1, first)):
+            continue
+        end, names = SIZE_WORDS[token.text]
+        meant = [
+            p
+            for p in reading.family.parameters
+            if p.unit == "m" and p.usual and (p.name in names or (not names and p.name in DIMENSIONS))
+        ]
+        for parameter in meant[:1] if names else meant:
+            if parameter.name not in reading.values and parameter.usual is not None:
+                reading.values[parameter.name] = parameter.usual[end]
+        if meant and not any(item.text in ("with", "and") for item in between):
+            reading.understood.append(token.text)
+            reading.used.add(k)
 
 
 def length_at(reading: Reading, k: int) -> tuple[float, int] | None:

@@ -10,27 +10,37 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.language.arrangement import layout_of
 from kinematify.generate.procedural.language.counts import read_counted_name, read_counts, read_grids
 from kinematify.generate.procedural.language.openness import FRACTIONS, OPENNESS, read_openness
+from kinematify.generate.procedural.language.parts import MOTIONS, PartReader
 from kinematify.generate.procedural.language.reading import Reading, nouns_of
-from kinematify.generate.procedural.language.sizes import DIMENSIONS, read_bare_length, read_sizes
+from kinematify.generate.procedural.language.sizes import (
+    DIMENSIONS,
+    SIZE_WORDS,
+    read_bare_length,
+    read_size_words,
+    read_sizes,
+)
 from kinematify.generate.procedural.language.words import (
     ARTICLES,
     CHOICES,
     STOP_WORDS,
-    UNITS,
     Token,
+    nearest_word,
     singular,
     tokens_of,
 )
 from kinematify.generate.procedural.layout import CELLS
-from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family, Parameter, Value
+    from kinematify.generate.procedural.language.parts import PartRequirement
 
     _Name = tuple[tuple[str, ...], Family]
 
@@ -41,9 +51,9 @@ _PLACES = {
     *("column", "row", "grid", "lower", "upper"),
 }
 _NOT = ("no", "without")
-_HINGES = ("hinge", "hinges", "joint", "pivot")
-_SWINGING = ("swing", "swings", "swinging", "hinged", "turns", "rotates")
-_STRANGE = 0.6  # of the words; with no English function word among them the text is in another language
+_JOINS = ("and", "with")  # what stands on either side is told apart
+_MEANING_SIGNS = ("%", "°", "/", "+")
+_SUGGESTED = 3  # words at most, of those that are not known
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,73 +66,104 @@ class Understanding:
     understood: tuple[str, ...]
     """One short phrase per thing that was taken up."""
     ignored: tuple[str, ...]
-    """Words that mean nothing here, as they were written."""
+    """Words that were not understood, as they were written, those that stand together in one; only if lenient."""
+    requirements: tuple[PartRequirement, ...]
+    """What is asked of the parts that no parameter sets."""
 
 
-def understand(sentence: str, families: Mapping[str, Family]) -> Understanding:
-    """Find out what a sentence asks for.
+def understand(sentence: str, families: Mapping[str, Family], *, lenient: bool = False) -> Understanding:
+    """Find out what a sentence asks for; every word of it is understood, or the sentence is refused.
 
     Args:
-        sentence: English; slips of spelling are mended towards words that mean something here.
+        sentence: English.
         families: What can be built, keyed by name.
+        lenient: Mend slips of spelling towards words that mean something here, and leave out what is not understood.
 
     Raises:
-        InputError: The text is empty, too long, not English, contradicts itself, or names nothing that can be built;
-            then the nearest families are named.
+        InputError: The text is empty, too long, contradicts itself, names nothing that can be built (then the nearest
+            families are named), or has words that are not understood.
     """
     vocabulary = _vocabulary(families.values())
-    tokens = tokens_of(sentence, vocabulary)
+    tokens = tokens_of(sentence, vocabulary, mend=lenient)
     names = [(_bare(word, vocabulary), family) for family in families.values() for word in family.words]
-    family, where = _family(sentence, tokens, names)
+    family, where = _family(sentence, tokens, names, vocabulary)
     reading = Reading(tokens=tokens, family=family, used=set(where), named=frozenset(where))
     reading.understood.append(family.title)
-    for step in (
-        read_sizes,
-        read_grids,
-        read_counts,
-        read_counted_name,
-        _choices,
-        _parts_it_has,
-        read_openness,
-        read_bare_length,
-        _looks,
-    ):
+    for step in (read_sizes, read_grids, read_counts, read_counted_name, _choices, _parts_it_has, read_bare_length):
         step(reading)
     _arrangement(reading)
-    ignored = tuple(
-        token.given
-        for k, token in enumerate(tokens)
-        if k not in reading.used and token.text not in STOP_WORDS and not token.is_sign
-    )
-    _refuse_what_makes_no_sense(sentence, reading, ignored)
+    read_size_words(reading)
+    parts = PartReader(reading=reading, made=_built(reading))
+    parts.looks()
+    read_openness(reading, parts)
+    parts.read()
+    left = _left(reading)
+    if left and not lenient:
+        raise InputError(_not_understood(reading, left, vocabulary))
     return Understanding(
         family=family.name,
         values=dict(reading.values),
         understood=tuple(reading.understood),
-        ignored=ignored,
+        ignored=left,
+        requirements=tuple(parts.requirements),
     )
 
 
-def _refuse_what_makes_no_sense(sentence: str, reading: Reading, ignored: tuple[str, ...]) -> None:
-    texts = [token.text for token in reading.tokens]
-    hinge = any(word in _NOT and reading.text(k + 1) in _HINGES for k, word in enumerate(texts))
-    if hinge and any(word in _SWINGING for word in texts):
-        raise InputError(
-            f"The text {sentence[:80]!r} asks for no hinge and for something that swings. What swings needs a hinge: "
-            "leave out one of the two."
-        )
-    words = sum(not token.is_sign for token in reading.tokens)
-    strange = sum(word.isalpha() and word not in UNITS for word in ignored)
-    if strange > _STRANGE * words and not any(word in STOP_WORDS or word in _NOT for word in texts):
-        raise InputError(
-            f"Of the text {sentence[:80]!r} only {', '.join(reading.understood)} was understood. Describe the object "
-            "in English, e.g. 'a cabinet with two doors above three drawers'."
-        )
+def _built(reading: Reading) -> Blueprint:
+    """The object as far as it is understood.
+
+    Raises:
+        InputError: It cannot be built; the message has the words that ask for it.
+    """
+    for name, value in reading.values.items():
+        try:
+            checked(reading.family, name, value)
+        except InputError as error:
+            words = reading.said.get(name)
+            raise InputError(f"{error} The text says {words!r}." if words else str(error)) from error
+    try:
+        return build(reading.family, reading.values)
+    except InputError as error:
+        raise InputError(f"{error} The text says {', '.join(map(repr, reading.said.values()))}.") from error
+
+
+def _left(reading: Reading) -> tuple[str, ...]:
+    """Words that were not understood, those that stand together in one."""
+    left: list[str] = []
+    together = False
+    for k, token in enumerate(reading.tokens):
+        if k in reading.used or token.text in STOP_WORDS:
+            together = together and token.text in STOP_WORDS and k not in reading.used and token.text not in _JOINS
+        elif token.is_sign and token.text not in _MEANING_SIGNS:
+            together = False
+        elif together:
+            left[-1] = f"{left[-1]} {token.given}"
+        else:
+            left.append(token.given)
+            together = True
+    return tuple(left)
+
+
+def _not_understood(reading: Reading, left: tuple[str, ...], vocabulary: set[str]) -> str:
+    known = frozenset(vocabulary)
+    words = dict.fromkeys(word for phrase in left for word in phrase.split())
+    near = {word: nearest_word(word, known) for word in words}
+    hints = [f"{nearest} for {word}" for word, nearest in near.items() if nearest][:_SUGGESTED]
+    title = reading.family.title
+    return (
+        f"Not understood, or not possible with a {title}: {', '.join(map(repr, left))}. Nothing else is built in its "
+        f"place.{f' Perhaps you mean {chr(44).join(hints)}.' if hints else ''} Say it differently or leave it out; "
+        f"`kinematify generate --list --category {reading.family.name}` shows what a {title} may have, and --lenient "
+        "builds it without."
+    )
 
 
 def _vocabulary(families: Iterable[Family]) -> set[str]:
     """All words that mean something, singular."""
-    words = {word for names in DIMENSIONS.values() for word in names} | set(OPENNESS) | set(FRACTIONS) | set(COLORS)
+    words = (
+        {word for names in DIMENSIONS.values() for word in names} | set(OPENNESS) | set(FRACTIONS) | set(COLOR_WORDS)
+    )
+    words |= set(SIZE_WORDS) | set(MOTIONS)
     words |= {word for material in MATERIALS.values() for word in material.words} | _PLACES
     for family in families:
         for parameter in family.parameters:
@@ -145,19 +186,39 @@ def _choice_words(parameter: Parameter, choice: str) -> tuple[str, ...]:
 # ---- the family ----------------------------------------------------------------------------------------------------
 
 
-def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) -> tuple[Family, range]:
-    """The family that the head of the sentence names: what stands before `with`, and there the last name.
+def _family(
+    sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name], vocabulary: set[str]
+) -> tuple[Family, range]:
+    """The family that the head of the sentence names: what stands before `with`, the last of names side by side.
 
-    What an object has does not say what it is: a spaceship with a door is no door.
+    What an object has does not say what it is: a spaceship with a door is no door; nor does what it is a part of, or
+    for: a door handle is no door.
     """
     end = next((k for k, token in enumerate(tokens) if k > 0 and token.text in _HEAD_ENDS), len(tokens))
-    found = _named(tokens[:end], names)
-    if found:
-        return next((whole for whole in found[:-1] if _counts_parts(tokens, whole[0], found[-1][1])), found[-1])
     having = next((k for k, token in enumerate(tokens) if token.text in _HAVING), len(tokens))
-    anywhere = _named(tokens[:having], names)
-    if anywhere:
-        return anywhere[0]
+    found = _named(tokens[:end], names) or _named(tokens[:having], names)[:1]
+    if not found:
+        raise InputError(_names_nothing(sentence, tokens, names))
+    family, where = next((item for item in found if _counts_parts(tokens, item[0], found[-1][1])), found[0])
+    for other, behind in found:
+        if behind.start == where.stop:
+            family, where = other, behind if other is not family else range(where.start, behind.stop)
+    after = tokens[where.stop].text if where.stop < len(tokens) else ""
+    if after and singular(after, frozenset(_owned(family))) in _owned(family):
+        name = " ".join(token.given for token in tokens[where.start : where.stop + 1])
+        raise InputError(
+            f"The text {sentence[:80]!r} names {name!r}, a part of a {family.title}; only whole objects can be built."
+        )
+    return family, where
+
+
+def _owned(family: Family) -> set[str]:
+    """Nouns for what belongs to an object of a family."""
+    chosen = (word for p in family.parameters if p.choices for word in (p.name, *p.words))
+    return {*chosen, *(noun for p in family.parameters if isinstance(p.default, int) for noun in nouns_of(p))}
+
+
+def _names_nothing(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) -> str:
     titles = {" ".join(words): family.title for words, family in names}
     near = [
         titles[match]
@@ -165,9 +226,10 @@ def _family(sentence: str, tokens: tuple[Token, ...], names: Sequence[_Name]) ->
         for match in difflib.get_close_matches(token.text, titles, n=2, cutoff=0.6)
         if len(token.text) > 3
     ]
-    nearest = list(dict.fromkeys(near or titles.values()))[:4]
-    raise InputError(
-        f"The text {sentence[:80]!r} names nothing that can be built. Nearest: {', '.join(nearest)}. Describe one "
+    unknown = [t.given for t in tokens if t.text not in STOP_WORDS and t.number is None and not t.is_sign]
+    nearest = f"Nearest by name: {', '.join(list(dict.fromkeys(near))[:4])}. " if near else ""
+    return (
+        f"The text {sentence[:80]!r} names nothing that can be built: {', '.join(unknown[:8])}. {nearest}Describe one "
         "object in English; `kinematify generate --list` shows all categories."
     )
 
@@ -240,27 +302,6 @@ def _parts_it_has(reading: Reading) -> None:
             reading.used.add(k)
         elif "none" in parameter.choices:
             reading.take(parameter.name, "none", f"no {token.text}", k - 1, k)
-
-
-def _looks(reading: Reading) -> None:
-    """Colours and materials of the object; those of its handles cannot be chosen, and are left to be told."""
-    found = [(k, name, value, said) for k in range(len(reading.tokens)) for name, value, said in _look(reading, k)]
-    whole = [item for item in found if item[0] + 1 not in reading.used - reading.named]
-    for name in ("color", "material"):
-        looks = [item for item in whole if item[1] == name]
-        # `white doors` say what a cabinet looks like, unless it was said of the cabinet itself.
-        looks = looks or [item for item in found if item[1] == name and item[0] + 1 in reading.counted]
-        for k, _, value, said in looks:
-            reading.take(name, value, said, k)
-
-
-def _look(reading: Reading, k: int) -> list[tuple[str, str, str]]:
-    """Parameter, value and words for the user of a colour or material at word k."""
-    word = reading.text(k)
-    if k in reading.used:
-        return []
-    colors = [("color", word, word)] if word in COLORS else []
-    return colors + [("material", name, f"made of {name}") for name, item in MATERIALS.items() if word in item.words]
 
 
 def _arrangement(reading: Reading) -> None:

@@ -1,4 +1,4 @@
-"""Words of a sentence: tokens, numbers, units, singulars, and slips of spelling."""
+"""Words of a sentence: tokens, numbers, units, singulars; slips of spelling are mended only if that is asked for."""
 
 from __future__ import annotations
 
@@ -31,25 +31,22 @@ UNITS = {
 """Metres per unit."""
 NOUNS = {"handle": ("pull", "grip")}
 """How people call what several families have a parameter for, besides its name."""
-CHOICES = {
+CHOICES: dict[str, dict[str, tuple[str, ...]]] = {
     "hinge_side": {
         side: (f"{side} hinged", f"hinged on the {side}", f"hinged {side}", f"hinges on the {side}", f"{side} hinge")
         for side in ("left", "right")
-    }
+    },
+    "handle": {"knob": ("round knob",)},
 }
 """How people call the choices of such a parameter."""
 _STOP_TEXT = """
-    a an the of with and or to in on at by for from it its them their that which whose is are has have having i
-    we you would like want need please make me give build create generate some any this these those there be as
-    into my our one each per every other others made out very quite nice simple standard typical normal ordinary
-    mini tiny
-    small big huge large medium tall short wide narrow compact little new old modern kitchen living room office
-    household home bathroom containing featuring including plus also only just total all set kind type style shaped
-    dark light pale bright looking real full size robot robotic mechanical electric object model thing stand
-    standing side arranged
+    a an the of with and to in on at by for from it its them their that which whose is are has have having i d ll
+    we you would like want need please make me give build create generate some any this these those there be
+    into my our each per every made very quite nice simple standard typical normal ordinary new modern kitchen living
+    room office bedroom household home bathroom containing featuring including plus also just
 """
 STOP_WORDS = frozenset(_STOP_TEXT.split())
-"""Words that carry nothing, or whose sense is left to the seed."""
+"""Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
 _TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
@@ -80,8 +77,8 @@ class Token:
         return not self.text[0].isalnum() and self.number is None
 
 
-def tokens_of(sentence: str, vocabulary: Iterable[str]) -> tuple[Token, ...]:
-    """Split a sentence into tokens and mend slips of spelling towards a vocabulary.
+def tokens_of(sentence: str, vocabulary: Iterable[str], *, mend: bool) -> tuple[Token, ...]:
+    """Split a sentence into tokens; with `mend`, slips of spelling become the nearest word of a vocabulary.
 
     Raises:
         InputError: The text is empty, too long, or not written in Latin letters.
@@ -105,7 +102,10 @@ def tokens_of(sentence: str, vocabulary: Iterable[str]) -> tuple[Token, ...]:
             "it has and how large it is."
         )
     known = frozenset(vocabulary)
-    return tuple(Token(text=_mended(singular(word, known), known), given=word) for word in found)
+    read = [singular(word, known) for word in found]
+    if mend:
+        read = [nearest_word(word, known) or word for word in read]
+    return tuple(Token(text=word, given=given) for word, given in zip(read, found, strict=True))
 
 
 def singular(word: str, known: frozenset[str]) -> str:
@@ -123,14 +123,15 @@ def singular(word: str, known: frozenset[str]) -> str:
     return word
 
 
-def _mended(word: str, known: frozenset[str]) -> str:
+def nearest_word(word: str, known: frozenset[str]) -> str | None:
+    """Return the word that a slip of spelling may have been meant for; none for what is known or like nothing."""
     if word in known or word in STOP_WORDS or word in NUMBERS or word in UNITS or len(word) < 4 or not word.isalpha():
-        return word
+        return None
     words = [*known, *(f"{item}s" for item in known), *(n for n in NUMBERS if len(n) > 3)]
     near = difflib.get_close_matches(word, words, n=1, cutoff=0.82)
     if not near and len(word) <= 5:
         near = difflib.get_close_matches(word, words, n=1, cutoff=0.75)
-    return singular(near[0], known) if near else word
+    return singular(near[0], known) if near else None
 
 
 def _shown(sentence: str) -> str:

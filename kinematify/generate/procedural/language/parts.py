@@ -1,0 +1,348 @@
+"""What a sentence asks of parts, beyond what a parameter sets: that they are there, how they move, look and stand open.
+
+It is read against the parts that were built; what does not hold of them is not understood.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.generate.blueprint import BlueprintJoint
+from kinematify.generate.procedural.language.reading import nouns_of
+from kinematify.generate.procedural.language.words import STOP_WORDS, UNITS, singular
+from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS, color_of
+from kinematify.robot.joint_type import JointType
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from kinematify.assembly.part import Part
+    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.robot.arrays import FloatArray
+
+MOTIONS = {
+    **dict.fromkeys(("sliding", "slide", "telescopic", "telescoping", "extendable"), "slides"),
+    **dict.fromkeys(("turning", "turn", "rotating", "rotate", "swivelling", "swiveling", "swivel"), "turns"),
+    **dict.fromkeys(("hinged", "swinging", "swing"), "swings"),
+    **dict.fromkeys(("tilting", "tilt"), "tilts"),
+    **dict.fromkeys(("spinning", "spin", "revolving", "revolve"), "spins"),
+}
+"""Words for how a part moves, before its noun or behind it."""
+_MOVES: dict[str, Callable[[BlueprintJoint], bool]] = {
+    "slides": lambda joint: joint.kind is JointType.PRISMATIC,
+    "turns": lambda joint: joint.kind.turns,
+    "swings": lambda joint: joint.kind is JointType.REVOLUTE,
+    "tilts": lambda joint: joint.kind is JointType.REVOLUTE and abs(joint.axis[2]) < _SLANT,
+    "spins": lambda joint: joint.kind is JointType.CONTINUOUS,
+}
+_WAYS = {
+    "left": (-1, 0, 0), "right": (1, 0, 0), "up": (0, 0, 1), "upward": (0, 0, 1), "down": (0, 0, -1),
+    "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0),
+}  # fmt: skip
+"""Words for where a part goes when it opens; fronts look along -y."""
+PLACES = {
+    "left": (-1, 0, 0), "right": (1, 0, 0), "top": (0, 0, 1), "upper": (0, 0, 1), "uppermost": (0, 0, 1),
+    "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "front": (0, -1, 0), "rear": (0, 1, 0),
+}  # fmt: skip
+_SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
+_QUARTER = 0.5 * math.pi
+_LINKS = ("that", "which", "whose", "is", "are", "to", "can", "the", "in", "on", "at")  # between a noun and its verb
+_OF = ("of", "in", "made", "from", "is", "are")  # between a noun and what it is made of
+
+
+@dataclass(frozen=True, kw_only=True)
+class PartRequirement:
+    """What is asked of the parts of one name."""
+
+    nouns: tuple[str, ...]
+    """Names of parts without their numbers, any of them; one word stands for the end of a longer name."""
+    words: str
+    """As it was said."""
+    place: str = ""
+    """``top``: only the one that is furthest there."""
+    count: int | None = None
+    at_least: int = 1
+    moves: str = ""
+    """Of `MOTIONS`."""
+    way: str = ""
+    """Where they go when they open."""
+    look: tuple[str, str] | None = None
+    """Material and colour, empty where nothing is said."""
+    opened: tuple[str, float] | None = None
+    """``share``, ``angle`` [rad] or ``distance`` [m], and how much."""
+
+    def of(self, blueprint: Blueprint) -> list[str]:
+        """The parts that are meant."""
+        found = [part for part in blueprint.parts if _is_called(part.name, self.nouns)]
+        if self.place and found:
+            toward = np.array(PLACES[self.place], dtype=np.float64)
+            reach = [float(part.bounds.mean(axis=0) @ toward) for part in found]
+            found = [part for part, far in zip(found, reach, strict=True) if far > max(reach) - 1e-6]
+        return [part.name for part in found]
+
+    def applied(self, blueprint: Blueprint) -> Blueprint:
+        """Return the object with what is asked for.
+
+        Raises:
+            InputError: Its parts are not as they are asked for.
+        """
+        names = self.of(blueprint)
+        fits = len(names) == self.count if self.count is not None else len(names) >= self.at_least
+        joints = [blueprint.joint_above[name] for name in names if name in blueprint.joint_above]
+        moved = self.moves or self.way or self.opened
+        fits = fits and not (moved and len(joints) < len(names))
+        fits = fits and (not self.moves or all(map(_MOVES[self.moves], joints)))
+        fits = fits and all(_goes(blueprint, joint, self.way) for joint in joints if self.way)
+        if not fits:
+            raise InputError(f"Asked for is {self.words!r}, but {_described(blueprint, names)}.")
+        if self.look is not None:
+            blueprint = _looking(blueprint, names, *self.look)
+        return blueprint if self.opened is None else _opened(blueprint, joints, *self.opened, self.words)
+
+
+@dataclass(kw_only=True)
+class PartReader:
+    """Reads what is left of a sentence against the object as it would be built."""
+
+    reading: Reading
+    made: Blueprint
+    requirements: list[PartRequirement] = field(default_factory=list)
+
+    def noun_at(self, k: int) -> tuple[int, tuple[str, ...]] | None:
+        """The word behind a noun for parts at word k, and the names of these parts; none in the object's own name."""
+        if k in self.reading.named or k - 1 in self.reading.named:  # a laptop screen is no laptop
+            return None
+        for words, stems in sorted(self._nouns.items(), key=lambda item: -len(item[0])):
+            texts = tuple(singular(self.reading.text(i), frozenset(words)) for i in range(k, k + len(words)))
+            if texts == words:
+                return k + len(words), stems
+        return None
+
+    def nouns(self) -> Iterator[tuple[int, int, tuple[str, ...]]]:
+        """Every noun for parts: its first word, the word behind, and the names of the parts."""
+        for k in range(len(self.reading.tokens)):
+            found = self.noun_at(k)
+            if found is not None:
+                yield k, *found
+
+    @cached_property
+    def _nouns(self) -> dict[tuple[str, ...], tuple[str, ...]]:
+        """How parts may be called -> their names without numbers."""
+        return part_nouns(self.reading.family, self.made)
+
+    def require(self, requirement: PartRequirement, *where: int) -> bool:
+        """Take a requirement up if it holds of what is built; its words are then understood."""
+        try:
+            requirement.applied(self.made)
+        except InputError:
+            return False
+        self.requirements.append(requirement)
+        self.reading.understood.append(requirement.words)
+        self.reading.used.update(where)
+        return True
+
+    def said(self, *where: int) -> str:
+        """Words of the sentence as they were written."""
+        return " ".join(self.reading.tokens[i].given for i in sorted(where))
+
+    def read(self) -> None:
+        """Take up how parts move, where they go, and that they are there."""
+        for k, end, stems in self.nouns():
+            self._movement_before(k, end, stems)
+            self._movement_behind(k, end, stems)
+        for k, end, stems in self.nouns():
+            if not self.reading.used & set(range(k, end)):
+                self._presence(k, end, stems)
+
+    def _movement_before(self, k: int, end: int, stems: tuple[str, ...]) -> None:
+        """`sliding doors`, `a telescopic handle`."""
+        for at in (k - 1, k - 2):
+            word = self.reading.text(at)
+            if at not in self.reading.used and word in MOTIONS:
+                said = self.said(at, *range(k, end))
+                self.require(PartRequirement(nouns=stems, words=said, moves=MOTIONS[word]), at)
+
+    def _movement_behind(self, k: int, end: int, stems: tuple[str, ...]) -> None:
+        """`a handle that turns`, `whose door opens downwards`, `a door hinged on the left`."""
+        place = self.reading.text(k - 1) if self.reading.text(k - 1) in PLACES else ""
+        at = end
+        while self.reading.text(at) in _LINKS:
+            at += 1
+        verb = self.reading.text(at)
+        if at in self.reading.used or verb not in (*MOTIONS, "open", "opens", "go", "goes"):
+            return
+        to = at + 1
+        while self.reading.text(to) in ("to", "the", "on", "at", "towards"):
+            to += 1
+        way = self.reading.text(to).removesuffix("s") if to not in self.reading.used else ""
+        where = [at, to] if way in _WAYS else [at]
+        if way not in _WAYS and verb not in MOTIONS:
+            return
+        said = self.said(*range(k, max(where) + 1))
+        wanted = PartRequirement(
+            nouns=stems, words=said, place=place, moves=MOTIONS.get(verb, ""), way=way if way in _WAYS else ""
+        )
+        self.require(wanted, *where)
+
+    def _presence(self, k: int, end: int, stems: tuple[str, ...]) -> None:
+        """`with seat and lid`, `two temples`, `a bucket`."""
+        before, where = k - 1, list(range(k, end))
+        place = self.reading.text(before) if self.reading.text(before) in PLACES and before >= 0 else ""
+        if place:
+            where.append(before)
+            before -= 1
+        number = self.reading.number(before) if before >= 0 and before not in self.reading.used else None
+        if number is not None:
+            where.append(before)
+        plural = self.reading.tokens[end - 1].given != self.reading.tokens[end - 1].text or (
+            singular(self.reading.text(end - 1), frozenset(word for stem in stems for word in stem.split("_")))
+            != self.reading.text(end - 1)
+        )
+        count = int(number) if number is not None else None if plural else 1
+        self.require(
+            PartRequirement(nouns=stems, words=self.said(*where), place=place, count=count, at_least=2), *where
+        )
+
+    def looks(self) -> None:
+        """Colours and materials, of the whole object or of some of its parts."""
+        k = 0
+        while k < len(self.reading.tokens):
+            span = self._look(k)
+            if span is None:
+                k += 1
+                continue
+            end, material, color = span
+            self._look_taken(k, end, material, color)
+            k = end
+
+    def _look(self, k: int) -> tuple[int, str, str] | None:
+        """The word behind, material and colour of the words for a look that begin at word k."""
+        end, material, color = k, "", ""
+        while end not in self.reading.used:
+            pair = f"{self.reading.text(end)} {self.reading.text(end + 1)}"
+            word = self.reading.text(end)
+            of = next((name for name, item in MATERIALS.items() if word in item.words), "")
+            if pair in COLOR_WORDS and not color:
+                color, end = COLOR_WORDS[pair], end + 2
+            elif word in COLOR_WORDS and not color:
+                color, end = COLOR_WORDS[word], end + 1
+            elif of and material in ("", of):
+                material, end = of, end + 1
+            else:
+                break
+        return (end, material, color) if end > k else None
+
+    def _look_taken(self, k: int, end: int, material: str, color: str) -> None:
+        where = range(k, end)
+        stems = self._looked_at(k, end)
+        if stems:
+            self.require(
+                PartRequirement(nouns=stems, words=f"{self.said(*where)} {stems[0]}", look=(material, color)), *where
+            )
+        elif stems is not None:
+            for name, value in (("material", material), ("color", color)):
+                if value:
+                    said = f"made of {value}" if name == "material" else value
+                    self.reading.take(name, value, said, *where)
+
+    def _looked_at(self, k: int, end: int) -> tuple[str, ...] | None:
+        """Names of the parts that a look at words k to `end` is about; none of them: all; None: of what is no part."""
+        for at in range(end, end + 3):
+            found, word = self.noun_at(at), self.reading.text(at)
+            if found is not None:
+                return found[1]
+            if at in self.reading.named:
+                return ()
+            if not word or word in STOP_WORDS or self.reading.tokens[at].is_sign:
+                break
+            if self.reading.number(at) is None and word not in UNITS:
+                return None
+        at = k - 1
+        while self.reading.text(at) in _OF:
+            at -= 1
+        if at < k - 1:
+            for first, behind, stems in self.nouns():
+                if behind == at + 1 and first not in self.reading.named:
+                    return stems
+        return ()
+
+
+def part_nouns(family: Family, made: Blueprint) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """How the parts of an object may be called, singular words -> their names without numbers."""
+    stems = {_stem(part.name) for part in made.parts}
+    found: dict[tuple[str, ...], set[str]] = {}
+    for stem in stems:
+        words = tuple(stem.split("_"))
+        for k in range(len(words)):
+            found.setdefault(words[k:], set()).add(stem)
+    for parameter in family.parameters:
+        own = parameter.name.removesuffix("s") if isinstance(parameter.default, int) else ""
+        of = {stem for stem in stems if stem in (own, *nouns_of(parameter))} if own else set()
+        for noun in nouns_of(parameter) if of else ():
+            found.setdefault(tuple(noun.split()), set()).update(of)
+    for stem, others in family.part_words.items():
+        for noun in others if stem in stems else ():
+            found.setdefault(tuple(noun.split()), set()).add(stem)
+    return {words: tuple(sorted(names)) for words, names in found.items()}
+
+
+def _stem(name: str) -> str:
+    return name.rstrip("0123456789_")
+
+
+def _is_called(name: str, nouns: Sequence[str]) -> bool:
+    return _stem(name) in nouns
+
+
+def _goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
+    """Whether a part goes somewhere when it opens."""
+    part = next(part for part in blueprint.parts if part.name == joint.child)
+    value = min(joint.upper, _QUARTER) if joint.kind.turns else joint.upper
+    middle = part.bounds.mean(axis=0)
+    moved: FloatArray = (joint.motion(value) @ np.append(middle, 1.0))[:3] - middle
+    return float(moved @ np.array(_WAYS[way])) > _SLANT * float(np.linalg.norm(moved)) > 0.0
+
+
+def _looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
+    rgb = color_of(material, color or None)
+
+    def look(part: Part) -> Part:
+        return replace(part, color=rgb, density=MATERIALS[material].density if material else part.density)
+
+    return replace(blueprint, parts=tuple(look(part) if part.name in names else part for part in blueprint.parts))
+
+
+def _opened(blueprint: Blueprint, joints: Sequence[BlueprintJoint], how: str, much: float, words: str) -> Blueprint:
+    """Return the object with some joints open."""
+    values = {}
+    for joint in joints:
+        value = much * joint.upper if how == "share" else much
+        if not (math.isfinite(value) and joint.lower <= value <= joint.upper + 1e-9):
+            raise InputError(
+                f"Asked for is {words!r}, but the joint of {joint.child} goes no further than {_way(joint)}."
+            )
+        if joint.kind.turns is (how == "distance") and how != "share":
+            unit = "an angle" if joint.kind.turns else "a length"
+            raise InputError(f"Asked for is {words!r}, but how far {joint.child} opens is {unit}.")
+        values[joint.child] = value
+    return blueprint.moved(values)
+
+
+def _way(joint: BlueprintJoint) -> str:
+    return f"{math.degrees(joint.upper):.0f} degrees" if joint.kind.turns else f"{joint.upper:.3g} m"
+
+
+def _described(blueprint: Blueprint, names: Sequence[str]) -> str:
+    if not names:
+        return "the object has no such part"
+    joints = (blueprint.joint_above.get(name) for name in names)
+    kinds = [f"{joint.child} ({joint.kind.value})" for joint in joints if joint is not None]
+    return f"what is built has {', '.join(kinds or names)}"
