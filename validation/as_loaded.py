@@ -10,11 +10,11 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.validation.finding import CheckResult, Finding
 
-_FAMILY, _OPENS, _MOVES = "KV8", "KV801", "KV804"
+_FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
 
 
 def as_loaded_words(checks: Sequence[CheckResult]) -> str:
@@ -45,11 +45,10 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
     """
     if tuple(engines) != DEFAULT_ENGINES:
         return list(checks)
-    ran = {
-        check.engine
-        for check in checks
-        if check.check == _OPENS and check.engine is not None and check.status in (Status.PASS, Status.FAIL)
-    }
+    ran: dict[str, set[str | None]] = {}
+    for check in checks:
+        if check.status in (Status.PASS, Status.FAIL):
+            ran.setdefault(check.check, set()).add(check.engine)
     errors = [
         finding
         for check in checks
@@ -95,9 +94,13 @@ def shown_as_loaded(checks: Sequence[CheckResult]) -> list[CheckResult]:
     ]
 
 
-def _across(finding: Finding, errors: Sequence[Finding], ran: set[str]) -> Finding:
-    failing = {other.engine for other in errors if other.joint in (None, finding.joint)}
-    works = [entry.title for name, entry in ENGINES.items() if name in ran - failing]
+def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[str | None]]) -> Finding:
+    failing = {
+        other.engine
+        for other in errors
+        if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
+    }
+    works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
     if finding.severity is not Severity.ERROR or not works:
         return finding
     return replace(finding, severity=Severity.WARNING, message=f"{finding.message} It works in {' and '.join(works)}.")

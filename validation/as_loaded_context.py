@@ -10,28 +10,33 @@ import numpy as np
 
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
+from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.loaded_file import Unloadable, hand
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
     from pathlib import Path
 
     from kinematify.config.validation import AsLoadedSettings
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Robot
-    from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, RestRun
+    from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, ReleaseRun, RestRun
     from kinematify.validation.stage import StageRequest
 
 _LEAST_SIZE = 0.01
 """Smaller models are looked at as if they had it [m]."""
+_FAR_BEYOND = 5.0
+"""Where what presses against a limit is let off, in lengths that a limit may give way."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class HandRun:
-    """A joint pushed by a hand from rest to one end of what is free."""
+    """A joint pushed by a hand, the others held."""
 
     travel: Travel
+    values: Mapping[str, float]
+    """Where every joint starts [rad or m]."""
     push: Push
     pushed: Pushed
     without_contacts: float | None = None
@@ -97,8 +102,13 @@ class AsLoadedContext:
     @cached_property
     def values(self) -> dict[str, float]:
         """Every joint at rest [rad or m]."""
-        row = self.mechanism.all_values(self.mechanism.rest[None])[0]
-        return {**dict.fromkeys(self.loaded.joints, 0.0), **dict(zip(self.mechanism.joints, row.tolist(), strict=True))}
+        return self._values({})
+
+    def _values(self, leaders: Mapping[str, float]) -> dict[str, float]:
+        """Every joint, leaders at these values or at rest [rad or m]."""
+        row = np.array([leaders.get(travel.joint, travel.rest) for travel in self.mechanism.travels])
+        known = dict(zip(self.mechanism.joints, self.mechanism.all_values(row[None])[0].tolist(), strict=True))
+        return {**dict.fromkeys(self.loaded.joints, 0.0), **known}
 
     @cached_property
     def size(self) -> float:
@@ -176,22 +186,72 @@ class AsLoadedContext:
         return {travel.joint: 1.0, **followers}
 
     def _by_hand(self, travel: Travel, end: float) -> HandRun:
-        settings, joint = self.settings, self.robot.joint_by_name[travel.joint]
-        push = hand(
+        push = self._push(travel, (travel.rest, end), self.strength(travel))
+        pushed = self.loaded.push(push, self.values, contacts=True)
+        if self.arrives(travel, end, pushed.farthest):
+            return HandRun(travel=travel, values=self.values, push=push, pushed=pushed)
+        free = self.loaded.push(push, self.values, contacts=False).farthest
+        return HandRun(travel=travel, values=self.values, push=push, pushed=pushed, without_contacts=free)
+
+    def strength(self, travel: Travel) -> float:
+        """Force of a hand [N or N m]."""
+        return self.settings.torque if travel.turns else self.settings.force
+
+    def speed(self, travel: Travel) -> float:
+        """Of a hand [rad/s or m/s]."""
+        return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
+
+    def _push(self, travel: Travel, way: tuple[float, float], force: float) -> Push:
+        joint = self.robot.joint_by_name[travel.joint]
+        return hand(
             self.ratios(travel),
-            (travel.rest, end),
+            way,
             inertias=self.inertias,
-            force=settings.torque if travel.turns else settings.force,
-            speed=settings.turning_speed if travel.turns else settings.sliding_speed,
+            force=force,
+            speed=self.speed(travel),
             resistance=joint.friction or 0.0,
             damping=joint.damping or 0.0,
             time_step=self.loaded.time_step,
         )
-        pushed = self.loaded.push(push, self.values, contacts=True)
-        if self.arrives(travel, end, pushed.farthest):
-            return HandRun(travel=travel, push=push, pushed=pushed)
-        free = self.loaded.push(push, self.values, contacts=False).farthest
-        return HandRun(travel=travel, push=push, pushed=pushed, without_contacts=free)
+
+    @cached_property
+    def presses(self) -> tuple[HandRun, ...]:
+        """Every joint with limits pressed against both, from there on, where nothing touches."""
+        return tuple(
+            self._press(travel, end, outwards)
+            for travel in self.travels
+            if travel.limited
+            for end, outwards in ((travel.lower, -1.0), (travel.upper, 1.0))
+        )
+
+    def _press(self, travel: Travel, end: float, outwards: float) -> HandRun:
+        effort = self.robot.joint_by_name[travel.joint].effort or np.inf
+        inertia = sum(ratio**2 * self.inertias[name] for name, ratio in self.ratios(travel).items())
+        force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
+        push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force)
+        values = self._values({travel.joint: end})
+        return HandRun(travel=travel, values=values, push=push, pushed=self.loaded.push(push, values, contacts=False))
+
+    @cached_property
+    def speeds(self) -> dict[str, float]:
+        """Every joint at a hand's speed towards the wider side of its range, followers with it [rad/s or m/s]."""
+        speeds = dict.fromkeys(self.loaded.joints, 0.0)
+        for travel in self.travels:
+            up = travel.upper - travel.rest >= travel.rest - travel.lower
+            for name, ratio in self.ratios(travel).items():
+                speeds[name] += ratio * (self.speed(travel) if up else -self.speed(travel))
+        return speeds
+
+    @cached_property
+    def released(self) -> ReleaseRun:
+        """All joints given a push and let go."""
+        return self.loaded.release(self.values, self.speeds, self.settings.release_seconds)
+
+    @cached_property
+    def fall(self) -> float:
+        """Energy of a fall of the whole model by its own size [J]."""
+        masses = [link.inertial.mass for link in self.robot.links if link.inertial is not None]
+        return GRAVITY * float(sum(masses)) * self.size
 
     def arrives(self, travel: Travel, end: float, farthest: float) -> bool:
         """Whether a push got so far that the joint counts as moving to that end [rad or m]."""

@@ -399,6 +399,12 @@ class AsLoadedSettings(StageConfig):
     """The same of slides [m/s]."""
     reach: float
     """Share of what exact geometry leaves free that a pushed joint has to reach."""
+    press: float
+    """In which what presses a joint against its limit would bring it up to the hand's speed, at least [s]."""
+    release_seconds: float
+    """Motion after a push in which energy is looked at [s]."""
+    energy: float
+    """Growth of energy, fraction of the largest kinetic energy."""
 
 
 class AgreementSettings(StageConfig):

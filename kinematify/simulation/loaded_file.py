@@ -119,7 +119,7 @@ class LoadedFile(Protocol):
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
 
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
+    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """Return plain code of the engine that repeats `push` and prints where the joint ends."""
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:

@@ -21,6 +21,7 @@ _LOAD = """import mujoco, numpy as np
 model = mujoco.MjModel.from_xml_path({path!r}); data = mujoco.MjData(model)
 data.qpos[:] = {values}; mujoco.mj_forward(model, data); rest = data.qpos.copy(); push = 0.0
 """
+_NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
 _REST = (
     _LOAD
     + """seen = [data.qpos[{joint}] for _ in range({steps}) if mujoco.mj_step(model, data) is None]
@@ -29,7 +30,7 @@ print(min(seen), max(seen))
 )
 _PUSH = (
     _LOAD
-    + """model.opt.gravity[:] = 0.0; moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
+    + """{off}model.opt.gravity[:] = 0.0; moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
 for _ in range({steps}): slow = {speed!r} - data.qvel[{joint}]; \
 push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
 data.qfrc_applied[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
@@ -41,8 +42,8 @@ print(data.qpos[{joint}])
 )
 _RELEASE = (
     _LOAD
+    + _NO_CONTACTS
     + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel[:] = {speeds}
-model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
 seen = [sum(data.energy) for _ in range({steps}) if mujoco.mj_step(model, data) is None]
 print(seen[0], max(seen))
 """
@@ -164,10 +165,11 @@ class MujocoFile:
         steps = round(seconds / self.time_step)
         return _REST.format(**self._facts(joint, values), steps=steps)
 
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
+    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """See `LoadedFile`."""
         facts = {**vars(push), **self._facts(push.joint, values), "steps": steps}
-        return _PUSH.format(**facts | {"moved": [self.joints.index(name) for name in push.moved]})
+        off = "" if contacts else _NO_CONTACTS
+        return _PUSH.format(**facts | {"moved": [self.joints.index(name) for name in push.moved], "off": off})
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """See `LoadedFile`."""

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.loaded_file import Overlap, Push
 
+
+def _without_contacts(lines: str) -> str:
+    """Code in which links pass through each other."""
+    return lines.replace("p.URDF_USE_SELF_COLLISION", "0")
+
+
 _LOAD = """import pybullet as p
 p.connect(p.DIRECT); p.setGravity(0, 0, -9.81); rest = {values}; push = 0.0
 body = p.loadURDF({path!r}, useFixedBase=True, flags=p.URDF_USE_SELF_COLLISION); \
@@ -25,7 +31,7 @@ body = p.loadURDF({path!r}, useFixedBase=True, flags=p.URDF_USE_SELF_COLLISION);
 """
 _REST = (
     _LOAD
-    + """seen = [p.getJointState(body, {joint})[0] for _ in range({steps}) if p.stepSimulation() is None]
+    + """seen = [p.getJointState(body, {joint})[0] for _ in range({steps}) if not p.stepSimulation()]
 print(min(seen), max(seen))
 """
 )
@@ -44,14 +50,14 @@ print(p.getJointState(body, {joint})[0])
 """
 )
 _RELEASE = (
-    _LOAD.replace("p.URDF_USE_SELF_COLLISION", "0")
+    _without_contacts(_LOAD)
     + """import numpy as np
 [p.resetJointState(body, k, rest[k], v) for k, v in {speeds}.items()]
 [p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k in rest]; links = range(p.getNumJoints(body))
 local = lambda s: np.reshape(p.getMatrixFromQuaternion(s[1]), (3, 3)).T @ s[7]
 energy = lambda: sum(d[0] * (9.81 * s[0][2] + 0.5 * np.dot(s[6], s[6])) + 0.5 * np.dot(d[2], local(s)**2) \
 for d, s in ((p.getDynamicsInfo(body, k), p.getLinkState(body, k, 1, 1)) for k in links))
-seen = [energy()] + [energy() for _ in range({steps}) if p.stepSimulation() is None]
+seen = [energy()] + [energy() for _ in range({steps}) if not p.stepSimulation()]
 print(seen[0], max(seen))
 """
 )
@@ -205,10 +211,11 @@ class PybulletFile:
         """See `LoadedFile`."""
         return _REST.format(**self._facts(joint, values), steps=round(seconds / self.time_step))
 
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int) -> str:
+    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """See `LoadedFile`."""
         moved = zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True)
-        return _PUSH.format(**vars(push) | self._facts(push.joint, values) | {"steps": steps, "moved": list(moved)})
+        facts = vars(push) | self._facts(push.joint, values) | {"steps": steps, "moved": list(moved)}
+        return (_PUSH if contacts else _without_contacts(_PUSH)).format(**facts)
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """See `LoadedFile`."""

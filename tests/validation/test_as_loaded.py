@@ -9,11 +9,13 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.as_loaded import across_engines, as_loaded_words
+from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
 from kinematify.validation.run import validate
@@ -27,16 +29,19 @@ WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 
 
-def told(model: Model, folder: Path, engine: str) -> Told:
-    request = StageRequest(
+def request_of(model: Model, folder: Path) -> StageRequest:
+    return StageRequest(
         urdf=model.write(folder),
         package_dirs=(),
         work=folder,
         settings=load_settings(),
         selected=frozenset(CHECKS),
-        deadline=time.time() + 100.0,
+        deadline=time.process_time() + 100.0,
     )
-    return tell(partial(as_loaded.run, engine=engine), request)
+
+
+def told(model: Model, folder: Path, engine: str) -> Told:
+    return tell(partial(as_loaded.run, engine=engine), request_of(model, folder))
 
 
 def collision(model: Model, name: str, *boxes: Box) -> Model:
@@ -67,6 +72,17 @@ def test_a_drawer_that_jams_is_seen_by_the_code_of_the_report(tmp_path: Path, en
     assert "mm deep in each other" in finding.message
     assert printed(finding.reproduction) == pytest.approx([0.145], abs=0.01)
     assert len((finding.reproduction or "").splitlines()) <= 5 + 7, "five lines, of which the loop is folded"
+
+
+@each_engine
+def test_the_code_of_a_run_at_rest_repeats_it(tmp_path: Path, engine: str) -> None:
+    flap = cabinet().with_part("door", axis=(0.0, 1.0, 0.0), limits=(-1.5, 1.5), mass=2000.0, center=(0.1, 0.0, 0.0))
+    context = AsLoadedContext(request=request_of(flap, tmp_path), engine=engine)
+    (door,) = (travel for travel in context.travels if travel.joint == "door_joint")
+    way = context.way(context.left_alone, door)
+    assert np.ptp(way) > 0.01, "it falls"
+    code = context.loaded.lines_of_rest(door.joint, context.values, context.settings.seconds)
+    assert printed(code) == pytest.approx([way.min(), way.max()], abs=1e-6)
 
 
 @each_engine
@@ -118,6 +134,45 @@ def test_a_drawer_that_is_thrown_out_is_seen_by_the_code_of_the_report(tmp_path:
     assert [item.pair for item in result.results["KV802"].findings] == [("body", "drawer")]
 
 
+def test_limits_that_mujoco_takes_for_none_do_not_hold(tmp_path: Path) -> None:
+    stuck = cabinet().with_part("door", limits=(0.0, 0.0))
+    (finding,) = told(stuck, tmp_path, "mujoco").results["KV805"].findings[:1]
+    assert (finding.severity, finding.joint, finding.limit) == (Severity.ERROR, "door_joint", 0.0)
+    assert abs(printed(finding.reproduction)[0]) > 0.05
+    assert told(stuck, tmp_path, "pybullet").results["KV805"].status is Status.PASS
+
+
+@each_engine
+def test_what_turns_without_end_has_no_limits_to_hold(tmp_path: Path, engine: str) -> None:
+    result = told(cabinet().with_part("door", kind="continuous"), tmp_path, engine)
+    assert result.results["KV805"].status is Status.PASS
+
+
+@each_engine
+def test_negative_damping_gains_energy_as_the_code_of_the_report_shows(tmp_path: Path, engine: str) -> None:
+    result = told(cabinet().with_part("drawer", extra='<dynamics damping="-5"/>'), tmp_path, engine)
+    (finding,) = result.results["KV806"].findings
+    assert finding.severity is Severity.ERROR
+    first, largest = printed(finding.reproduction)
+    assert largest - first == pytest.approx(finding.value, rel=0.2)
+
+
+def test_heavy_tips_on_light_fingers_blow_up_in_pybullet(tmp_path: Path) -> None:
+    """Links without masses weigh 1 kg in PyBullet; nothing else is wrong with such files."""
+    finger = Part(
+        name="finger", boxes=(Box(size=(0.01, 0.01, 0.05)),), parent="palm", kind="revolute", limits=(-1.5, 1.5),
+        mass=0.01, inertia=(1e-6, 1e-6, 1e-6),
+    )  # fmt: skip
+    chain = [replace(finger, name=f"finger{k}", parent=f"finger{k - 1}", at=(0.0, 0.0, 0.05)) for k in (1, 2, 3)]
+    palm = Part(name="palm", boxes=(Box(size=(0.1, 0.1, 0.02)),))
+    fine = Model(parts=(palm, replace(finger, name="finger0"), *chain))
+    assert told(fine, tmp_path, "pybullet").results["KV806"].status is Status.PASS
+    tip = Part(name="tip", boxes=(), parent="finger3", at=(0.0, 0.0, 0.1), mass=1.0, inertia=(1.0, 1.0, 1.0))
+    heavy = Model(parts=(*fine.parts, tip))
+    (finding,) = told(heavy, tmp_path, "pybullet").results["KV806"].findings
+    assert "gains" in finding.message
+
+
 def test_what_an_engine_does_not_open_is_told_with_its_own_words(tmp_path: Path) -> None:
     result = told(cabinet().with_part("drawer", mass=1e-20), tmp_path, "mujoco")
     (finding,) = result.results["KV801"].findings
@@ -127,15 +182,8 @@ def test_what_an_engine_does_not_open_is_told_with_its_own_words(tmp_path: Path)
 
 def test_a_joint_moves_as_far_as_exact_geometry_leaves_free(tmp_path: Path) -> None:
     model = collision(cabinet(), "body", WALL)
-    request = StageRequest(
-        urdf=model.write(tmp_path),
-        package_dirs=(),
-        work=tmp_path,
-        settings=load_settings(),
-        selected=frozenset(CHECKS),
-        deadline=time.time() + 100.0,
-        free_travel={"drawer_joint": (0.0, 0.14), "door_joint": (0.0, 0.3)},
-    )
+    free = {"drawer_joint": (0.0, 0.14), "door_joint": (0.0, 0.3)}
+    request = replace(request_of(model, tmp_path), free_travel=free)
     result = tell(partial(as_loaded.run, engine="mujoco"), request)
     assert result.results["KV804"].status is Status.PASS
 

@@ -250,12 +250,11 @@ def test_coarse_steps_are_told(tmp_path: Path) -> None:
 
 
 def test_growth_of_energy_is_a_finding() -> None:
-    settings = load_settings().engines
-    steps = np.linspace(0.0, 1.0, 50)
+    steps, told_as = np.linspace(0.0, 1.0, 50), {"floor": 0.01, "share": 0.1, "how": "Released"}
     check = OpenCheck(id="KV408", engine="mujoco")
-    find_growth(check, np.stack([10.0 - 5.0 * steps, 5.0 * steps], axis=1), 0.01, settings)
+    find_growth(check, np.stack([10.0 - 5.0 * steps, 5.0 * steps], axis=1), **told_as)
     assert check.findings == []
-    find_growth(check, np.stack([10.0 - 5.0 * steps, 6.0 * steps], axis=1), 0.01, settings)
+    find_growth(check, np.stack([10.0 - 5.0 * steps, 6.0 * steps], axis=1), **told_as)
     assert [f.value for f in check.findings] == [pytest.approx(1.0)]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from kinematify.simulation.loaded_file import Unloadable
 from kinematify.validation.check import OpenCheck, Shared, check
+from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late
 from kinematify.validation.finding import Blame, Severity
@@ -257,7 +258,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
         value=stop,
         limit=push.target,
         unit=travel.unit,
-        reproduction=context.loaded.lines_of_push(push, context.values, run.pushed.steps),
+        reproduction=context.loaded.lines_of_push(push, run.values, run.pushed.steps, contacts=True),
     )
 
 
@@ -276,3 +277,80 @@ def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
         return "without contacts it gets to the end"
     first, second = overlap.links
     return f"there {first} and {second} are {overlap.depth * 1e3:.3g} mm deep in each other"
+
+
+@check(
+    "KV805",
+    title="As loaded: limits hold under load",
+    fails="As loaded: a joint is pressed through its limit",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    engines=_ENGINES,
+    needs=(not_loaded, nothing_moves, late),
+)
+def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
+    """In the untouched file each joint that has limits is pressed against both by as_loaded.force or as_loaded.torque,
+    by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press, the others
+    held, without contacts and gravity. It gives way by no more than as_loaded.still of its range (at least
+    as_loaded.still_angle or as_loaded.still_length).
+
+    Why it matters: A range that an engine does not keep is none: MuJoCo takes limits that are equal for no limits.
+
+    Remedy: Write a lower limit that is less than the upper one, a fixed joint where nothing moves, a plausible mass.
+    """
+    for run in context.presses:
+        travel, end, stop = run.travel, run.values[run.travel.joint], run.pushed.farthest
+        if abs(stop - end) > context.still(travel):
+            unit = "N m" if travel.turns else "N"
+            result.find(
+                f"Pressed with up to {run.push.force:.3g} {unit} against its limit of {end:.4g} {travel.unit} in "
+                f"{context.title}, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
+                f"{' at least' if abs(stop - end) >= abs(run.push.target - end) else ''}.",
+                f"Give {travel.joint} limits that {context.title} keeps (the lower one less than the upper one), or a "
+                "part of plausible mass and inertia; a joint that does not move is a fixed one.",
+                joint=travel.joint,
+                q={travel.joint: stop},
+                value=stop,
+                limit=end,
+                unit=travel.unit,
+                reproduction=context.loaded.lines_of_push(run.push, run.values, run.pushed.steps, contacts=False),
+            )
+
+
+@check(
+    "KV806",
+    title="As loaded: nothing gains energy",
+    fails="As loaded: energy comes out of nothing",
+    severity=Severity.ERROR,
+    blame=Blame.PHYSICS,
+    engines=_ENGINES,
+    follows=NOT_A_BODY,
+    needs=(not_loaded, nothing_moves, late),
+)
+def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
+    """In the untouched file all joints are given a hand's speed and let go for as_loaded.release_seconds, with the
+    friction and damping of the file, without motors and contacts. The sum of kinetic and potential energy never grows
+    by more than as_loaded.energy of the largest kinetic energy.
+
+    Why it matters: What gains energy by itself blows up, sooner or later, with whatever hangs on it.
+
+    Remedy: Write positive damping, and masses and inertia tensors that belong to the shapes, for links without shapes
+    too: PyBullet gives a link without them 1 kg.
+    """
+    run = context.released
+    reproduction = context.loaded.lines_of_release(context.values, context.speeds, context.settings.release_seconds)
+    if run.complaint is not None:
+        result.find(
+            f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
+            "Give every moving link a plausible mass and inertia, and every joint a damping that is not negative.",
+            reproduction=reproduction,
+        )
+        return
+    find_growth(
+        result,
+        run.energy,
+        floor=FLOOR_OF_ENERGY * context.fall,
+        share=context.settings.energy,
+        how=f"Given a push and let go in {context.title}",
+        reproduction=reproduction,
+    )

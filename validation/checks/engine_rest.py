@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _HARDLY = 0.02
 """Motion that is too small to say anything, fraction of the range."""
-_FLOOR_OF_ENERGY = 1e-5
+FLOOR_OF_ENERGY = 1e-5
 """Growth that does not count, fraction of the energy of a fall of the whole model by its own size."""
 _TOLD_PAIRS = 8
 
@@ -116,8 +116,13 @@ def energy_does_not_grow(result: OpenCheck, context: EngineContext) -> None:
     Remedy: Correct the inertia tensors and the overlaps at the start, or reduce the time step.
     """
     run = context.released if context.entry.keeps_energy else context.released_finely
-    floor = _FLOOR_OF_ENERGY * context.prepared.total_mass * GRAVITY * context.physics.size
-    find_growth(result, run.energy, floor, context.settings)
+    find_growth(
+        result,
+        run.energy,
+        floor=FLOOR_OF_ENERGY * context.prepared.total_mass * GRAVITY * context.physics.size,
+        share=context.settings.energy,
+        how="Released without damping",
+    )
 
 
 @engine_check(
@@ -276,26 +281,30 @@ def _find_passive_escape(result: OpenCheck, context: EngineContext, released: Fl
             )
 
 
-def find_growth(result: OpenCheck, energy: FloatArray, floor: float, settings: EngineSettings) -> None:
+def find_growth(
+    result: OpenCheck, energy: FloatArray, *, floor: float, share: float, how: str, reproduction: str | None = None
+) -> None:
     """Add a finding if energy grows.
 
     Args:
         result: Open, of the engine.
-        energy: Potential and kinetic energy of an undamped run [J], shape (steps, 2).
+        energy: Potential and kinetic energy of a run in which nothing is driven [J], shape (steps, 2).
         floor: Growth that does not count [J].
-        settings: Of the engines.
+        share: The same as a fraction of the largest kinetic energy.
+        how: The run in a few words.
+        reproduction: Code that shows it.
     """
     total, kinetic = energy.sum(axis=1), float(energy[:, 1].max())
-    growth = float(np.max(total - total[0]))
+    growth, limit = float(np.max(total - total[0])), max(floor, share * kinetic)
     result.measured |= {"growth_J": max(0.0, growth), "kinetic_J": kinetic}
-    if growth > max(floor, settings.energy * kinetic):
+    if growth > limit:
         result.find(
-            f"Released without damping, the model gains {growth:.3g} J, {growth / max(kinetic, 1e-12):.0%} of its "
-            f"largest kinetic energy.",
+            f"{how}, the model gains {growth:.3g} J, {growth / max(kinetic, 1e-12):.0%} of its largest kinetic energy.",
             "Correct inertia tensors and overlaps at rest, or simulate with a smaller time step.",
             value=growth,
-            limit=max(floor, settings.energy * kinetic),
+            limit=limit,
             unit="J",
+            reproduction=reproduction,
         )
 
 
