@@ -96,6 +96,12 @@ class PhysicsSettings(StageConfig):
     """Largest radius of gyration over the distance of the outermost point."""
     gyration_small: float
     """Smallest value of the same."""
+    copied_links: int
+    """Links with one mass and one inertia from which on they are placeholders where sizes differ."""
+    copied_volume: float
+    """Room of the largest of them over that of the smallest from which on sizes differ."""
+    copied_share: float
+    """Masses below this fraction of the model's are next to nothing on purpose."""
     listed: int
     """More links with such an inertia are one finding."""
     centre_outside: float
@@ -255,6 +261,12 @@ class EvidenceSettings(StageConfig):
     """A parent is doubtful below this share of the quality of the best other contact."""
     unknown_deg: float
     """Angle to every direction that the two bodies show, beyond which an axis is unexplained [deg]."""
+    askew_deg: float
+    """The same, beyond which axes are askew where several are by the same angle [deg]."""
+    askew_spread: float
+    """Difference to the middle of these angles up to which they are the same [deg]."""
+    askew_joints: int
+    """Axes of one model from which on they are several."""
     wrong_deg: float
     """The same, beyond which it is an error if another joint is also clearly better [deg]."""
     clearly_better: float

@@ -220,6 +220,28 @@ def test_a_closed_door_that_turns_into_an_open_body_is_told(tmp_path: Path) -> N
     assert found(flipped(good, "door"), tmp_path / "bad") == {"KV346"}
 
 
+def chest() -> KnownObject:
+    """Three drawers, one above the other, between boards."""
+    boards = [box((0, 0, z), (0.4, 0.3, z + 0.01)) for z in (0.0, 0.11, 0.22, 0.33)]
+    sides = [box((x, 0, 0), (x + 0.01, 0.3, 0.34)) for x in (-0.01, 0.4)]
+    parts = {"body": union(*boards, *sides)}
+    parts |= {f"drawer_{k}": box((0.001, -0.01, 0.11 * k + 0.011), (0.399, 0.28, 0.11 * k + 0.109)) for k in range(3)}
+    joints = [sliding("body", name, (0, -1, 0), (0.2, 0, 0.05), (0, 0.2)) for name in parts if name != "body"]
+    return known_object("chest", parts, *joints)
+
+
+def test_axes_that_are_off_by_the_same_few_degrees_are_one_finding(tmp_path: Path) -> None:
+    known = chest()
+    assert found(known, tmp_path / "good") == set()
+    for drawer_name in ("drawer_0", "drawer_1", "drawer_2"):
+        known = turned(known, drawer_name, 2.5, (1.0, 0.0, 0.3))
+    (finding,) = findings(judged(known, tmp_path / "askew"))
+    assert (finding.check, finding.severity) == ("KV340", Severity.WARNING)
+    assert finding.value == pytest.approx(2.5, abs=0.1)
+    assert all(f"drawer_{k}_joint" in finding.message for k in range(3))
+    assert found(turned(chest(), "drawer_1", 2.5, (1.0, 0.0, 0.3)), tmp_path / "one") == set()
+
+
 def test_a_wrong_parent_is_told_and_nothing_else(tmp_path: Path) -> None:
     (finding,) = findings(judged(with_joint(nested_drawer(), "tray", parent="carcass"), tmp_path))
     assert (finding.check, finding.joint) == ("KV341", "tray_joint")

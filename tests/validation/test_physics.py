@@ -230,6 +230,17 @@ def test_an_inertia_in_another_unit_does_not_fit_the_geometry(good: Path) -> Non
     assert finding.value == pytest.approx(math.sqrt(110.0 / 3.0))
 
 
+def test_one_inertia_for_links_of_different_size_is_a_placeholder(good: Path) -> None:
+    for link in ("body", "door", "knob"):
+        edited(good, f"//link[@name='{link}']/inertial/mass", value="2")
+        edited(good, f"//link[@name='{link}']/inertial/inertia", ixx="0.01", iyy="0.01", izz="0.01")
+    (finding,) = checked(good)["KV210"].findings
+    assert (finding.link, finding.blame) == ("body", Blame.PHYSICS)
+    assert "3 links" in finding.message
+    edited(good, "//link[@name='knob']/inertial/inertia", izz="0.011")
+    assert checked(good)["KV210"].findings == (), "two alike are a pair"
+
+
 @pytest.mark.parametrize(("x", "severity"), [("0.27", None), ("0.75", Severity.WARNING), ("2.7", Severity.ERROR)])
 def test_a_centre_of_mass_outside_the_geometry_is_found(good: Path, x: str, severity: Severity | None) -> None:
     found = counted(edited(good, "//link[@name='door']/inertial/origin", xyz=f"{x} 0 0"))

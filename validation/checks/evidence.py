@@ -1,4 +1,4 @@
-"""KV341 to KV349: does the geometry of two links explain the joint between them?
+"""KV340 to KV349: does the geometry of two links explain the joint between them?
 
 KV341 to KV346 are opinions, for people build doors that no rule has seen: they count only beside an error of fact about
 the same joint, and are one note per joint else (`kinematify.validation.opinions`). One cause, one finding: a joint with
@@ -20,6 +20,42 @@ if TYPE_CHECKING:
     from kinematify.config.validation import EvidenceSettings
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.evidence.case import JointCase
+
+_NAMED = 8
+"""Joints that one finding names."""
+
+
+@check(
+    "KV340",
+    title="The axes run along the parts",
+    fails="Several axes are off the parts by the same few degrees",
+    severity=Severity.WARNING,
+    blame=Blame.KINEMATICS,
+)
+def askew_together(result: OpenCheck, case: JointCase) -> None:
+    """Fewer than evidence.askew_joints axes run between evidence.askew_deg and evidence.unknown_deg off every direction
+    that their bodies show, all by the same angle (evidence.askew_spread). It is one finding, for it has one cause.
+
+    Why it matters: Drawers whose guides are turned by some degrees against their boxes rub, and a policy that was
+    trained with them pulls askew.
+
+    Remedy: Look for one rotation that was written by hand or rounded, in the axes or in the <origin> of the meshes.
+    """
+    askew = case.askew
+    if len(askew) < case.settings.askew_joints or askew[0] is not case.measures:
+        return
+    names = [item.joint.source for item in askew]
+    angle = float(np.median([item.line.angle for item in askew]))
+    _doubt(
+        result,
+        case,
+        f"The axes of {len(askew)} joints run about {angle:.2g} deg off every direction that their bodies show: "
+        f"{', '.join(names[:_NAMED])}{', ...' if len(names) > _NAMED else ''}.",
+        "Turn the axes, or the meshes, by that angle; one rotation that was rounded or written by hand explains all.",
+        value=angle,
+        limit=case.settings.askew_deg,
+        unit="deg",
+    )
 
 
 @check(

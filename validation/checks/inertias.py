@@ -1,7 +1,8 @@
-"""KV204, KV205, KV207 and KV208: inertia tensors and centres of mass."""
+"""KV204, KV205, KV207, KV208 and KV210: inertia tensors and centres of mass."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -156,6 +157,48 @@ def radii_of_gyration(result: OpenCheck, physics: Physics) -> None:
             limit=factor * misfit.farthest,
             unit="m",
             line=misfit.inertial.line,
+        )
+
+
+@check(
+    "KV210",
+    title="Links of different size have different inertias",
+    fails="Links of different size have one mass and one inertia",
+    severity=Severity.WARNING,
+    blame=Blame.PHYSICS,
+    needs=(something_weighs,),
+)
+def copied_inertias(result: OpenCheck, physics: Physics) -> None:
+    """No `copied_links` links or more have the same mass and the same principal moments of inertia while the largest of
+    them takes up `copied_volume` times as much room as the smallest. Masses below `copied_share` of the model's are
+    left out: sensors and frames are given next to nothing on purpose.
+
+    Why it matters: They are placeholders: whatever is simulated with them, torques above all, is not this machine's.
+
+    Remedy: Compute mass and inertia of each link from its geometry and its material, or take them from the maker's
+    data.
+    """
+    settings = physics.settings
+    least = settings.copied_share * sum(body.mass for body in physics.bodies)
+    alike: dict[tuple[float, ...], list[tuple[Link, float]]] = defaultdict(list)
+    for body, link, inertial in _weighed(physics):
+        if inertial.mass >= least and link.name in body.rooms:
+            moments = (float(f"{value:.5e}") for value in np.linalg.eigvalsh(inertial.tensor))
+            alike[inertial.mass, *moments].append((link, float(body.rooms[link.name].hull.volume)))
+    for (mass, *_), links in alike.items():
+        links.sort(key=lambda item: item[1])
+        (small, least_room), (large, most_room) = links[0], links[-1]
+        ratio = most_room / least_room
+        if len(links) < settings.copied_links or ratio < settings.copied_volume:
+            continue
+        result.find(
+            f"{len(links)} links have the same mass of {mass:g} kg and the same inertia, from {small.name} to "
+            f"{large.name}, which takes up {ratio:.3g} times as much room: they look like placeholders.",
+            "Compute mass and inertia of each link from its geometry.",
+            link=large.name,
+            value=ratio,
+            limit=settings.copied_volume,
+            line=None if large.inertial is None else large.inertial.line,
         )
 
 

@@ -15,7 +15,7 @@ from kinematify.validation.evidence.opening import Contact
 from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
     from typing import Any
 
     from kinematify.config.validation import EvidenceSettings
@@ -36,6 +36,8 @@ class JointCase:
     bodies: Bodies
     measures: JointMeasures
     settings: EvidenceSettings
+    every: Sequence[JointMeasures]
+    """Of all joints of the model that were measured, in the order of the description."""
 
     @property
     def linkage(self) -> bool:
@@ -85,6 +87,13 @@ class JointCase:
     def unexplained(self) -> bool:
         """The axis runs along no direction that the two bodies show."""
         return self.lines_judged and self.measures.line.angle > self.settings.unknown_deg
+
+    @property
+    def askew(self) -> list[JointMeasures]:
+        """Joints whose axes run along what the bodies show but for the same few degrees."""
+        found = [item for item in self.every if self.settings.askew_deg < item.line.angle <= self.settings.unknown_deg]
+        middle = np.median([item.line.angle for item in found]) if found else 0.0
+        return [item for item in found if abs(item.line.angle - middle) <= self.settings.askew_spread]
 
     @property
     def misplaced(self) -> bool:

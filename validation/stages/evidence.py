@@ -30,11 +30,15 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     if bodies is None or not bodies.truth.joints:
         recorder.skip(checks, "no joint moves a body with geometry against another one")
         return
-    cases = []
+    every = []
     for measures in measure_joints(bodies, request.settings.evidence, seed=seed):
-        cases.append(JointCase(bodies=bodies, measures=measures, settings=request.settings.evidence))
+        every.append(measures)
         if request.remaining == 0.0:
             break
+    cases = [
+        JointCase(bodies=bodies, measures=measures, settings=request.settings.evidence, every=every)
+        for measures in every
+    ]
     left = len(bodies.truth.joints) - len(cases)
     doubts: dict[str | None, set[str]] = defaultdict(set)
     for check in checks:
