@@ -28,6 +28,12 @@ if TYPE_CHECKING:
 # logging still hears it.
 logging.getLogger("trimesh").addHandler(logging.NullHandler())
 
+TO_Z_UP = {
+    "X_UP": np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]),
+    "Y_UP": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
+}
+"""Axis that a COLLADA file may state as the one that points up -> rotation that turns it to z."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RawMesh:
@@ -41,13 +47,16 @@ class RawMesh:
     """Shape (F, 3); every index is below V."""
     unit: str = ""
     """Unit that the file states, where it is neither metres nor converted to them."""
+    up: str = ""
+    """Key of `TO_Z_UP` if the file states such an axis, which was not heeded."""
 
 
 def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
     """Read a mesh file: one mesh per node of a scene, group of an OBJ, or object of a 3MF, transforms applied.
 
-    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is ignored: so does RViz,
-    in which robots are checked by eye (Pinocchio and yourdfpy ignore the unit too). Unreferenced vertices may remain.
+    COLLADA lengths are turned into metres by the unit that the file states, and its up axis is told but ignored: so
+    does RViz, in which robots are checked by eye (Pinocchio and yourdfpy ignore the unit too). Unreferenced vertices
+    may remain.
 
     Args:
         path: A file with one of `MESH_SUFFIXES`.
@@ -86,6 +95,7 @@ def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
         name=name,
         vertices=np.concatenate([mesh.vertices for mesh in meshes]),
         faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
+        up=meshes[0].up if meshes else "",
     )
 
 
@@ -150,7 +160,7 @@ def _is_empty_stl(path: Path) -> bool:
 
 def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh]) -> Iterator[RawMesh]:
     suffix = path.suffix.lower()
-    unit = _collada_unit(path) if suffix == ".dae" else 1.0
+    unit, up = _collada_asset(path) if suffix == ".dae" else (1.0, "")
     for node in scene.graph.nodes_geometry:
         transform, key = scene.graph[node]
         geometry = scene.geometry[key]
@@ -159,7 +169,7 @@ def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh]) -> Iterator[Raw
         vertices = np.asarray(geometry.vertices, dtype=np.float64)
         faces = np.asarray(geometry.faces, dtype=np.int64)
         stated = str(geometry.metadata.get("units", "")) if suffix == ".3mf" else ""
-        yield _placed(RawMesh(name=str(node), vertices=vertices, faces=faces, unit=stated), transform, unit)
+        yield _placed(RawMesh(name=str(node), vertices=vertices, faces=faces, unit=stated, up=up), transform, unit)
 
 
 def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
@@ -171,14 +181,15 @@ def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
     return replace(mesh, vertices=vertices, faces=mesh.faces[:, order])
 
 
-def _collada_unit(path: Path) -> float:
-    """Metres per unit as stated in the asset element; 1 where it is silent."""
+def _collada_asset(path: Path) -> tuple[float, str]:
+    """Metres per unit and the axis that points up as stated in the asset element; 1 and empty where it is silent."""
     from collada import Collada, DaeError  # noqa: PLC0415  # only COLLADA files need it
 
     with path.open("rb") as file:
-        document = Collada(file, ignore=[DaeError])
-    unit = document.assetInfo.unitmeter
-    return 1.0 if unit is None else float(unit)
+        stated = Collada(file, ignore=[DaeError]).assetInfo
+    return 1.0 if stated.unitmeter is None else float(
+        stated.unitmeter
+    ), stated.upaxis if stated.upaxis in TO_Z_UP else ""
 
 
 _READERS = {".obj": _read_obj, ".glb": _read_gltf, ".gltf": _read_gltf}

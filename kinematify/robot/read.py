@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
+from kinematify.robot.up_axis import upright_reading
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_numbers import line_of, number, optional_number, origin_transform, vector
 from kinematify.robot.urdf_text import parse_description
@@ -33,7 +35,8 @@ def read_robot(path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geome
 
     ``package://NAME/...`` is looked up in `package_dirs` (each a package or a folder of packages), then in the folders
     above the URDF. Floating and planar joints stand for a body that is free in the world: above the first geometry they
-    are read as fixed, elsewhere they are refused. A revolute joint without limits is continuous. Each such reading is a
+    are read as fixed, elsewhere they are refused. A revolute joint without limits is continuous. COLLADA meshes that
+    state another axis than z as the one that points up are turned where links meet only then. Each such reading is a
     note in the result.
 
     Args:
@@ -66,13 +69,21 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
     _check_mimics(joints)
     robot = Robot(
         name=element.get("name") or path.stem,
-        links=tuple(_link(item, source, geometry) for item in element.findall("link")),
+        links=_links(element, source, geometry),
         joints=joints,
         path=path.resolve(),
         notes=tuple(note for joint in joints if (note := _note(joint))),
     )
+    if source.states_up_axis:
+        robot = upright_reading(
+            robot, replace(robot, links=_links(element, replace(source, heeds_up_axis=True), geometry))
+        )
     _check_free_joints(robot, [joint for joint in joints if joint.declared_kind in _FREE])
     return robot
+
+
+def _links(element: _Element, source: GeometrySource, geometry: Geometry) -> tuple[Link, ...]:
+    return tuple(_link(item, source, geometry) for item in element.findall("link"))
 
 
 def _link(element: _Element, source: GeometrySource, geometry: Geometry) -> Link:

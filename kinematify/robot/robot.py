@@ -67,6 +67,18 @@ class Shape:
         object.__setattr__(self, "T_link_shape", read_only(self.T_link_shape, np.float64))
 
 
+@dataclass(frozen=True, kw_only=True)
+class UpAxis:
+    """How meshes were read whose files state that another axis than z points up."""
+
+    heeded: bool
+    """Whether they were turned upright."""
+    gap_ignored: float
+    """Mean gap at rest between links that a joint connects, if it is ignored [m]."""
+    gap_heeded: float
+    """The same if it is heeded [m]."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Inertial:
     """Mass properties of a link, expressed in the link frame."""
@@ -176,6 +188,8 @@ class Robot:
     """The URDF file, absolute; the working directory for what was read from none."""
     notes: tuple[str, ...] = ()
     """What was read with a meaning that the document does not state plainly, one sentence each."""
+    up_axis: UpAxis | None = None
+    """How an up axis that meshes state was read; None where none states another one than z."""
 
     @cached_property
     def link_by_name(self) -> dict[str, Link]:

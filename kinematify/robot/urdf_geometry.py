@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import AssemblyError, DescriptionError
-from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
+from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.robot import LinkMesh, Shape
 from kinematify.robot.urdf_numbers import line_of, number, origin_transform, vector
@@ -38,6 +38,8 @@ class GeometrySource:
     package_dirs: tuple[Path, ...]
     """Folders that are packages, or hold them."""
     cache: dict[Path, RawMesh]
+    heeds_up_axis: bool = False
+    """Whether meshes are turned upright whose files state that another axis than z points up."""
 
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
@@ -62,9 +64,11 @@ class GeometrySource:
         scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
         # A mirroring scale turns the triangles inside out.
         order = [0, 2, 1] if np.prod(scale) < 0 else [0, 1, 2]
+        turned = self.heeds_up_axis and mesh.up
+        vertices = mesh.vertices @ TO_Z_UP[mesh.up].T if turned else mesh.vertices
         return Shape(
             mesh=LinkMesh(
-                vertices=(mesh.vertices * scale) @ transform[:3, :3].T + transform[:3, 3], faces=mesh.faces[:, order]
+                vertices=(vertices * scale) @ transform[:3, :3].T + transform[:3, 3], faces=mesh.faces[:, order]
             ),
             file=self.resolved(shape.get("filename") or "", where),
             scale=scale,
@@ -81,6 +85,11 @@ class GeometrySource:
             except AssemblyError as error:
                 raise DescriptionError(f"The mesh of {where} cannot be used. {error}") from error
         return self.cache[path]
+
+    @property
+    def states_up_axis(self) -> bool:
+        """Whether a mesh that was read states that another axis than z points up."""
+        return any(mesh.up for mesh in self.cache.values())
 
     def resolved(self, filename: str, where: str) -> Path:
         """Return the mesh file that a document names; see `kinematify.robot.mesh_paths.find_mesh`.

@@ -92,6 +92,27 @@ def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit:
     np.testing.assert_allclose(found, np.multiply(unit, [[0, 0, 0], [1, 2, 3]]), atol=1e-6)
 
 
+LYING = """<robot name="stack">{links}
+  <joint name="turn" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0 0 {height}"/></joint>
+</robot>"""
+
+
+@pytest.mark.parametrize(("height", "heeded"), [(3.0, True), (1.0, False)])
+def test_collada_up_axis_is_heeded_where_links_meet_only_then(tmp_path: Path, height: float, heeded: bool) -> None:
+    text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 3, 1]]).export(file_type="dae").decode()
+    assert "<up_axis>Y_UP</up_axis>" in text
+    (tmp_path / "m.dae").write_text(text)
+    links = "".join(link(name, visual('<mesh filename="m.dae"/>')) for name in "ab")
+    (tmp_path / "stack.urdf").write_text(LYING.format(links=links, height=height))
+    robot = read_robot(tmp_path / "stack.urdf")
+    assert robot.up_axis is not None
+    assert robot.up_axis.heeded is heeded
+    first = robot.links[0].meshes[0].vertices
+    expected = [[0, -1, 0], [1, 0, 3]] if heeded else [[0, 0, 0], [1, 3, 1]]
+    np.testing.assert_allclose([first.min(axis=0), first.max(axis=0)], expected, atol=1e-6)
+    assert any("up axis" in note for note in robot.notes) is heeded
+
+
 def test_collada_axes_agree_with_pinocchio(tmp_path: Path) -> None:
     pin = pytest.importorskip("pinocchio")
     text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]]).export(file_type="dae").decode()

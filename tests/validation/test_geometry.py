@@ -163,6 +163,33 @@ def test_what_another_joint_can_clear_is_a_note(tmp_path: Path) -> None:
     assert "unless another joint has moved out of the way" in note.message
 
 
+def arm(limits: tuple[float, float]) -> Model:
+    """Two thin arms on a block: the upper one turns on top of it, the fore one folds down over the edge."""
+    boxes, up, across = (Box(size=(0.4, 0.05, 0.02), at=(0.22, 0.0, 0.01)),), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
+    return Model(
+        parts=(
+            Part(name="base", boxes=(Box(size=(0.2, 0.2, 0.24)),)),
+            Part(name="upper", parent="base", kind="continuous", at=(0.0, 0.0, 0.12), axis=up, boxes=boxes),
+            Part(
+                name="fore",
+                parent="upper",
+                kind="revolute",
+                at=(0.42, 0.0, 0.0),
+                axis=across,
+                limits=limits,
+                boxes=boxes,
+            ),
+        )
+    )
+
+
+def test_a_chain_that_folds_onto_itself_is_a_note(tmp_path: Path) -> None:
+    assert "KV311" not in found(arm((0.0, 2.7)), tmp_path)
+    (note,) = notes(arm((0.0, 2.7)), tmp_path, "KV311")
+    assert (note.joint, note.pair) == ("fore_joint", ("base", "fore"))
+    assert "the chain of joints between them reaches itself" in note.message
+
+
 def test_a_range_beyond_the_free_travel_gets_the_measured_end(tmp_path: Path) -> None:
     finding = only(found(cabinet().with_part("door", limits=(0.0, 5.2)), tmp_path), "KV312")
     assert (finding.joint, finding.severity, finding.blame) == ("door_joint", Severity.ERROR, Blame.KINEMATICS)

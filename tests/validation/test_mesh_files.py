@@ -211,3 +211,22 @@ def test_a_unit_that_a_file_states_is_named(cupboard: Path) -> None:
     change(cupboard, "body.obj", "body.3mf")
     _, results = check_model(cupboard)
     assert [f.link for f in results["KV159"].findings] == ["body"]
+
+
+LYING = """<robot name="poles">
+  <link name="low"><visual><geometry><mesh filename="pole.dae"/></geometry></visual></link>
+  <link name="high"><visual><geometry><mesh filename="pole.dae"/></geometry></visual></link>
+  <joint name="turn" type="continuous">
+    <origin xyz="0 0 3"/><parent link="low"/><child link="high"/><axis xyz="0 0 1"/>
+  </joint>
+</robot>"""
+
+
+def test_meshes_that_meet_only_with_the_up_axis_that_they_state_are_one_finding(tmp_path: Path) -> None:
+    (tmp_path / "model.urdf").write_text(LYING)
+    trimesh.creation.box(bounds=[[0, 0, 0], [1, 3, 1]]).export(tmp_path / "pole.dae")  # states Y_UP
+    model, results = check_model(tmp_path / "model.urdf")
+    assert [(f.check, f.severity) for f in bad(results)] == [("KV159", Severity.WARNING)]
+    assert "It is heeded here" in results["KV159"].findings[0].message
+    assert model is not None
+    assert float(model.links[0].meshes[0].vertices[:, 2].max()) == pytest.approx(3.0)

@@ -230,11 +230,12 @@ def inward_faces(result: OpenCheck, look: MeshLook) -> None:
     "KV159",
     title="Meshes state neither unit nor axes",
     fails="Meshes state a unit or axes that readers treat differently",
-    severity=Severity.NOTE,
+    severity=Severity.WARNING,
     blame=Blame.ASSET,
 )
 def stated_units(result: OpenCheck, look: MeshLook) -> None:
-    """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they heed it.
+    """Meshes that state a unit or an up axis of their own are named, because readers differ in whether they heed it. It
+    is a warning where the links of the model meet only if the up axis is heeded; then it is heeded in all that follows.
 
     Why it matters: The same file has another size or lies on its side in another simulator.
 
@@ -246,15 +247,31 @@ def stated_units(result: OpenCheck, look: MeshLook) -> None:
                 f"The mesh {file.called} states the unit {', '.join(sorted(file.units))}, which URDF readers ignore: "
                 "its numbers are taken for metres.",
                 "Write the factor to metres as its scale, or export it in metres.",
+                severity=Severity.NOTE,
                 link=file.first.link,
                 line=file.first.line,
             )
     collada = [file for file in look.files if file.path.suffix.lower() == ".dae"]
-    if collada:
+    lying = [file for file in collada if file.mesh is not None and file.mesh.up]
+    reading = look.model.up_axis
+    if reading is not None and reading.heeded:
+        result.find(
+            f"{len(lying)} COLLADA meshes, such as {lying[0].called}, state an up axis other than z, and the links "
+            f"meet only where that is heeded: gaps of {reading.gap_ignored * 1e3:.3g} mm on average close to "
+            f"{reading.gap_heeded * 1e3:.3g} mm. It is heeded here; RViz and others ignore it.",
+            "Export these meshes with z up.",
+            link=lying[0].first.link,
+            line=lying[0].first.line,
+            value=reading.gap_ignored,
+            limit=reading.gap_heeded,
+            unit="m",
+        )
+    elif collada:
         result.find(
             f"COLLADA meshes: {len(collada)}. Readers differ in whether they heed the unit and the up axis that these "
             "state; here the unit is heeded and the up axis is not, as in RViz.",
             "Export OBJ or STL in metres with z up to be sure.",
+            severity=Severity.NOTE,
             link=collada[0].first.link,
             line=collada[0].first.line,
             value=len(collada),

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from kinematify.validation.geometry.look import JointMotion
 
 
+_LIMBS = 2
+"""Bodies with more joints between them stand on limbs: two parts of a cabinet have two."""
+
+
 @check(
     "KV310",
     title="A joint does not drive its child into its parent",
@@ -91,8 +95,8 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
 )
 def into_others(result: OpenCheck, motion: JointMotion) -> None:
     """While each joint moves alone over its range, bodies that are no neighbours do not meet. If another joint can
-    clear the way (a door before the drawer behind it), it is a note, and so is a chain that folds onto itself beyond
-    half of the joint's way, as arms and fingers do.
+    clear the way (a door before the drawer behind it), it is a note. So is what arms, legs and fingers do: a chain
+    that folds onto itself, or two limbs that meet, after the joint was free over geometry.early of its range.
 
     Why it matters: Parts that always meet hang on the wrong parent, or the range is too wide.
 
@@ -121,7 +125,7 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
             result,
             motion,
             worst,
-            f"{begin}: the chain folds onto itself.{more}",
+            f"{begin}: the chain of joints between them reaches itself.{more}",
             "Nothing to do; a planner must keep them apart.",
             severity=Severity.NOTE,
         )
@@ -137,10 +141,13 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
 
 
 def _folds(motion: JointMotion, meeting: Meeting) -> bool:
-    """Whether a body meets one that carries it, with others between them, on the second half of the joint's way."""
-    rest = motion.sweep.travel.rest
-    way = motion.side(1.0 if meeting.first > rest else -1.0).declared - rest
-    return motion.scene.carries(meeting.pair) and abs(meeting.first - rest) > 0.5 * abs(way)
+    """Whether a chain of joints reaches itself, and not at once.
+
+    One body carries the other with others between them, or both stand on limbs of their own.
+    """
+    travel, scene = motion.sweep.travel, motion.scene
+    chain = scene.carries(meeting.pair) or len(scene.between(meeting.pair)) > _LIMBS
+    return chain and abs(meeting.first - travel.rest) > scene.settings.early * travel.range
 
 
 @check(
