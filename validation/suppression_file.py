@@ -7,6 +7,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +16,7 @@ import yaml
 
 from kinematify.errors import InputError
 from kinematify.validation.checks import CHECKS, find_check
+from kinematify.validation.finding import Severity
 from kinematify.validation.suppression import Suppression
 
 if TYPE_CHECKING:
@@ -23,6 +26,9 @@ if TYPE_CHECKING:
     from kinematify.validation.report import ValidationReport
 
 _KEYS = ("check", "where", "reason")
+_HEAD = "# Findings that do not count. Mend the model where one is right; where it is not, write why as its reason.\n"
+_SPECIAL = re.compile(r"([\[*?])")
+"""Characters of names that mean something in a pattern."""
 _FORM = "Each rule is `- check: KV302`, `where: NAME` (joint or link, * if left out) and `reason: WHY`."
 
 
@@ -44,6 +50,28 @@ def unused_suppressions(rules: Sequence[Suppression], reports: Sequence[Validati
     """Return the rules that cover no finding of any report: what they were made for is gone, or misspelt."""
     findings = [finding for report in reports for finding in report.findings]
     return tuple(rule for rule in rules if not any(rule.covers(finding) for finding in findings))
+
+
+def suggested_suppressions(reports: Sequence[ValidationReport]) -> tuple[Suppression, ...]:
+    """Return rules that accept every error and warning that counts, each once, where it was found.
+
+    Their reason is what was found: a person has still to judge it. The same in another place counts as before.
+    """
+    rules: dict[tuple[str, str], Suppression] = {}
+    for report in reports:
+        for finding in report.counted:
+            if finding.severity is not Severity.NOTE:
+                place = finding.joint or finding.link or (finding.pair[0] if finding.pair else None)
+                where = "*" if place is None else _SPECIAL.sub(r"[\1]", place)
+                reason = f"not judged yet: {finding.message}"
+                rules.setdefault((finding.check, where), Suppression(check=finding.check, where=where, reason=reason))
+    return tuple(rules.values())
+
+
+def suppressions_text(rules: Sequence[Suppression]) -> str:
+    """Return rules as the text of a file that `load_suppressions` reads."""
+    listed = [{"check": rule.check, "where": rule.where, "reason": rule.reason} for rule in rules]
+    return _HEAD + (yaml.safe_dump(listed, sort_keys=False, allow_unicode=True, width=math.inf) if listed else "")
 
 
 def _parsed(path: Path) -> Any:

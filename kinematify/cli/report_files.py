@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.validation.outcome import Outcome
+    from kinematify.validation.suppression import Suppression
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +27,8 @@ class ReportFiles:
     junit: Path | None
     sarif: Path | None
     html: Path | None
+    accept: Path | None = None
+    """Rules that accept what counts now."""
 
     @property
     def paths(self) -> dict[str, Path]:
@@ -35,6 +38,7 @@ class ReportFiles:
             "--junit": self.junit,
             "--sarif": self.sarif,
             "--html": self.html,
+            "--suggest-accept": self.accept,
         }
         return {option: path for option, path in wanted.items() if path is not None}
 
@@ -55,26 +59,36 @@ class ReportFiles:
             raise OutputError(f"Two of {', '.join(self.paths)} name the same file. Give each report its own.")
 
     def write(
-        self, outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str] | None = None
+        self,
+        outcomes: Sequence[Outcome],
+        pictures: Mapping[str, bytes],
+        scenes: Mapping[str, str] | None = None,
+        rules: Sequence[Suppression] = (),
     ) -> None:
-        """Write what was asked for; see `as_html` for pictures and scenes.
+        """Write what was asked for; see `as_html` for pictures and scenes, `rules` are those that hold already.
 
         Raises:
             OutputError: A file cannot be written.
         """
-        texts = self._texts(outcomes, pictures, scenes or {})
+        texts = self._texts(outcomes, pictures, scenes or {}, rules)
         for option, path in self.paths.items():
             _write(option, path, texts[option])
         if self.json == "-":
             click.echo(texts["--json"], nl=False)
 
     def _texts(
-        self, outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str]
+        self,
+        outcomes: Sequence[Outcome],
+        pictures: Mapping[str, bytes],
+        scenes: Mapping[str, str],
+        rules: Sequence[Suppression],
     ) -> dict[str, str]:
         from kinematify.validation.formats.html import as_html
         from kinematify.validation.formats.json_lines import as_json_text
         from kinematify.validation.formats.junit import as_junit
         from kinematify.validation.formats.sarif import as_sarif
+        from kinematify.validation.outcome import Unusable
+        from kinematify.validation.suppression_file import suggested_suppressions, suppressions_text
 
         texts = {}
         if self.json:
@@ -85,6 +99,9 @@ class ReportFiles:
             texts["--sarif"] = as_sarif(outcomes)
         if self.html is not None:
             texts["--html"] = as_html(outcomes, pictures, scenes)
+        if self.accept is not None:
+            reports = [outcome for outcome in outcomes if not isinstance(outcome, Unusable)]
+            texts["--suggest-accept"] = suppressions_text((*rules, *suggested_suppressions(reports)))
         return texts
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         "kinematify validate model.urdf --html report.html --sarif report.sarif",
         "kinematify validate robot.urdf --package-dir ~/ros/src --engines mujoco,pinocchio",
         "kinematify validate model.urdf --checks 'KV3*,KV401' --skip KV305 --budget 10",
+        "kinematify validate model.urdf --suggest-accept accepted.yaml",
         "kinematify validate model.urdf --suppress accepted.yaml --json - > answer.json",
         "kinematify validate cabinet.urdf --task pull",
         "kinematify validate cup.urdf --task pour --into bowl.urdf",
@@ -47,6 +48,12 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--suppress", type=click.Path(path_type=Path), metavar="FILE", help="YAML list of accepted findings with reasons."
+)
+@click.option(
+    "--suggest-accept",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write such a list of what counts now, to be judged; with it as --suppress the models stay quiet.",
 )
 @click.option(
     "--budget",
@@ -107,6 +114,7 @@ def command(
     skip: str | None,
     engines: str,
     suppress: Path | None,
+    suggest_accept: Path | None,
     budget: float | None,
     config: str,
     seed: int | None,
@@ -143,7 +151,7 @@ def command(
     from kinematify.validation.models import find_models
     from kinematify.validation.suppression_file import load_suppressions
 
-    files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html)
+    files = ReportFiles(json=json_to, junit=junit, sarif=sarif, html=html, accept=suggest_accept)
     files.check()
     options = TaskOptions(
         task=task, robot=robot, tool=tool, gripper=gripper, grasp=grasp, base=base, scale=scale, films=films, into=into
@@ -166,7 +174,7 @@ def command(
             run.all(progress)
     except KeyboardInterrupt:
         run.interrupted = True
-    files.write(run.outcomes, run.pictures, run.scenes)
+    files.write(run.outcomes, run.pictures, run.scenes, run.rules)
     run.say(quiet=json_to == "-")
     return run.exit_status
 

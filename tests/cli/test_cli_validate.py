@@ -22,6 +22,7 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 from kinematify.validation.plan import keys
 from kinematify.validation.report import ValidationReport
+from kinematify.validation.suppression_file import load_suppressions
 from tests.reports import add_checks, finding, full_report, report, result
 
 USUAL = [check for check in CHECKS.values() if not check.id.startswith(("KV7", "KV9"))]
@@ -302,6 +303,31 @@ def test_suppressions_reach_the_run_and_useless_ones_are_named(
     assert run(["validate", str(chest), "--suppress", str(tmp_path / "accepted.yaml")]) == 0
     assert [rule.where for rule in answered["asked"]["suppressions"]] == ["door"]
     assert "cover no finding and can go: KV396 at door" in capsys.readouterr().err
+
+
+def test_a_model_stays_quiet_with_the_rules_that_were_suggested_for_it(
+    chest: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    accepted = str(tmp_path / "accepted.yaml")
+    chest.write_text(
+        CHEST.replace('upper="1.5"', 'upper="90"')
+        .replace('name="lid"', 'name="lid[1]"')
+        .replace('link="lid"', 'link="lid[1]"')
+    )  # degrees, and a name that is a pattern
+    words = ["validate", str(chest), "--engines", "none", "--checks", "KV1*,KV2*"]
+    assert run([*words, "--suggest-accept", accepted]) == 1
+    rules = load_suppressions(Path(accepted))
+    assert {rule.check for rule in rules} >= {"KV220"}
+    assert all(rule.reason.startswith("not judged yet: ") for rule in rules)
+    capsys.readouterr()
+    again = ["--suppress", accepted, "--suggest-accept", accepted, "--json", "-"]
+    assert run([*words, *again]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["verdict"] == "pass"
+    assert all(item["suppressed"] for item in told["findings"] if item["severity"] != "note")
+    assert load_suppressions(Path(accepted)) == rules, "rules that hold are kept, and there is nothing to add"
+    chest.write_text(chest.read_text().replace('<mass value="2"/>', '<mass value="-2"/>', 1))
+    assert run([*words, "--suppress", accepted]) == 1, "what is new counts"
 
 
 @pytest.mark.parametrize(
