@@ -1,4 +1,4 @@
-"""`kinematify generate`: a sentence or a category becomes an exact model; an image parts, and the model inferred."""
+"""`kinematify generate`: a sentence, category or blueprint becomes an exact model; an image parts, then a model."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from kinematify.cli.table import format_table
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.cli.generation import Generation
+    from kinematify.cli.generation import Generation, Requested
     from kinematify.cli.provided import ProvidedGeneration
 
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         'kinematify generate --text "a kitchen cabinet with two doors above three drawers, 80 cm wide" -o out/cabinet',
         "kinematify generate --category cabinet --set doors=2 --set drawers=3 --set handle=knob -o out/c2",
         'kinematify generate --text "a chest of drawers, half open" --seed 7 -o out/chest',
+        "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
         "kinematify generate --list --category cabinet",
         "kinematify generate --gallery docs",
@@ -39,6 +40,12 @@ if TYPE_CHECKING:
 @click.option("--text", metavar="SENTENCE", help="What to build, in English.")
 @click.option("--category", metavar="NAME", help="What to build, by category; see --list.")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="A parameter of the category, repeatable.")
+@click.option(
+    "--blueprint",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="What to build, as YAML or JSON: parts made of primitives, and joints.",
+)
 @click.option("--corpus", type=click.IntRange(min=1), metavar="N", help="N objects of all categories, as a benchmark.")
 @click.option("--seed", type=int, help="Draw what is not asked for; without it the defaults are taken.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
@@ -88,6 +95,7 @@ def command(
     text: str | None,
     category: str | None,
     settings: tuple[str, ...],
+    blueprint: Path | None,
     corpus: int | None,
     seed: int | None,
     listing: bool,
@@ -111,7 +119,7 @@ def command(
     no_validation: bool,
     json_to: str | None,
 ) -> int:
-    """Build what a sentence or a category asks for, with its exact joints, and validate it.
+    """Build what a sentence, a category or a blueprint asks for, with its exact joints, and validate it.
 
     What is asked for and cannot be built (an object, a part, a count, a side, a size, a colour) is named, and it ends
     with 2; --lenient builds the rest.
@@ -130,7 +138,6 @@ def command(
     """
     from kinematify.cli.generation import Generation
     from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
-    from kinematify.generate.procedural.request import from_category, from_text
 
     if listing:
         click.echo(_parameters(category) if category else _categories())
@@ -144,9 +151,9 @@ def command(
     if source is not None:
         if inferred:
             raise click.UsageError("What a --source makes is always inferred. Leave --infer out.")
-        if category is not None or settings:
+        if category is not None or settings or blueprint is not None:
             raise click.UsageError(
-                "--category and --set belong to objects built by rules. Leave --source out for those."
+                "--category, --set and --blueprint belong to objects built by rules. Leave --source out for those."
             )
         asked = ProvidedOptions(
             text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
@@ -156,15 +163,18 @@ def command(
             ProvidedGeneration(asked, _needed(out), not no_preview, not no_validation, collision), force, json_to
         )
     _refuse_without_source(images, program, time_limit, budget, record, replay, resend)
-    if (text is None) == (category is None):
-        raise click.UsageError("Give either --text or --category (or --corpus, or --list to see what there is).")
+    if (text is not None) + (category is not None) + (blueprint is not None) != 1:
+        raise click.UsageError(
+            "Give either --text, --category or --blueprint (or --corpus, or --list to see what there is)."
+        )
+    if blueprint is not None and (settings or seed is not None):
+        raise click.UsageError("A --blueprint says everything: --set and --seed have no effect. Leave them out.")
     if settings and text is not None:
         raise click.UsageError("--set belongs to --category. Say it in the text, or name the category instead.")
     if lenient and text is None:
         raise click.UsageError("--lenient is about the words of --text. Leave it out.")
-    request = from_text(text, lenient=lenient) if text is not None else from_category(category or "", _pairs(settings))
     generation = Generation(
-        request,
+        _requested(text, category, settings, blueprint, lenient=lenient),
         seed,
         _needed(out),
         preview=not no_preview,
@@ -173,6 +183,17 @@ def command(
         collision=collision,
     )
     return _run(generation, force, json_to)
+
+
+def _requested(
+    text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None, *, lenient: bool
+) -> Requested:
+    from kinematify.generate.blueprint_file import WrittenBlueprint
+    from kinematify.generate.procedural.request import from_category, from_text
+
+    if blueprint is not None:
+        return WrittenBlueprint(blueprint)
+    return from_text(text, lenient=lenient) if text is not None else from_category(category or "", _pairs(settings))
 
 
 def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None) -> int:

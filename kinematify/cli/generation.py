@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import click
 
@@ -33,10 +33,37 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.evaluation.metrics import ObjectScore
     from kinematify.generate.blueprint import Blueprint
-    from kinematify.generate.procedural.request import Request
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
     from kinematify.validation.report import ValidationReport
+
+
+class Requested(Protocol):
+    """What a call asks for: a sentence, a category or a file that was read."""
+
+    @property
+    def family(self) -> str:
+        """Its category."""
+        ...
+
+    @property
+    def understood(self) -> tuple[str, ...]:
+        """Short phrases, for a sentence."""
+        ...
+
+    @property
+    def ignored(self) -> tuple[str, ...]:
+        """Words of a sentence that were left out."""
+        ...
+
+    def build(self, *, seed: int | None = None) -> Blueprint:
+        """Build the object.
+
+        Raises:
+            InputError: It cannot be built.
+        """
+        ...
+
 
 _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, for five joints that are inferred
 
@@ -45,7 +72,7 @@ _INFERRED, _WRITTEN = 0.4, 0.6  # shares of the time at which these are done, fo
 class Generation:
     """What was asked for, and what has come of it so far."""
 
-    request: Request
+    request: Requested
     seed: int | None
     out: Path
     preview: bool
@@ -174,7 +201,7 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
     }
 
 
-def _understood(request: Request) -> str:
+def _understood(request: Requested) -> str:
     lines = [f"Understood: {', '.join(request.understood)}."] if request.understood else []
     if request.ignored:
         lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")

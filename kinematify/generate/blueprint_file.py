@@ -25,6 +25,8 @@ import json
 import math
 import re
 from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -502,6 +504,34 @@ def read_blueprint(path: Path) -> Blueprint:
     except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
         raise InputError(f"The file {path} cannot be read as {'JSON or YAML'}: {error}.") from error
     return described_blueprint(values, source=f"blueprint {path}")
+
+
+@dataclass(frozen=True)
+class WrittenBlueprint:
+    """An object that a file describes, as a request."""
+
+    path: Path
+    understood: tuple[str, ...] = ()
+    """Nothing of it is a sentence."""
+    ignored: tuple[str, ...] = ()
+
+    @cached_property
+    def _built(self) -> Blueprint:
+        return read_blueprint(self.path)
+
+    @property
+    def family(self) -> str:
+        """Its category."""
+        return self._built.family
+
+    def build(self, *, seed: int | None = None) -> Blueprint:
+        """Build it; a file leaves nothing to draw.
+
+        Raises:
+            InputError: It cannot be read or does not fit.
+        """
+        del seed
+        return self._built
 
 
 def _parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...]:

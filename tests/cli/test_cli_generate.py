@@ -177,3 +177,27 @@ def test_bad_requests_end_with_status_two_and_a_reason(arguments, reason, tmp_pa
 def test_without_a_place_for_the_result_it_says_so(capsys):
     assert run(["generate", "--text", "a cabinet"]) == 2
     assert "-o" in capsys.readouterr().err
+
+
+def test_a_blueprint_is_built_as_it_says(tmp_path):
+    page = Path(__file__, "../../../docs/sources.md").resolve().read_text(encoding="utf-8")
+    (tmp_path / "toolbox.yaml").write_text(page.split("```yaml")[1].split("```")[0])
+    out = tmp_path / "toolbox"
+    assert run(["generate", "--blueprint", str(tmp_path / "toolbox.yaml"), "-o", str(out), "--no-preview"]) == 0
+    (joint,) = read_robot(out / "model.urdf").joints
+    assert (joint.parent, joint.child, joint.upper) == ("body", "lid", 1.9)
+    assert json.loads((out / "validation.json").read_text())["verdict"] in {"pass", "warn"}
+
+
+@pytest.mark.parametrize(
+    "more", [["--text", "a box"], ["--category", "box"], ["--seed", "3"], ["--set", "a=b"]], ids=str
+)
+def test_a_blueprint_goes_with_nothing_else_that_says_what_to_build(more, tmp_path):
+    assert run(["generate", "--blueprint", str(tmp_path / "a.yaml"), "-o", str(tmp_path / "out"), *more]) == 2
+
+
+def test_a_blueprint_that_cannot_be_built_leaves_nothing_behind(tmp_path, capsys):
+    (tmp_path / "bad.yaml").write_text("name: bad\nparts: []\njoints: []\n")
+    assert run(["generate", "--blueprint", str(tmp_path / "bad.yaml"), "-o", str(tmp_path / "out")]) == 2
+    assert "parts: " in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
