@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
+from kinematify.generate.composer.compose import compose
+from kinematify.generate.composer.sentence import NoBodyError, read_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.understand import understand
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.composer.compose import Composition
     from kinematify.generate.procedural.family import Family, Value
     from kinematify.generate.procedural.language.parts import PartRequirement
 
@@ -31,6 +34,8 @@ class Request:
     """Words of a sentence that were not understood."""
     requirements: tuple[PartRequirement, ...] = ()
     """What is asked of its parts, besides the values."""
+    composition: Composition | None = None
+    """Of mechanisms on a body, where no family builds it."""
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object; a seed draws what was not asked for.
@@ -38,6 +43,8 @@ class Request:
         Raises:
             InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
+        if self.composition is not None:
+            return compose(self.composition, seed=seed)
         blueprint = build(FAMILIES[self.family], self.values, seed=seed)
         for requirement in self.requirements:
             blueprint = requirement.applied(blueprint)
@@ -45,7 +52,7 @@ class Request:
 
 
 def from_text(sentence: str, *, lenient: bool = False) -> Request:
-    """Read a sentence.
+    """Read a sentence: an object of a family, or else mechanisms on a body.
 
     Args:
         sentence: English.
@@ -54,13 +61,39 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
     Raises:
         InputError: It cannot be understood; see `understand`.
     """
-    meant = understand(sentence, FAMILIES, lenient=lenient)
+    try:
+        meant = understand(sentence, FAMILIES)
+    except InputError as error:
+        try:
+            return _composed(sentence)
+        except InputError as reason:
+            if not lenient:
+                if isinstance(reason, NoBodyError):
+                    raise error from None
+                raise InputError(f"{error} Nor can it be composed of mechanisms: {reason}") from error
+        meant = understand(sentence, FAMILIES, lenient=True)
     return Request(
         family=meant.family,
         values=meant.values,
         understood=meant.understood,
         ignored=meant.ignored,
         requirements=meant.requirements,
+    )
+
+
+def _composed(sentence: str) -> Request:
+    """Read a sentence as mechanisms on a body, and see that they can be built."""
+    composition = read_composition(sentence)
+    compose(composition)
+    told = [
+        f"{item.count} {item.mechanism.words[0]}{f' on the {item.side}' if item.side else ''}"
+        for item in composition.wanted
+    ]
+    return Request(
+        family=composition.body.words[0].replace(" ", "_"),
+        values={},
+        understood=(composition.body.words[0], *told),
+        composition=composition,
     )
 
 

@@ -1,0 +1,288 @@
+"""Place mechanisms on a body: sides are chosen and divided, the body grows where they need more room."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.generate.composer.bodies import BODIES, Body, Size
+from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism, Place
+from kinematify.generate.composer.side import SideWorkshop, columns, rows
+from kinematify.generate.procedural.pieces.fronts import Fitting
+from kinematify.generate.procedural.workshop import Workshop
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.composer.side import Side
+    from kinematify.generate.procedural.pieces.fronts import Opening
+
+MOST = 60
+"""Mechanisms of an object."""
+_WALL = 0.018  # [m]
+_LARGEST = 8.0  # of a body that grows with what is placed on it [m]
+_GROWTH = 1.15  # at a time
+_TURNING = 6.4  # room across two casters that face each other, in radii of their wheels
+_COVERING = ("row", "stack", "over", "alone")
+_NEEDS = {"room": "room behind it", "opening": "an opening to close"}
+_MOST_KINDS = 4  # of mechanisms on an object that is drawn
+_ANOTHER = 1_000_003  # the next seed where nothing that was drawn fits
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """One kind of mechanism on an object."""
+
+    mechanism: Mechanism
+    count: int = 1
+    side: str = ""
+    """Of `FACING`; its usual one if empty."""
+    material: str | None = None
+    color: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Composition:
+    """An object: a body and what is placed on it."""
+
+    body: Body
+    wanted: tuple[Wanted, ...]
+    size: tuple[float | None, float | None, float | None] = (None, None, None)
+    """Width, depth and height [m]; as large as is needed where None."""
+    material: str | None = None
+    color: str | None = None
+    rest: float = 0.0
+    """Share of the way that moving parts stand open."""
+
+
+def compose(
+    composition: Composition, *, name: str = "", clearance: float = 0.001, seed: int | None = None
+) -> Blueprint:
+    """Build an object with its exact joints.
+
+    Args:
+        composition: What it is.
+        name: Of the object; the first word of its body if empty.
+        clearance: Gap between parts that move past each other [m].
+        seed: Draws lengths of the body that are not asked for, about the usual ones; none takes these.
+
+    Raises:
+        InputError: Nothing moves, a side is not there or taken, or there is no room; the message names what.
+    """
+    if not any(wanted.mechanism.moves for wanted in composition.wanted):
+        raise InputError(f"Nothing of this {_title(composition.body)} would move. Ask for {_known()}.")
+    if (count := sum(wanted.count for wanted in composition.wanted)) > MOST:
+        raise InputError(f"{count} mechanisms are asked for; at most {MOST} can be placed on one body.")
+    drawn = np.ones(3) if seed is None else np.random.default_rng(seed).uniform(0.85, 1.2, size=3)
+    width, depth, height = (
+        float(usual * share) if asked is None else asked
+        for usual, share, asked in zip(composition.body.size, drawn, composition.size, strict=True)
+    )
+    size: Size = (width, depth, height)
+    while True:
+        try:
+            return _built(composition, size, name, clearance)
+        except _TooSmallError as error:
+            growth = [_GROWTH if k in error.axes and composition.size[k] is None else 1.0 for k in range(3)]
+            size = (size[0] * growth[0], size[1] * growth[1], size[2] * growth[2])
+            if max(growth) == 1.0 or max(size) > _LARGEST:
+                raise InputError(f"There is no room for {error}. Ask for fewer, or for a larger body.") from None
+
+
+class _TooSmallError(Exception):
+    """A side has no room; `axes` of the body would have to grow."""
+
+    def __init__(self, what: str, axes: set[int]) -> None:
+        super().__init__(what)
+        self.axes = axes
+
+
+def draw_composition(seed: int) -> Composition:
+    """Draw a body with one to four kinds of mechanism that it can carry."""
+    rng = np.random.default_rng(seed)
+    body = BODIES[int(rng.integers(len(BODIES)))]
+    wanted: list[Wanted] = []
+    for k in rng.permutation(len(MECHANISMS))[: int(rng.integers(2, 9))]:
+        asked = Wanted(mechanism=MECHANISMS[int(k)], count=int(rng.choice([1, 2, 2, 3, 4])))
+        try:
+            compose(Composition(body=body, wanted=(*wanted, asked)))
+        except InputError:
+            continue
+        wanted.append(asked)
+        if len(wanted) == _MOST_KINDS:
+            break
+    return Composition(body=body, wanted=tuple(wanted)) if wanted else draw_composition(seed + _ANOTHER)
+
+
+def _title(body: Body) -> str:
+    return body.words[0]
+
+
+def _known() -> str:
+    return ", ".join(mechanism.words[0] for mechanism in MECHANISMS)
+
+
+def _built(composition: Composition, size: Size, name: str, clearance: float) -> Blueprint:
+    family = _title(composition.body).replace(" ", "_")
+    workshop = Workshop(family, material=composition.material or composition.body.material, color=composition.color)
+    sides = composition.body.build(workshop, size, min(_WALL, 0.08 * min(size)))
+    fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
+    numbers: Counter[str] = Counter()
+    for side, wanted in _by_side(composition, sides).items():
+        for item, area in _arranged(side, sides[side], wanted, size):
+            word = item.mechanism.words[0].replace(" ", "_").replace("-", "_")
+            numbers[word] += 1
+            place = Place(
+                workshop=SideWorkshop(workshop, sides[side].T_world_side, material=item.material, color=item.color),
+                name=f"{word}_{numbers[word]}",
+                area=area,
+                hollow=sides[side].hollow,
+                fitting=fitting,
+                index=numbers[word] - 1,
+            )
+            lids = sum(other.count for other in wanted if other.mechanism.words[0] == "lid")
+            if item.mechanism.arranged == "over" and lids > 1:
+                raise InputError(f"A {item.mechanism.words[0]} goes on one lid, but there are {lids}. Ask for one lid.")
+            item.mechanism.build(_on_lid(place) if item.mechanism.arranged == "over" and lids else place)
+    parameters = {"size": size, **{f"{word}s": count for word, count in numbers.items()}}
+    return workshop.finish(name or family, parameters, style="clean", clearance=clearance, rng=np.random.default_rng(0))
+
+
+def _on_lid(place: Place) -> Place:
+    """The same place on the lid that covers the side."""
+    level = place.clearance + place.area.wall
+    return replace(place, workshop=place.workshop.turned(np.eye(3), (0, -level, 0)), parent="lid_1", hollow=True)
+
+
+def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list[Wanted]]:
+    """What goes on which side; wheels and other pairs are divided between left and right."""
+    found: dict[str, list[Wanted]] = {side: [] for side in sides}
+    for wanted in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
+        kind, body = wanted.mechanism, _title(composition.body)
+        what = kind.words[0]
+        if wanted.count < 1:
+            raise InputError(f"{wanted.count} {what}s cannot be built. Ask for one at least, or leave it out.")
+        usual = [side for side in kind.sides if side in sides and _fits(kind, sides[side])]
+        if not usual:
+            behind = f", and a {what} needs {_NEEDS[kind.needs]}" if kind.needs else ""
+            raise InputError(f"There is no place for a {what} on a {body}. It has {', '.join(sides)}{behind}.")
+        if wanted.count > kind.most:
+            raise InputError(f"{wanted.count} {what}s are asked for; a {body} takes {kind.most}.")
+        if wanted.side and wanted.side not in usual:
+            raise InputError(f"A {what} goes on the {' or '.join(usual)} of a {body}, not on the {wanted.side}.")
+        if kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left"):
+            if wanted.count % 2:
+                raise InputError(f"{wanted.count} {what}s are asked for; on a {body} they come in pairs.")
+            for side in ("left", "right"):
+                found[side].append(replace(wanted, count=wanted.count // 2))
+        else:
+            found[wanted.side or _freest(usual, found, kind)].append(wanted)
+    for side, items in found.items():
+        alone = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "alone"), None)
+        if alone and len(items) > 1:
+            others = ", ".join(item.mechanism.words[0] for item in items if item.mechanism.words[0] != alone)
+            raise InputError(f"A {alone} needs the {side} for itself, but there are also: {others}. Leave one out.")
+    return {side: items for side, items in found.items() if items}
+
+
+def _fits(kind: Mechanism, side: Side) -> bool:
+    if kind.arranged == "axles":
+        return side.axles is not None
+    if kind.needs:
+        return side.hollow or (side.is_open and kind.needs == "opening")
+    return not side.is_open or kind.arranged == "over"
+
+
+def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanism) -> str:
+    """The usual side, or for what takes little room the first one that nothing covers."""
+    if kind.arranged == "grid":
+        for side in usual:
+            if side != "top" or not any(other.mechanism.arranged in _COVERING for other in found[side]):
+                return side
+    return usual[0]
+
+
+def _arranged(name: str, side: Side, wanted: Sequence[Wanted], size: Size) -> list[tuple[Wanted, Opening]]:
+    """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
+    placed = []
+    bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid")])
+    for band, strip in zip(bands, rows(side.area, [weight for weight, _ in bands]) if bands else [], strict=True):
+        for item, cell in _divided(band[1], strip):
+            needed = item.mechanism.least
+            if cell.width < needed[0] or cell.height < needed[1]:
+                axes = {0 if name in ("front", "back", "top", "bottom") else 1} if cell.width < needed[0] else set()
+                if cell.height < needed[1]:
+                    axes.add(1 if name in ("top", "bottom") else 2)
+                raise _TooSmallError(_told(item.mechanism, wanted, name), axes)
+            placed.append((item, cell))
+    for item in wanted:
+        if item.mechanism.arranged == "axles" and side.axles is not None:
+            placed += [(item, cell) for cell in _axles(side.axles, item.count)]
+        elif item.mechanism.arranged == "corners":
+            cells = _corners(side.area, item.count)
+            if cells[0].width < item.mechanism.least[0]:
+                raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1})
+            placed += [(item, cell) for cell in cells]
+        elif item.mechanism.arranged in ("edge", "over", "alone"):
+            placed += [(item, side.area)] * item.count
+    return placed
+
+
+def _told(mechanism: Mechanism, wanted: Sequence[Wanted], side: str) -> str:
+    count = sum(item.count for item in wanted if item.mechanism is mechanism)
+    return f"{count} {mechanism.words[0]}{'s' if count > 1 else ''} on the {side}"
+
+
+def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
+    """Strips of a side from the top, with their weights: controls, then what stands side by side, then stacks."""
+    controls = [item for item in wanted if item.mechanism.arranged == "grid"]
+    standing = [item for item in wanted if item.mechanism.arranged == "row"]
+    stacked = [item for item in wanted if item.mechanism.arranged == "stack"]
+    found: list[tuple[float, list[Wanted]]] = []
+    if controls:
+        found.append((max(item.mechanism.weight for item in controls), controls))
+    if standing:
+        found.append((3.0, standing))
+    found += [(item.mechanism.weight, [replace(item, count=1)]) for item in stacked for _ in range(item.count)]
+    return found
+
+
+def _divided(wanted: Sequence[Wanted], strip: Opening) -> list[tuple[Wanted, Opening]]:
+    """One cell each: in one row where that leaves them nearly square, else in several rows."""
+    each = [item for item in wanted for _ in range(item.count)]
+    if wanted[0].mechanism.arranged != "grid":
+        return list(zip(each, columns(strip, len(each)), strict=True))
+    lines = max(1, round(math.sqrt(len(each) * strip.height / strip.width)))
+    across = -(-len(each) // lines)
+    cells = [cell for line in rows(strip, [1.0] * -(-len(each) // across)) for cell in columns(line, across)]
+    return list(zip(each, cells, strict=False))
+
+
+def _axles(line: Opening, count: int) -> list[Opening]:
+    """Squares in which wheels stand, along the lower edge of a side."""
+    pitch = line.width / max(count - 1, 1)
+    radius = min(0.42 * pitch, 0.2 * line.width, max(2.0 * line.height, 0.04)) if count > 1 else 0.2 * line.width
+    places = np.linspace(line.left, line.right, count) if count > 1 else [0.5 * (line.left + line.right)]
+    middle = line.bottom + 0.5 * line.height
+    return [
+        replace(line, left=x - radius, right=x + radius, bottom=middle - radius, top=middle + radius)
+        for x in map(float, places)
+    ]
+
+
+def _corners(area: Opening, count: int) -> list[Opening]:
+    """Squares near the corners of an area, then along its longer edges; what stands in them may turn about itself."""
+    across = -(-count // 2)
+    half = min(0.05, area.height / _TURNING, 2.0 * area.width / (_TURNING * max(across, 2)))
+    inset = 1.5 * half
+    xs = np.linspace(area.left + inset, area.right - inset, across) if across > 1 else np.zeros(1)
+    # An odd one is left out behind, where the others then stand between those in front.
+    behind = xs if count % 2 == 0 else np.convolve(xs, [0.5, 0.5], "valid")
+    spots = [(float(x), area.bottom + inset) for x in behind] + [(float(x), area.top - inset) for x in xs]
+    return [replace(area, left=x - half, right=x + half, bottom=z - half, top=z + half) for x, z in spots]

@@ -1,0 +1,488 @@
+"""Mechanisms that are placed on a side of a body, each with its own bearing, clearance and limits.
+
+Each is built in the frame of its side: x to the right, y into the body, whose surface is y = 0, and z up.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.composer.bodies import BODY
+from kinematify.generate.composer.side import SideWorkshop
+from kinematify.generate.procedural.pieces.bearings import fork
+from kinematify.generate.procedural.pieces.bearings import room as fork_room
+from kinematify.generate.procedural.pieces.castors import STEM, castor
+from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
+from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, add_flap, room
+from kinematify.generate.procedural.solids import ball, bore, box, cylinder, ring, rod, union
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from manifold3d import Manifold
+
+    from kinematify.robot.arrays import FloatArray
+
+_OUT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns what is built to stand on z = 0 so that it stands on the side."""
+_INTO = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""Turns what is built to hang from z = 0 so that it hangs from the side."""
+_UPSIDE_DOWN = np.diag([-1.0, 1.0, -1.0])
+"""Turns a side about its normal."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Place:
+    """Where one mechanism goes."""
+
+    workshop: SideWorkshop
+    """In the frame of the side."""
+    name: str
+    """Of the body that moves; further ones add to it."""
+    parent: str = BODY
+    """Body that carries it."""
+    area: Opening
+    hollow: bool
+    """A room may be cut behind it."""
+    fitting: Fitting
+    index: int
+    """Among those of its kind on the side, from 0."""
+
+    @property
+    def middle(self) -> tuple[float, float, float]:
+        """Of the area, on the surface [m]."""
+        return 0.5 * (self.area.left + self.area.right), 0.0, 0.5 * (self.area.bottom + self.area.top)
+
+    @property
+    def radius(self) -> float:
+        """Of the largest circle in the area [m]."""
+        return 0.5 * min(self.area.width, self.area.height)
+
+    @property
+    def clearance(self) -> float:
+        """[m]."""
+        return self.fitting.clearance
+
+    def hollowed(self) -> None:
+        """Cut the room behind the area, where there may be one."""
+        if self.hollow:
+            self.workshop.cut(BODY, room(self.area))
+
+    def on_shaft(self, name: str, *solids: Manifold, shaft: float, limits: tuple[float, float] | None = None) -> None:
+        """Add what turns clockwise about the normal through the middle, on a shaft in a bore of the body."""
+        x, _, z = self.middle
+        # Behind a side that may be hollow, only its wall is sure to be there.
+        deep, out = (min(0.02, self.area.wall) if self.hollow else 0.8 * self.area.depth), self.clearance + 1e-3
+        self.workshop.cut(BODY, bore(shaft, self.clearance, (x, deep, z), (x, -0.01, z)))
+        end = deep - max(self.clearance, 1e-3)
+        self.workshop.body(name, cylinder(shaft, (x, end, z), (x, -out, z)), *solids)
+        self.workshop.turns(name, BODY, (0, 1, 0), self.middle, limits, rest=self.fitting.rest)
+
+
+def _door(place: Place) -> None:
+    place.hollowed()
+    side = "left" if place.index % 2 == 0 else "right"
+    add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side, outermost=False, hinge="edge")
+
+
+def _drawer(place: Place) -> None:
+    place.hollowed()
+    add_drawer(place.workshop, place.name, BODY, place.area, place.fitting)
+
+
+def _flap(place: Place) -> None:
+    place.hollowed()
+    # When it is down, it lies before what is below.
+    lifted = replace(place.area, bottom=place.area.bottom + min(0.2 * place.area.height, 1.5 * place.area.wall))
+    add_flap(place.workshop, place.name, BODY, lifted, place.fitting, hinge="edge")
+
+
+def _lid(place: Place) -> None:
+    place.hollowed()
+    area = place.area
+    about = replace(area, left=-area.right, right=-area.left, bottom=-area.top, top=-area.bottom)
+    turned = place.workshop.turned(_UPSIDE_DOWN, (0, 0, 0))
+    add_flap(turned, place.name, BODY, about, place.fitting, hinge="edge")
+
+
+def _shutter(place: Place) -> None:
+    """A panel between two rails covers the left half of its area and slides to the right."""
+    area, gap, workshop = place.area, place.clearance, place.workshop
+    thick, rail = min(area.wall, 0.02), min(0.012, 0.1 * area.height)
+    middle = 0.5 * (area.left + area.right)
+    if place.hollow:
+        place.workshop.cut(BODY, room(replace(area, right=middle, bottom=area.bottom + rail, top=area.top - rail)))
+    front = -2.0 * gap - thick
+    for edge, sign in ((area.bottom, 1.0), (area.top, -1.0)):
+        inner, lip = edge + sign * 0.5 * rail, edge + sign * rail
+        for start, end, level in ((front - 0.006, 1e-3, inner), (front - 0.006, front, lip)):
+            low, high = sorted((edge, level))
+            workshop.add(BODY, box((area.left, start, low), (area.right, end, high)))
+    bottom, top = area.bottom + 0.5 * rail + gap, area.top - 0.5 * rail - gap
+    panel = box((area.left, -gap - thick, bottom), (middle, -gap, top))
+    x, z = middle - min(0.05, 0.2 * area.width), place.middle[2]
+    grip = box((x - 0.008, front - 0.03, z - 0.06), (x + 0.008, -gap - 1e-3, z + 0.06))
+    if area.height < 0.25:
+        grip = cylinder(0.15 * area.height, (x, -gap - 1e-3, z), (x, front - 0.02, z))
+    workshop.body(place.name, panel, grip)
+    workshop.slides(
+        place.name, BODY, (1, 0, 0), place.middle, (0.0, 0.95 * (area.right - middle)), rest=place.fitting.rest
+    )
+
+
+def _shelf(place: Place) -> None:
+    """A board in a slot, with a lip to pull it by."""
+    area, gap = place.area, place.clearance
+    thick = min(0.4 * area.height, 0.018)
+    z, deep = place.middle[2], 0.8 * area.depth
+    half = 0.5 * area.width - area.wall
+    x = place.middle[0]
+    slot = box((x - half - gap, -1.0, z - 0.5 * thick - gap), (x + half + gap, deep, z + 0.5 * thick + gap))
+    place.workshop.cut(BODY, slot)
+    board = box((x - half, -gap - 1e-3, z - 0.5 * thick), (x + half, deep - gap, z + 0.5 * thick))
+    lip = box((x - half, -gap - 0.012, z - 0.5 * area.height + 1e-3), (x + half, -gap, z + 0.5 * area.height - 1e-3))
+    place.workshop.body(place.name, board, lip)
+    place.workshop.slides(place.name, BODY, (0, -1, 0), place.middle, (0.0, 0.7 * deep), rest=place.fitting.rest)
+
+
+def _mount(place: Place) -> Mount:
+    return Mount(
+        parent=BODY,
+        place=place.middle,
+        face=FRONT,
+        clearance=place.clearance,
+        depth=min(0.03, place.area.wall if place.hollow else 0.8 * place.area.depth),
+    )
+
+
+def _knob(place: Place) -> None:
+    add_knob(place.workshop, place.name, _mount(place), min(0.6 * place.radius, 0.03), rest=place.fitting.rest)
+
+
+def _button(place: Place) -> None:
+    size, mount = min(1.1 * place.radius, 0.03), _mount(place)
+    add_button(place.workshop, place.name, mount, (size, size), travel=min(0.004, 0.25 * mount.depth))
+
+
+def _lever(place: Place) -> None:
+    """A stick on a pin between two cheeks, which swings up and down."""
+    width = min(0.05, 0.8 * place.radius, 0.2 * place.area.height)
+    _stick(place, BODY, place.workshop.turned(_OUT, place.middle), width, long=3.0 * width, end=place.name)
+
+
+def _stick(
+    place: Place, parent: str, frame: SideWorkshop, width: float, *, long: float, end: str, knob: bool = True
+) -> float:
+    """Add a fork at the origin of a frame and a stick that stands up in it; returns the height of the pin."""
+    radius = 0.22 * width
+    gap = min(place.clearance, 0.15 * radius)
+    level = fork_room(radius, gap) + 0.5 * radius
+    forked, tongue = fork(width, radius, gap, level + 1e-3)
+    frame.add(parent, forked.translate((0, 0, level)))
+    end_of_stick = (0, 0, level + long)
+    solids = [tongue.translate((0, 0, level)), cylinder(0.6 * radius, (0, 0, 2.0 * level), end_of_stick)]
+    if knob:
+        solids.append(ball(1.2 * radius, end_of_stick))
+    frame.body(end, *solids)
+    frame.turns(end, parent, (1, 0, 0), (0, 0, level), (-0.8, 0.8))
+    return level + long
+
+
+def _arm(place: Place) -> None:
+    """Two links, one on the other, that swing about level pins."""
+    width = min(0.08, 0.9 * place.radius)
+    frame = place.workshop.turned(_OUT, place.middle)
+    lower, upper = f"{place.name}_lower", f"{place.name}_upper"
+    height = _stick(place, BODY, frame, width, long=6.0 * width, end=lower, knob=False)
+    above = place.workshop.turned(_OUT, (place.middle[0], -height, place.middle[2]))
+    _stick(place, lower, above, 0.8 * width, long=5.0 * width, end=upper)
+
+
+def _crank(place: Place) -> None:
+    """An arm with a grip, on a shaft."""
+    x, _, z = place.middle
+    reach, gap = min(0.75 * place.radius, 0.15), place.clearance
+    shaft = 0.12 * reach
+    arm = box((x - shaft, -gap - 2.0 * shaft, z - shaft), (x + shaft, -gap, z + reach))
+    grip = cylinder(
+        0.8 * shaft, (x, -gap - shaft, z + reach - shaft), (x, -gap - shaft - 0.6 * reach, z + reach - shaft)
+    )
+    hub = cylinder(1.6 * shaft, (x, -gap, z), (x, -gap - 2.0 * shaft, z))
+    place.on_shaft(place.name, arm, grip, hub, shaft=0.8 * shaft)
+
+
+def _hand_wheel(place: Place) -> None:
+    """A rim on spokes, on a shaft."""
+    radius, gap = min(0.85 * place.radius, 0.2), place.clearance
+    wire = 0.1 * radius
+    out = gap + 3.0 * wire
+    spokes = [rod(0.6 * wire, (0, 0, 0), (radius * math.cos(a), radius * math.sin(a), 0)) for a in _angles(4)]
+    wheel = union(ring(radius, wire), *spokes).transform(_at(place, out))
+    x, _, z = place.middle
+    place.on_shaft(place.name, wheel, cylinder(1.5 * wire, (x, -gap, z), (x, -out, z)), shaft=wire)
+
+
+def _rotor(place: Place) -> None:
+    """Blades on a hub."""
+    radius, gap, count = min(0.95 * place.radius, 0.4), place.clearance, 3
+    hub = 0.16 * radius
+    blades = [
+        box((0, -0.12 * radius, -0.02 * radius), (radius, 0.12 * radius, 0.02 * radius))
+        .rotate((25.0, 0, 0))
+        .rotate((0, 0, math.degrees(angle)))
+        for angle in _angles(count)
+    ]
+    x, _, z = place.middle
+    body = cylinder(hub, (x, -gap, z), (x, -gap - 2.4 * hub, z))
+    place.on_shaft(place.name, body, union(*blades).transform(_at(place, gap + 1.6 * hub)), shaft=0.5 * hub)
+
+
+def _needle(place: Place) -> None:
+    """A pointer over a dial that belongs to the body."""
+    x, _, z = place.middle
+    radius, gap = min(0.85 * place.radius, 0.08), place.clearance
+    dial = 0.003
+    place.workshop.add(BODY, cylinder(radius, (x, 1e-3, z), (x, -dial, z)))
+    half, out = 0.05 * radius, dial + gap
+    pointer = box((x - half, -out - 0.003, z - 3.0 * half), (x + half, -out, z + 0.85 * radius))
+    hub = cylinder(2.0 * half, (x, -out, z), (x, -out - 0.005, z))
+    stem = cylinder(half, (x, 0, z), (x, -out - 1e-3, z))
+    raised = replace(place, fitting=replace(place.fitting, rest=0.0))
+    place.workshop.cut(BODY, bore(half, gap, (x, 0.2 * place.area.wall, z), (x, -1.0, z)))
+    raised.on_shaft(place.name, pointer, hub, stem, shaft=half, limits=(0.0, 4.5))
+
+
+def _turntable(place: Place) -> None:
+    """A disc on a shaft."""
+    x, _, z = place.middle
+    radius, gap = min(0.95 * place.radius, 0.3), place.clearance
+    plate = cylinder(radius, (x, -gap, z), (x, -gap - max(0.01, 0.06 * radius), z))
+    mark = box(
+        (x - 0.04 * radius, -gap - 0.014 - 0.06 * radius, z + 0.6 * radius), (x + 0.04 * radius, -gap, z + 0.9 * radius)
+    )
+    place.on_shaft(place.name, plate, mark, shaft=min(0.3 * radius, 0.02))
+
+
+def _wheel(place: Place) -> None:
+    """A tyre on a shaft beside the body."""
+    x, _, z = place.middle
+    radius, gap = place.radius, place.clearance
+    wide, shaft = 0.35 * radius, min(0.2 * radius, 0.3 * place.area.depth)
+    tyre = cylinder(radius, (x, -gap - 0.1 * radius, z), (x, -gap - 0.1 * radius - wide, z))
+    hub = cylinder(1.6 * shaft, (x, -gap, z), (x, -gap - 0.15 * radius - wide, z))
+    place.on_shaft(place.name, tyre, hub, shaft=shaft)
+
+
+def _caster(place: Place) -> None:
+    """A fork on a stem, and a wheel in the fork; both turn without end."""
+    wheel = min(place.radius, 0.05)
+    frame = place.workshop.turned(_INTO, place.middle)
+    gap = min(place.clearance, 0.0015)
+    top = 2.0 * wheel + 0.02
+    axle = np.array([0.0, -0.4 * wheel, wheel])
+    forked, roller = castor(axle, top, wheel, gap)
+    down = (0.0, 0.0, -top - gap)
+    frame.cut(BODY, bore(STEM, gap, (0, 0, -0.01), (0, 0, 0.026)))
+    frame.body(place.name, forked.translate(down), material="metal")
+    frame.turns(place.name, BODY, (0, 0, 1), (0, 0, 0))
+    frame.body(f"{place.name}_wheel", roller.translate(down), material="rubber")
+    frame.turns(f"{place.name}_wheel", place.name, (1, 0, 0), np.add(axle, down))
+
+
+def _telescope(place: Place) -> None:
+    """A tube on the body, and a rod in it that is pulled out."""
+    x, _, z = place.middle
+    radius, gap = min(0.5 * place.radius, 0.03), place.clearance
+    long = 12.0 * radius
+    inner = 0.65 * radius
+    tube = cylinder(radius, (x, 1e-3, z), (x, -long, z))
+    place.workshop.add(BODY, tube - bore(inner, gap, (x, -0.2 * radius, z), (x, -2.0 * long, z), segments=8))
+    mast = cylinder(inner, (x, -0.2 * radius - gap, z), (x, -long - 0.5 * radius, z), segments=8)
+    cap = cylinder(radius, (x, -long - gap, z), (x, -long - 0.6 * radius - gap, z))
+    place.workshop.body(place.name, mast, cap, material="metal")
+    place.workshop.slides(place.name, BODY, (0, -1, 0), place.middle, (0.0, 0.7 * long), rest=place.fitting.rest)
+
+
+def _bail(place: Place) -> None:
+    """A bow on two pins, which lies down to either side; where there is no floor, its ears stand on the rim."""
+    x, _, z = place.middle
+    half = min(0.42 * place.area.width, 0.2) if place.hollow else 0.5 * (place.area.width + place.area.wall)
+    gap, ear, pin, rise = place.clearance, 0.008, 0.005, 0.022
+    high = rise + 0.8 * half
+    solids = [rod(pin, (x - half, -high, z), (x + half, -high, z))]
+    for sign in (-1.0, 1.0):
+        outer = x + sign * half
+        inner = outer - sign * (2.0 * pin + gap)
+        low, top = sorted((inner, inner - sign * ear))
+        lug = box((low, -rise - 2.2 * pin, z - 2.2 * pin), (top, 1e-3, z + 2.2 * pin))
+        place.workshop.add(place.parent, lug)
+        place.workshop.cut(place.parent, bore(pin, gap, (low - 1e-3, -rise, z), (top + 1e-3, -rise, z)))
+        solids.append(rod(pin, (outer, -rise, z), (outer, -high, z)))
+        solids.append(cylinder(pin, (inner - sign * ear, -rise, z), (outer, -rise, z)))
+    place.workshop.body(place.name, *solids)
+    place.workshop.turns(place.name, place.parent, (1, 0, 0), (x, -rise, z), (-1.3, 1.3), rest=place.fitting.rest)
+
+
+def _push_handle(place: Place) -> None:
+    """A bar on two posts; it belongs to the body."""
+    out, top = -0.07, place.area.top + 0.3
+    low = max(place.area.bottom + 0.02, place.area.top - 0.08)
+    ends = [(sign * 0.42 * place.area.width, out, top) for sign in (-1.0, 1.0)]
+    for x, _, _ in ends:
+        place.workshop.add(BODY, rod(0.012, (x, 0.002, low), (x, out, low)), rod(0.012, (x, out, low), (x, out, top)))
+    place.workshop.add(BODY, rod(0.014, *ends))
+
+
+def _angles(count: int) -> list[float]:
+    return [2.0 * math.pi * k / count for k in range(count)]
+
+
+def _at(place: Place, out: float) -> FloatArray:
+    """From where something lies in z = 0 to where it lies before the middle of a place, (3, 4)."""
+    x, _, z = place.middle
+    return np.column_stack([_OUT, (x, -out, z)])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mechanism:
+    """A kind of mechanism."""
+
+    words: tuple[str, ...]
+    """How people call it, singular; the first one names it."""
+    sides: tuple[str, ...]
+    """Where it may go, the usual one first."""
+    build: Callable[[Place], None]
+    arranged: str = "grid"
+    """``row`` beside each other over the full height, ``stack`` one below the other, ``grid``, ``corners`` below the
+    body, ``axles`` along its lower edges, ``over`` a side or its lid, ``alone`` on a side, or
+    ``edge``, which takes no room."""
+    weight: float = 1.0
+    """Share of a side's height beside the others."""
+    least: tuple[float, float] = (0.04, 0.04)
+    """Width and height that one needs [m]."""
+    needs: str = ""
+    """``room`` to run in, which must be cut behind it, or at least an ``opening`` that it closes."""
+    most: int = 60
+    """On one body."""
+    moves: bool = True
+
+
+_CONTROLS = ("front", "top", "right", "left", "back")
+MECHANISMS = (
+    Mechanism(
+        words=("door",),
+        sides=("front", "left", "right", "back"),
+        build=_door,
+        arranged="row",
+        weight=3.0,
+        least=(0.12, 0.15),
+        needs="opening",
+    ),
+    Mechanism(words=("drawer",), sides=("front",), build=_drawer, arranged="stack", least=(0.12, 0.07), needs="room"),
+    Mechanism(
+        words=("flap", "tailgate", "drop door"),
+        sides=("front", "back"),
+        build=_flap,
+        arranged="stack",
+        weight=1.5,
+        least=(0.12, 0.1),
+        needs="opening",
+    ),
+    Mechanism(
+        words=("lid", "hatch", "cover"),
+        sides=("top",),
+        build=_lid,
+        arranged="row",
+        weight=3.0,
+        least=(0.12, 0.12),
+        needs="opening",
+    ),
+    Mechanism(
+        words=("sliding door", "shutter", "sliding panel"),
+        sides=("front", "top"),
+        build=_shutter,
+        arranged="stack",
+        weight=3.0,
+        least=(0.2, 0.12),
+        needs="opening",
+    ),
+    Mechanism(
+        words=("tray", "pull-out shelf", "pull out shelf", "keyboard tray", "pull-out tray"),
+        sides=("front",),
+        build=_shelf,
+        arranged="stack",
+        weight=0.4,
+        least=(0.15, 0.04),
+        needs="room",
+    ),
+    Mechanism(words=("knob", "dial", "rotary knob"), sides=_CONTROLS, build=_knob),
+    Mechanism(words=("button", "push button"), sides=_CONTROLS, build=_button),
+    Mechanism(words=("lever", "toggle switch", "switch", "joystick"), sides=_CONTROLS, build=_lever),
+    Mechanism(
+        words=("crank", "hand crank", "winder"),
+        sides=("right", "left", "front", "top", "back"),
+        build=_crank,
+        least=(0.08, 0.08),
+        weight=1.5,
+    ),
+    Mechanism(
+        words=("hand wheel", "handwheel", "valve wheel"),
+        sides=("front", "right", "left", "top", "back"),
+        build=_hand_wheel,
+        least=(0.1, 0.1),
+        weight=1.5,
+    ),
+    Mechanism(
+        words=("gauge", "gauge needle", "needle", "pointer"),
+        sides=_CONTROLS,
+        build=_needle,
+        least=(0.06, 0.06),
+    ),
+    Mechanism(words=("wheel",), sides=("left",), build=_wheel, arranged="axles"),
+    Mechanism(
+        words=("caster", "castor", "caster wheel", "swivel wheel", "castor wheel"),
+        sides=("bottom",),
+        build=_caster,
+        arranged="corners",
+    ),
+    Mechanism(
+        words=("rotor", "fan", "propeller", "impeller"),
+        sides=("front", "top", "back", "left", "right"),
+        build=_rotor,
+        least=(0.12, 0.12),
+        weight=2.0,
+    ),
+    Mechanism(
+        words=("turntable", "rotating plate", "rotary table"),
+        sides=("top", "front"),
+        build=_turntable,
+        least=(0.1, 0.1),
+        weight=2.0,
+    ),
+    Mechanism(
+        words=("telescope", "telescopic mast", "telescopic antenna", "telescopic rod"),
+        sides=("top", "front", "back"),
+        build=_telescope,
+    ),
+    Mechanism(
+        words=("carrying handle", "carry handle", "bail", "swing handle", "folding handle"),
+        sides=("top",),
+        build=_bail,
+        arranged="over",
+        most=1,
+    ),
+    Mechanism(words=("arm", "folding arm"), sides=("top",), build=_arm, arranged="alone", most=1),
+    Mechanism(
+        words=("push handle", "push bar"),
+        sides=("back",),
+        build=_push_handle,
+        arranged="edge",
+        most=1,
+        moves=False,
+    ),
+)
+"""All mechanisms; no word stands twice."""

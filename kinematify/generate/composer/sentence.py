@@ -1,0 +1,233 @@
+"""Sentences such as `a cart with four casters, a push handle and two drawers`; every word is understood or refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, TypeVar
+
+from kinematify.errors import InputError
+from kinematify.generate.composer.bodies import BODIES, Body
+from kinematify.generate.composer.compose import Composition, Wanted
+from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
+from kinematify.generate.composer.side import FACING
+from kinematify.generate.procedural.language.sizes import DIMENSIONS
+from kinematify.generate.procedural.language.words import STOP_WORDS, UNITS, Token, tokens_of
+from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+_Kind = TypeVar("_Kind")
+_SIDES = {side: side for side in FACING} | {"rear": "back", "underside": "bottom"}
+_PLACED = ("on", "at", "in")
+_SIDE_NOUNS = ("side", "face")
+_UNDER = ("underneath", "below")
+_MOVING = ("opening", "movable", "moving", "working")
+_OPENNESS = {("half", "open"): 0.5, ("open",): 1.0, ("closed",): 0.0}
+_AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
+_MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
+_LENGTH = ("number", "unit", "dimension")
+_SHORTEST, _LONGEST = 0.05, 20.0  # [m]
+
+
+class NoBodyError(InputError):
+    """A sentence names no body of the composer."""
+
+
+@dataclass(kw_only=True)
+class _Look:
+    """What is said before a noun."""
+
+    count: int | None = None
+    material: str | None = None
+    color: str | None = None
+
+
+def read_composition(sentence: str) -> Composition:
+    """Find out which body and mechanisms a sentence asks for.
+
+    Raises:
+        NoBodyError: It names no body of the composer.
+        InputError: It has words that are not understood; the message names them.
+    """
+    reader = _Reader(tokens_of(sentence, _vocabulary(), mend=False))
+    reader.read()
+    if reader.body is None:
+        raise NoBodyError(
+            f"The text {sentence[:80]!r} names no body that mechanisms can be placed on. There are "
+            f"{', '.join(body.words[0] for body in BODIES)}."
+        )
+    if reader.left:
+        raise InputError(
+            f"Not understood: {', '.join(map(repr, reader.left))}. Nothing else is built in its place. Bodies are "
+            f"{', '.join(body.words[0] for body in BODIES)}; on them go "
+            f"{', '.join(mechanism.words[0] for mechanism in MECHANISMS)}."
+        )
+    for mechanism in reader.excluded:
+        if any(wanted.mechanism is mechanism for wanted in reader.wanted):
+            raise InputError(f"The text asks for a {mechanism.words[0]} and for none. Say one of both.")
+    width, depth, height = reader.size
+    return Composition(
+        body=reader.body,
+        wanted=tuple(reader.wanted),
+        size=(width, depth, height),
+        material=reader.of_body.material,
+        color=reader.of_body.color,
+        rest=reader.rest,
+    )
+
+
+class _Reader:
+    """Goes through a sentence once, from noun to noun."""
+
+    def __init__(self, tokens: Sequence[Token]) -> None:
+        """Begin before the first word."""
+        self._tokens = tokens
+        self._look = _Look()
+        self.body: Body | None = None
+        self.of_body = _Look()
+        self.wanted: list[Wanted] = []
+        self.excluded: list[Mechanism] = []
+        self.size: list[float | None] = [None, None, None]
+        self.rest = 0.0
+        self.left: list[str] = []
+        """Words that were not understood, as they were written."""
+
+    def read(self) -> None:
+        """Take up every word."""
+        k = 0
+        while k < len(self._tokens):
+            steps = (self._length, self._mechanism, self._named_body, self._openness, self._described, self._counted)
+            taken = next((words for step in steps if (words := step(k))), 0)
+            token = self._tokens[k]
+            if not taken and not token.is_sign and token.text not in STOP_WORDS and token.text not in _MOVING:
+                self.left.append(token.given)
+            k += max(taken, 1)
+
+    def _texts(self, k: int) -> tuple[str, ...]:
+        return tuple(token.text for token in self._tokens[k : k + 5])
+
+    def _described_so_far(self) -> _Look:
+        """What was said of the noun that has come; nothing yet of the next one."""
+        look, self._look = self._look, _Look()
+        return look
+
+    def _length(self, k: int) -> int:
+        """`60 cm wide`."""
+        number, texts = self._tokens[k].number, self._texts(k)
+        if number is None or len(texts) < len(_LENGTH) or texts[1] not in UNITS:
+            return 0
+        name = next((name for name, words in DIMENSIONS.items() if texts[2] in words), "")
+        if name not in _AXES:
+            return 0
+        metres = number * UNITS[texts[1]]
+        if not _SHORTEST <= metres <= _LONGEST:
+            raise InputError(
+                f"A body {' '.join(texts[:3])} cannot be built; its lengths are from {_SHORTEST:g} m to {_LONGEST:g} m."
+            )
+        self.size[_AXES[name]] = metres
+        return len(_LENGTH)
+
+    def _mechanism(self, k: int) -> int:
+        """`drawers on the left side`."""
+        named = _longest(self._texts(k), _mechanisms())
+        if named is None:
+            return 0
+        words, mechanism = named
+        look, end = self._described_so_far(), k + len(words)
+        if look.count == 0:
+            self.excluded.append(mechanism)
+            return len(words)
+        noun = self._tokens[end - 1]
+        plural = noun.given != noun.text and noun.given.endswith("s")
+        side, taken = self._side(end)
+        self.wanted.append(
+            Wanted(
+                mechanism=mechanism,
+                count=look.count or (2 if plural else 1),
+                side=side,
+                material=look.material,
+                color=look.color,
+            )
+        )
+        return len(words) + taken
+
+    def _named_body(self, k: int) -> int:
+        """`cart`, once."""
+        named = None if self.body is not None else _longest(self._texts(k), _bodies())
+        if named is None:
+            return 0
+        words, self.body = named
+        self.of_body = self._described_so_far()
+        if self.of_body.count not in (None, 1):
+            self.left.append(f"{self.of_body.count} {' '.join(words)}")
+        return len(words)
+
+    def _openness(self, k: int) -> int:
+        """`half open`."""
+        texts = self._texts(k)
+        for words, share in _OPENNESS.items():
+            if texts[: len(words)] == words:
+                self.rest = share
+                return len(words)
+        return 0
+
+    def _described(self, k: int) -> int:
+        """`dark red`, `steel`."""
+        texts = self._texts(k)
+        for length in (2, 1):
+            words = " ".join(texts[:length])
+            if words in COLOR_WORDS:
+                self._look.color = COLOR_WORDS[words]
+                return length
+        self._look.material = _MATERIAL_WORDS.get(texts[0], self._look.material)
+        return int(texts[0] in _MATERIAL_WORDS)
+
+    def _counted(self, k: int) -> int:
+        """`four`, `no`; a number that is not whole is not understood."""
+        number = self._tokens[k].number
+        if number is None or number != int(number):
+            return 0
+        self._look.count = int(number)
+        return 1
+
+    def _side(self, k: int) -> tuple[str, int]:
+        """The side that is named from word k on, and how many words that takes."""
+        words = self._texts(k)
+        if words and words[0] in _UNDER:
+            return "bottom", 1
+        place = [word for word in words[1:] if word not in ("the", "its")]
+        if not place or words[0] not in _PLACED or place[0] not in _SIDES:
+            return "", 0
+        skipped = words[1:].index(place[0])
+        return _SIDES[place[0]], 2 + skipped + (len(place) > 1 and place[1] in _SIDE_NOUNS)
+
+
+def _longest(texts: tuple[str, ...], named: Mapping[tuple[str, ...], _Kind]) -> tuple[tuple[str, ...], _Kind] | None:
+    return next(((words, kind) for words, kind in named.items() if texts[: len(words)] == words), None)
+
+
+@cache
+def _bodies() -> dict[tuple[str, ...], Body]:
+    return _by_words((word, body) for body in BODIES for word in body.words)
+
+
+@cache
+def _mechanisms() -> dict[tuple[str, ...], Mechanism]:
+    return _by_words((word, mechanism) for mechanism in MECHANISMS for word in mechanism.words)
+
+
+def _by_words(named: Iterable[tuple[str, _Kind]]) -> dict[tuple[str, ...], _Kind]:
+    """Keyed by the words of the names, the longest first."""
+    found = {tuple(word.replace("-", " ").split()): kind for word, kind in named}
+    return dict(sorted(found.items(), key=lambda item: -len(item[0])))
+
+
+@cache
+def _vocabulary() -> frozenset[str]:
+    nouns = {word for words in (*_bodies(), *_mechanisms()) for word in words}
+    sizes = {word for words in DIMENSIONS.values() for word in words}
+    looks = {word for phrase in (*COLOR_WORDS, *_MATERIAL_WORDS) for word in phrase.split()}
+    opens = {word for words in _OPENNESS for word in words}
+    return frozenset(nouns | sizes | looks | opens | {*_SIDES, *_SIDE_NOUNS, *_UNDER, *_MOVING})

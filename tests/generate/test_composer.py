@@ -1,0 +1,140 @@
+"""Mechanisms placed on bodies: what a sentence asks for is there, moves freely, and nothing else is."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from manifold3d import Manifold, Mesh64
+
+from kinematify.errors import InputError
+from kinematify.generate.composer.bodies import BODIES
+from kinematify.generate.composer.compose import compose, draw_composition
+from kinematify.generate.composer.mechanisms import MECHANISMS
+from kinematify.generate.composer.sentence import NoBodyError, read_composition
+from kinematify.generate.procedural.request import from_text
+from kinematify.robot.joint_type import JointType
+
+CART = "a cart with four casters, a push handle and two drawers"
+TRUCK = "a pickup truck with four wheels, two doors and an opening tailgate"
+BOX = "a control box with a crank, a gauge needle and nine buttons"
+
+
+def solids_of(blueprint):
+    return {
+        part.name: Manifold(
+            Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64))
+        )
+        for part in blueprint.parts
+    }
+
+
+def overlaps(blueprint):
+    """Pairs of parts that share more than a cubic millimetre."""
+    solids = solids_of(blueprint)
+    return [(a, b) for a, b in combinations(solids, 2) if (solids[a] ^ solids[b]).volume() > 1e-9]
+
+
+def ends_of(joint):
+    return (joint.lower, joint.upper) if np.isfinite(joint.upper) else (1.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "counts"),
+    [
+        (CART, {JointType.CONTINUOUS: 8, JointType.PRISMATIC: 2}),
+        (TRUCK, {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 3}),
+        (BOX, {JointType.CONTINUOUS: 1, JointType.REVOLUTE: 1, JointType.PRISMATIC: 9}),
+        ("a toolbox with a lid and a carrying handle", {JointType.REVOLUTE: 2}),
+        ("a column with a folding arm and a crank", {JointType.REVOLUTE: 2, JointType.CONTINUOUS: 1}),
+        ("a platform with four wheels and a telescopic mast", {JointType.CONTINUOUS: 4, JointType.PRISMATIC: 1}),
+    ],
+)
+def test_what_is_asked_for_is_built_and_moves_freely(sentence, counts):
+    blueprint = from_text(sentence).build()
+    kinds = [joint.kind for joint in blueprint.joints]
+    assert {kind: kinds.count(kind) for kind in set(kinds)} == counts
+    assert not overlaps(blueprint)
+    for joint in blueprint.joints:
+        for value in ends_of(joint):
+            assert not overlaps(blueprint.moved({joint.child: value})), (joint.child, value)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_drawn_compositions_have_whole_parts_that_stand_free(seed):
+    blueprint = compose(draw_composition(seed), seed=seed)
+    assert not overlaps(blueprint)
+    assert all(len(solid.decompose()) == 1 for solid in solids_of(blueprint).values())
+
+
+def test_a_seed_draws_what_is_not_asked_for():
+    composition = read_composition("a cart, 90 cm wide, with two drawers")
+    first, again, other = (compose(composition, seed=seed).parts[0] for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first.vertices, again.vertices)
+    sizes = [np.ptp(part.vertices, axis=0) for part in (first, other)]
+    assert sizes[0][0] == pytest.approx(0.9)
+    assert sizes[1][0] == pytest.approx(0.9)
+    assert abs(sizes[0][2] - sizes[1][2]) > 1e-3
+
+
+def test_a_body_grows_with_what_is_placed_on_it():
+    few, many = (compose(read_composition(f"a cabinet with {n} drawers")).parameters["size"] for n in ("two", "20"))
+    assert many[2] > 1.5 * few[2]
+
+
+def test_sides_looks_and_openness_are_as_said():
+    composition = read_composition("a dark red control box with a crank on the left side and golden knobs, half open")
+    assert composition.color == "dark red"
+    assert [(item.mechanism.words[0], item.count, item.side, item.color) for item in composition.wanted] == [
+        ("crank", 1, "left", None),
+        ("knob", 2, "", "gold"),
+    ]
+    assert composition.rest == 0.5
+    crank = compose(composition).joint_above["crank_1"]
+    np.testing.assert_allclose(crank.axis, [1.0, 0.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "words"),
+    [
+        ("a toolbox with two cantilever trays", "cantilever"),
+        ("three carts with a wheel", "3 cart"),
+        ("a cart with two crocodiles", "crocodiles"),
+        ("a cart with a drawer and no drawer", "drawer"),
+    ],
+)
+def test_what_is_not_understood_is_named(sentence, words):
+    with pytest.raises(InputError, match=words):
+        read_composition(sentence)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "words"),
+    [
+        ("a cart with a push handle", "Nothing of this cart would move"),
+        ("a cart with three wheels", "in pairs"),
+        ("a control panel with two drawers", "needs room behind it"),
+        ("a frame with a caster", "no place for a caster"),
+        ("a column with an arm and a turntable on top", "turntable"),
+        ("a cart, 20 cm tall, with nine drawers", "no room for 9 drawers"),
+        ("a control box with 400 buttons", "at most 60"),
+    ],
+)
+def test_what_cannot_be_built_is_told(sentence, words):
+    with pytest.raises(InputError, match=words):
+        compose(read_composition(sentence))
+
+
+def test_what_is_no_body_is_left_to_the_families():
+    with pytest.raises(NoBodyError):
+        read_composition("a spaceship with a door")
+    with pytest.raises(InputError) as caught:
+        from_text("a spaceship with a door")
+    assert "composed" not in str(caught.value)
+
+
+def test_no_word_names_two_things():
+    for kinds in (BODIES, MECHANISMS):
+        words = [word for kind in kinds for word in kind.words]
+        assert len(set(words)) == len(words)
