@@ -33,6 +33,8 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
         elif found is not None and "right" in found.measured:
             joints = "" if parts and "joints move" in parts[0] else " joints move"
             parts.append(f"{title} {found.measured['right']:.0f} of {found.measured['joints']:.0f}{joints}")
+        elif not ENGINES[engine].runs and "read" in opening.measured:
+            parts.append(f"{title} reads {opening.measured['read']:.0f} of {opening.measured['joints']:.0f}")
     return f"as loaded: {', '.join(parts)}" if parts else ""
 
 

@@ -4,28 +4,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.engines import ENGINES
+from kinematify.simulation.engines import ENGINES, load_file
 from kinematify.simulation.loaded_file import Unloadable, hand
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
-    from pathlib import Path
+    from collections.abc import Iterable, Mapping
 
     from kinematify.config.validation import AsLoadedSettings
     from kinematify.robot.mechanism import Travel
-    from kinematify.robot.robot import Robot
-    from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, ReleaseRun, RestRun
+    from kinematify.robot.robot import Joint, Robot
+    from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, ReleaseRun, RestRun, RunningFile
     from kinematify.validation.stage import StageRequest
 
 _LEAST_SIZE = 0.01
 """Smaller models are looked at as if they had it [m]."""
+_SAME = 1e-6
+"""Limits that differ by less are the same, beside their size [rad or m]."""
 _FAR_BEYOND = 5.0
 """Where what presses against a limit is let off, in lengths that a limit may give way."""
 
@@ -73,9 +74,10 @@ class AsLoadedContext:
     @cached_property
     def loading(self) -> LoadedFile | Unloadable:
         """The file in the engine, or what the engine says against it."""
-        mechanism = self.mechanism
         try:
-            return _file_class(self.engine)(self.request.urdf, mechanism.links[self._root])
+            return load_file(
+                self.engine, self.request.urdf, self.mechanism.links[self._root], self.request.package_dirs
+            )
         except Unloadable as error:
             return error
 
@@ -89,10 +91,28 @@ class AsLoadedContext:
         assert not isinstance(self.loading, Unloadable)
         return self.loading
 
+    @property
+    def running(self) -> RunningFile:
+        """The same in an engine that simulates."""
+        assert ENGINES[self.engine].runs
+        return cast("RunningFile", self.loaded)
+
     @cached_property
     def lost(self) -> tuple[str, ...]:
         """Joints of the file that do not move in the engine."""
         return tuple(name for name in self.mechanism.joints if name not in self.loaded.joints)
+
+    @cached_property
+    def misread(self) -> tuple[Joint, ...]:
+        """Joints whose limits the engine has read otherwise than they stand in the file."""
+        limits = self.loaded.limits
+        return tuple(
+            joint
+            for joint in self.robot.joints
+            if joint.name in limits
+            and np.isfinite([joint.lower, joint.upper]).all()
+            and not np.allclose(limits[joint.name], (joint.lower, joint.upper), rtol=_SAME, atol=_SAME)
+        )
 
     @cached_property
     def travels(self) -> tuple[Travel, ...]:
@@ -127,12 +147,12 @@ class AsLoadedContext:
     @cached_property
     def left_alone(self) -> RestRun:
         """Nothing is done."""
-        return self.loaded.rest(self.values, self.settings.seconds, contacts=True)
+        return self.running.rest(self.values, self.settings.seconds, contacts=True)
 
     @cached_property
     def left_without_contacts(self) -> RestRun:
         """The same where no links touch each other: what gravity does alone."""
-        return self.loaded.rest(self.values, self.settings.seconds, contacts=False)
+        return self.running.rest(self.values, self.settings.seconds, contacts=False)
 
     def way(self, run: RestRun, travel: Travel) -> np.ndarray:
         """Return the values of a joint in a run [rad or m], shape (steps,)."""
@@ -176,7 +196,7 @@ class AsLoadedContext:
     @cached_property
     def inertias(self) -> dict[str, float]:
         """What a force at each joint moves at rest [kg or kg m^2]."""
-        return dict(zip(self.loaded.joints, self.loaded.inertias(self.values).tolist(), strict=True))
+        return dict(zip(self.loaded.joints, self.running.inertias(self.values).tolist(), strict=True))
 
     def ratios(self, travel: Travel) -> dict[str, float]:
         """Return the motion of a joint, 1, and of those that mimic it."""
@@ -187,10 +207,10 @@ class AsLoadedContext:
 
     def _by_hand(self, travel: Travel, end: float) -> HandRun:
         push = self._push(travel, (travel.rest, end), self.strength(travel))
-        pushed = self.loaded.push(push, self.values, contacts=True)
+        pushed = self.running.push(push, self.values, contacts=True)
         if self.arrives(travel, end, pushed.farthest):
             return HandRun(travel=travel, values=self.values, push=push, pushed=pushed)
-        free = self.loaded.push(push, self.values, contacts=False).farthest
+        free = self.running.push(push, self.values, contacts=False).farthest
         return HandRun(travel=travel, values=self.values, push=push, pushed=pushed, without_contacts=free)
 
     def strength(self, travel: Travel) -> float:
@@ -211,7 +231,7 @@ class AsLoadedContext:
             speed=self.speed(travel),
             resistance=joint.friction or 0.0,
             damping=joint.damping or 0.0,
-            time_step=self.loaded.time_step,
+            time_step=self.running.time_step,
         )
 
     @cached_property
@@ -230,7 +250,7 @@ class AsLoadedContext:
         force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
         push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force)
         values = self._values({travel.joint: end})
-        return HandRun(travel=travel, values=values, push=push, pushed=self.loaded.push(push, values, contacts=False))
+        return HandRun(travel=travel, values=values, push=push, pushed=self.running.push(push, values, contacts=False))
 
     @cached_property
     def speeds(self) -> dict[str, float]:
@@ -245,7 +265,7 @@ class AsLoadedContext:
     @cached_property
     def released(self) -> ReleaseRun:
         """All joints given a push and let go."""
-        return self.loaded.release(self.values, self.speeds, self.settings.release_seconds)
+        return self.running.release(self.values, self.speeds, self.settings.release_seconds)
 
     @cached_property
     def fall(self) -> float:
@@ -256,14 +276,3 @@ class AsLoadedContext:
     def arrives(self, travel: Travel, end: float, farthest: float) -> bool:
         """Whether a push got so far that the joint counts as moving to that end [rad or m]."""
         return abs(farthest - travel.rest) >= self.settings.reach * abs(end - travel.rest)
-
-
-def _file_class(engine: str) -> Callable[[Path, str], LoadedFile]:
-    """What loads a file into an engine; the engine's library is imported here, one in a process."""
-    if engine == "mujoco":
-        from kinematify.simulation.mujoco_file import MujocoFile  # noqa: PLC0415 - see above
-
-        return MujocoFile
-    from kinematify.simulation.pybullet_file import PybulletFile  # noqa: PLC0415 - see above
-
-    return PybulletFile

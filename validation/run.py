@@ -130,7 +130,7 @@ def _checks(task: TaskRequest | None, engines: Sequence[str]) -> dict[str, Check
     """Checks of the report; those of a task and of engines that not every installation has only when asked for."""
     known = {None, *DEFAULT_ENGINES, *engines}
     return {
-        name: check
+        name: replace(check, engines=tuple(engine for engine in check.engines if engine in known))
         for name, check in CHECKS.items()
         if (task is not None or not name.startswith("KV7")) and known & {*(check.engines or (None,))}
     }

@@ -10,10 +10,13 @@ from kinematify.errors import EnvironmentFault
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
+    from types import ModuleType
 
     from kinematify.config.validation import EngineSettings
     from kinematify.simulation.engine import Engine
+    from kinematify.simulation.loaded_file import LoadedFile
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +24,8 @@ class EngineEntry:
     """What is known of an engine without loading it."""
 
     name: str
-    """As users write it; ``kinematify.simulation.NAME_engine`` holds a function ``open_engine(settings, log)``."""
+    """As users write it; ``kinematify.simulation.NAME_engine`` holds a function ``open_engine(settings, log)``, and
+    ``NAME_file`` a class of `kinematify.simulation.loaded_file.LoadedFile`, `RunningFile` if it runs."""
     title: str
     """As it is written in messages."""
     package: str
@@ -90,8 +94,29 @@ def open_engine(name: str, settings: EngineSettings, log: Path) -> Engine:
     Raises:
         EnvironmentFault: It is not installed.
     """
+    return cast("Engine", _module(name, "engine").open_engine(settings, log))
+
+
+def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> LoadedFile:
+    """Load a file into an engine as users do, with the engine's own defaults.
+
+    Args:
+        name: Of `ENGINES`; what runs gives a `RunningFile`.
+        urdf: The file.
+        root: Name of its first link.
+        package_dirs: Where packages lie, for engines that look for them.
+
+    Raises:
+        EnvironmentFault: The engine is not installed.
+        Unloadable: The engine does not open the file.
+    """
+    opened = getattr(_module(name, "file"), f"{name.capitalize()}File")
+    return cast("LoadedFile", opened(urdf, root, package_dirs))
+
+
+def _module(name: str, what: str) -> ModuleType:
+    """A module of an engine; its library is imported here, one in a process."""
     try:
-        module = importlib.import_module(f"kinematify.simulation.{name}_engine")
+        return importlib.import_module(f"kinematify.simulation.{name}_{what}")
     except ImportError as error:
         raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error
-    return cast("Engine", module.open_engine(settings, log))

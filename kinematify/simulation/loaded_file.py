@@ -97,12 +97,24 @@ class Pushed:
 class LoadedFile(Protocol):
     """A file in an engine. Every joint that the engine moves is known by its name."""
 
-    joints: Sequence[str]
-    time_step: float
-    """[s]."""
+    @property
+    def joints(self) -> Sequence[str]:
+        """Names of the joints that move."""
+
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """Lower and upper limit of each joint as the engine has read them [rad or m], infinite where there are none."""
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
+
+
+class RunningFile(LoadedFile, Protocol):
+    """A file in an engine that simulates."""
+
+    @property
+    def time_step(self) -> float:
+        """Of the engine [s]."""
 
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
         """Let go at `values`, with or without contacts among the links."""
@@ -142,7 +154,7 @@ def hand(
     Args:
         ratios: Motion of the joint, 1, and of its followers, by name.
         way: From where to where [rad or m].
-        inertias: From `LoadedFile.inertias`, by joint.
+        inertias: From `RunningFile.inertias`, by joint.
         force: Of the hand [N or N m]; more is given where a heavy part would take long to start.
         speed: At least [rad/s or m/s]; long ways are gone faster.
         resistance: Declared friction [N or N m].

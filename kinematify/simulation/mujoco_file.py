@@ -51,14 +51,15 @@ print(seen[0], max(seen))
 
 
 class MujocoFile:
-    """See `kinematify.simulation.loaded_file.LoadedFile`."""
+    """See `kinematify.simulation.loaded_file.RunningFile`."""
 
-    def __init__(self, urdf: Path, root: str) -> None:
-        """Load it.
+    def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
+        """Load it; MuJoCo knows no packages.
 
         Raises:
             Unloadable: MuJoCo does not open it, or moves a link in other ways than by turning or sliding.
         """
+        del package_dirs
         self._path, self._root = urdf, root
         try:
             self._model = mujoco.MjModel.from_xml_path(str(urdf))
@@ -70,6 +71,12 @@ class MujocoFile:
         self.joints: Sequence[str] = tuple(self._model.joint(k).name for k in range(self._model.njnt))
         self.time_step = float(self._model.opt.timestep)
 
+    @property
+    def limits(self) -> Mapping[str, tuple[float, float]]:
+        """See `RunningFile`."""
+        ranges = zip(self.joints, self._model.jnt_limited, self._model.jnt_range.tolist(), strict=True)
+        return {name: (ends[0], ends[1]) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
+
     def _place(self, values: Mapping[str, float]) -> FloatArray:
         mujoco.mj_resetData(self._model, self._data)
         rest = np.array([values[name] for name in self.joints])
@@ -78,7 +85,7 @@ class MujocoFile:
         return rest
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         self._place(values)
         return self._overlaps()
 
@@ -109,7 +116,7 @@ class MujocoFile:
         return f"MuJoCo warns {', '.join(broken)}" if broken else None
 
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         self._place(values)
         seen = np.empty((round(seconds / self.time_step), self._model.nq))
         with self._without(contacts=not contacts):
@@ -119,7 +126,7 @@ class MujocoFile:
         return RestRun(values=seen, complaint=self._complaint())
 
     def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         self._place(values)
         self._data.qvel[:] = [speeds[name] for name in self.joints]
         seen = np.empty((round(seconds / self.time_step), 2))
@@ -132,14 +139,14 @@ class MujocoFile:
         return ReleaseRun(energy=seen, complaint=self._complaint())
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         self._place(values)
         inverse = np.zeros((self._model.nv, self._model.nv))
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
         return np.asarray(1.0 / np.diagonal(inverse))
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         rest, joint, data = self._place(values), self.joints.index(push.joint), self._data
         moved = [self.joints.index(name) for name in push.moved]
         ratios, weights = np.array(push.ratios), np.array(push.weights)
@@ -161,18 +168,18 @@ class MujocoFile:
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         steps = round(seconds / self.time_step)
         return _REST.format(**self._facts(joint, values), steps=steps)
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         facts = {**vars(push), **self._facts(push.joint, values), "steps": steps}
         off = "" if contacts else _NO_CONTACTS
         return _PUSH.format(**facts | {"moved": [self.joints.index(name) for name in push.moved], "off": off})
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         facts = self._facts(self.joints[0], values) | {"speeds": [float(speeds[name]) for name in self.joints]}
         return _RELEASE.format(**facts, steps=round(seconds / self.time_step))
 

@@ -69,14 +69,15 @@ _MOTOR = 240.0
 
 
 class PybulletFile:
-    """See `kinematify.simulation.loaded_file.LoadedFile`; contacts of links are those of `URDF_USE_SELF_COLLISION`."""
+    """See `kinematify.simulation.loaded_file.RunningFile`; contacts of links are those of `URDF_USE_SELF_COLLISION`."""
 
-    def __init__(self, urdf: Path, root: str) -> None:
-        """Load it.
+    def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
+        """Load it; PyBullet looks for packages by itself.
 
         Raises:
             Unloadable: PyBullet does not open it.
         """
+        del package_dirs
         self._path, self._root, self.time_step = urdf, root, _TIME_STEP
         world = _World(urdf, contacts=True)
         self._worlds = {True: world}
@@ -84,6 +85,11 @@ class PybulletFile:
         self._links = {-1: root, **{k: info[12].decode() for k, info in enumerate(infos)}}
         self._index = {info[1].decode(): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
         self.joints: Sequence[str] = tuple(self._index)
+        self.limits: Mapping[str, tuple[float, float]] = {
+            info[1].decode(): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
+            for info in infos
+            if info[2] != bullet.JOINT_FIXED
+        }
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
@@ -98,7 +104,7 @@ class PybulletFile:
         return world
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         world = self._world(values, contacts=True)
         return self._overlaps(world)
 
@@ -112,7 +118,7 @@ class PybulletFile:
         return deepest_first(depths)
 
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         world = self._world(values, contacts=contacts, as_loaded=True)
         seen = np.empty((round(seconds / self.time_step), len(self.joints)))
         for row in seen:
@@ -122,7 +128,7 @@ class PybulletFile:
         return RestRun(values=seen, complaint=None if finite else "the values of joints are no numbers any more")
 
     def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         world = self._world(values, contacts=False)
         world.pushed = True
         for name, k in self._index.items():
@@ -150,7 +156,7 @@ class PybulletFile:
         return potential, float(kinetic)
 
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
-        """See `LoadedFile`; the motors of the others hold them within a step."""
+        """See `RunningFile`; the motors of the others hold them within a step."""
         world = self._world(values, contacts=True)
         return np.array([self._inertia(world, k) for k in self._index.values()])
 
@@ -172,7 +178,7 @@ class PybulletFile:
         return total
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         world, joint, places = (
             self._world(values, contacts=contacts),
             self._index[push.joint],
@@ -208,17 +214,17 @@ class PybulletFile:
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         return _REST.format(**self._facts(joint, values), steps=round(seconds / self.time_step))
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         moved = zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True)
         facts = vars(push) | self._facts(push.joint, values) | {"steps": steps, "moved": list(moved)}
         return (_PUSH if contacts else _without_contacts(_PUSH)).format(**facts)
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """See `LoadedFile`."""
+        """See `RunningFile`."""
         facts = self._facts(self.joints[0], values)
         given = {k: float(speeds[name]) for name, k in self._index.items()}
         return _RELEASE.format(**facts, speeds=given, steps=round(seconds / self.time_step))

@@ -7,6 +7,7 @@ import sys
 import time
 from dataclasses import replace
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,10 @@ from kinematify.validation.stages import as_loaded
 from tests.validation.engine_models import Box, Model, Part, Told, cabinet, tell
 
 ENGINES = ("mujoco", "pybullet")
-each_engine = pytest.mark.parametrize("engine", ENGINES)
+NO_DRAKE = pytest.mark.skipif(
+    find_spec("pydrake") is None, reason="Drake is not installed: pip install 'kinematify[drake]'"
+)
+each_engine = pytest.mark.parametrize("engine", [*ENGINES, pytest.param("drake", marks=NO_DRAKE)])
 WALL = Box(size=(0.02, 0.64, 0.4), at=(0.35, 0.0, 0.0))
 """In front of the cabinet: the drawer gets 135 mm far, the door hits it too."""
 
@@ -61,6 +65,23 @@ def test_a_good_cabinet_passes(tmp_path: Path, engine: str) -> None:
     result = told(cabinet(), tmp_path, engine)
     assert {check: r.findings for check, r in result.results.items() if r.status is not Status.PASS} == {}
     assert result.results["KV804"].measured == {"joints": 2.0, "right": 2.0}
+
+
+def test_pinocchio_reads_joints_limits_and_overlaps(tmp_path: Path) -> None:
+    good = told(cabinet(), tmp_path, "pinocchio").results
+    assert {check: r.status for check, r in good.items()} == {"KV801": Status.PASS, "KV802": Status.PASS}
+    assert good["KV801"].measured == {"joints": 2.0, "read": 2.0}
+    before_the_door = Box(size=(0.02, 0.1, 0.1), at=(0.21, 0.25, 0.0))
+    (finding,) = told(collision(cabinet(), "drawer", before_the_door), tmp_path, "pinocchio").results["KV802"].findings
+    assert finding.pair == ("door", "drawer")
+    assert finding.value == pytest.approx(0.015, abs=1e-6)
+    gone = tmp_path / "gone.obj"
+    text = cabinet().write(tmp_path).read_text().replace('<box size="0.02 0.3 0.4"/>', f'<mesh filename="{gone}"/>')
+    (tmp_path / "model.urdf").write_text(text)
+    request = replace(request_of(cabinet(), tmp_path), urdf=tmp_path / "model.urdf")
+    (tmp_path / "model.urdf").write_text(text)
+    (refused,) = tell(partial(as_loaded.run, engine="pinocchio"), request).results["KV801"].findings
+    assert "gone.obj" in refused.message
 
 
 @pytest.mark.parametrize("engine", ["mujoco"])  # PyBullet lets no link collide with its parent
@@ -148,7 +169,7 @@ def test_what_turns_without_end_has_no_limits_to_hold(tmp_path: Path, engine: st
     assert result.results["KV805"].status is Status.PASS
 
 
-@each_engine
+@pytest.mark.parametrize("engine", ENGINES)  # Drake reads negative damping as none
 def test_negative_damping_gains_energy_as_the_code_of_the_report_shows(tmp_path: Path, engine: str) -> None:
     result = told(cabinet().with_part("drawer", extra='<dynamics damping="-5"/>'), tmp_path, engine)
     (finding,) = result.results["KV806"].findings
@@ -217,5 +238,5 @@ def test_what_works_in_another_engine_is_a_warning_unless_the_engine_was_named()
 def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:
     report = validate(cabinet().write(tmp_path), selected={"KV801", "KV802", "KV803", "KV804"})
     assert report.verdict == "pass"
-    assert report.as_loaded == "as loaded: MuJoCo 2 of 2 joints move, PyBullet 2 of 2"
+    assert report.as_loaded == "as loaded: MuJoCo 2 of 2 joints move, PyBullet 2 of 2, Pinocchio reads 2 of 2"
     assert report.as_json()["as_loaded"] == report.as_loaded

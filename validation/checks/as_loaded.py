@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.loaded_file import Unloadable
 from kinematify.validation.check import OpenCheck, Shared, check
 from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
@@ -16,10 +17,11 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.robot.mechanism import Travel
-    from kinematify.simulation.loaded_file import Overlap
+    from kinematify.simulation.loaded_file import Overlap, RestRun
     from kinematify.validation.as_loaded_context import AsLoadedContext, HandRun
 
-_ENGINES = ("mujoco", "pybullet")
+_ENGINES = tuple(ENGINES)
+_RUNNING = tuple(name for name, engine in ENGINES.items() if engine.runs)
 _PIECES = (
     "Write convex pieces as collision geometry of {0} and {1} that keep clear of each other along the motion; "
     "kinematify fix MODEL.urdf -o OUT does so."
@@ -47,8 +49,8 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed
-    base), is there with every joint that moves. Like all of KV8xx it is an error if it fails in every engine, or in one
-    of those that `--engines` names, else a warning.
+    base; `buildModelFromUrdf`), is there with every joint that moves, and with its limits. Like all of KV8xx it is an
+    error if it fails in every engine, or in one of those that `--engines` names, else a warning.
 
     Why it matters: Everything else is said of a prepared copy; this is what users load.
 
@@ -62,12 +64,22 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             link=_named_link(context, str(context.loading)),
         )
         return
-    result.measured["joints"] = float(len(context.loaded.joints))
+    result.measured["joints"] = float(len(context.mechanism.joints))
     for name in context.lost:
         result.find(
             f"The joint {name} of the file does not move in {context.title}, which has lost it or taken it for fixed.",
             f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
             joint=name,
+        )
+    result.measured["read"] = float(len(context.mechanism.joints) - len(context.lost) - len(context.misread))
+    for joint in context.misread:
+        lower, upper = context.loaded.limits[joint.name]
+        told = f"{lower:.4g} to {upper:.4g}" if np.isfinite([lower, upper]).all() else "none"
+        result.find(
+            f"The joint {joint.name} has the limits {joint.lower:.4g} to {joint.upper:.4g} in the file, and {told} in "
+            f"{context.title}.",
+            f"Give {joint.name} a lower limit that is less than the upper one; what does not move has a fixed joint.",
+            joint=joint.name,
         )
 
 
@@ -128,7 +140,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="As loaded: left alone, a joint leaves its range or is thrown",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
-    engines=_ENGINES,
+    engines=_RUNNING,
     follows={**IN_ENGINES, "KV802": Shared.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
@@ -147,7 +159,7 @@ def stays(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"Left alone, the model comes apart in {context.title}: {complaint}.",
             "Give every moving link a plausible mass and inertia, and mend overlaps at rest first.",
-            reproduction=context.loaded.lines_of_rest(
+            reproduction=context.running.lines_of_rest(
                 context.travels[0].joint, context.values, context.settings.seconds
             ),
         )
@@ -164,10 +176,12 @@ def _leaves(context: AsLoadedContext, travel: Travel) -> bool:
 
 def _thrown_by(context: AsLoadedContext, travel: Travel) -> Overlap | None:
     """Return the overlap at rest that moves a joint which stays where it is without contacts."""
-    limit = context.still(travel)
-    touching, alone = (context.way(run, travel) for run in (context.left_alone, context.left_without_contacts))
-    way, by_gravity = (float(np.abs(values - travel.rest).max()) for values in (touching, alone))
-    return context.between(travel, context.overlaps) if way > limit >= by_gravity else None
+
+    def stays_in(run: RestRun) -> bool:
+        return float(np.abs(context.way(run, travel) - travel.rest).max()) <= context.still(travel)
+
+    thrown = not stays_in(context.left_alone) and stays_in(context.left_without_contacts)
+    return context.between(travel, context.overlaps) if thrown else None
 
 
 def _beyond(context: AsLoadedContext, travel: Travel) -> float:
@@ -197,7 +211,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
         value=beyond if overlap is None else way,
         limit=context.still(travel),
         unit=travel.unit,
-        reproduction=context.loaded.lines_of_rest(travel.joint, context.values, context.settings.seconds),
+        reproduction=context.running.lines_of_rest(travel.joint, context.values, context.settings.seconds),
     )
 
 
@@ -207,7 +221,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     fails="As loaded: a hand cannot move a joint over its range",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
-    engines=_ENGINES,
+    engines=_RUNNING,
     follows={**IN_ENGINES, "KV802": Shared.CONTACT, "KV803": Shared.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
@@ -258,7 +272,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
         value=stop,
         limit=push.target,
         unit=travel.unit,
-        reproduction=context.loaded.lines_of_push(push, run.values, run.pushed.steps, contacts=True),
+        reproduction=context.running.lines_of_push(push, run.values, run.pushed.steps, contacts=True),
     )
 
 
@@ -285,7 +299,8 @@ def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
     fails="As loaded: a joint is pressed through its limit",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
-    engines=_ENGINES,
+    engines=_RUNNING,
+    follows={"KV801": Shared.JOINT},
     needs=(not_loaded, nothing_moves, late),
 )
 def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
@@ -313,7 +328,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=stop,
                 limit=end,
                 unit=travel.unit,
-                reproduction=context.loaded.lines_of_push(run.push, run.values, run.pushed.steps, contacts=False),
+                reproduction=context.running.lines_of_push(run.push, run.values, run.pushed.steps, contacts=False),
             )
 
 
@@ -323,7 +338,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     fails="As loaded: energy comes out of nothing",
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
-    engines=_ENGINES,
+    engines=_RUNNING,
     follows=NOT_A_BODY,
     needs=(not_loaded, nothing_moves, late),
 )
@@ -338,7 +353,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     too: PyBullet gives a link without them 1 kg.
     """
     run = context.released
-    reproduction = context.loaded.lines_of_release(context.values, context.speeds, context.settings.release_seconds)
+    reproduction = context.running.lines_of_release(context.values, context.speeds, context.settings.release_seconds)
     if run.complaint is not None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",

@@ -15,7 +15,6 @@ def run(request: StageRequest, recorder: Recorder, *, engine: str) -> None:
     from kinematify.validation.as_loaded_context import AsLoadedContext
 
     context = AsLoadedContext(request=request, engine=engine)
-    loads, *others = checks_of("KV8")
-    recorder.run(loads, context, engine)
-    for check in others:
-        recorder.run(check, context, engine)
+    for check in checks_of("KV8"):
+        if engine in check.engines:
+            recorder.run(check, context, engine)

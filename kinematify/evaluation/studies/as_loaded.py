@@ -156,7 +156,7 @@ def _world(checks: Sequence[CheckResult], engine: str) -> Record:
     measured = {name: value for check in told for name, value in check.measured.items()}
     return {
         "joints": measured.get("joints", 0.0),
-        "right": measured.get("right", 0.0),
+        "right": measured.get("right", measured.get("read", 0.0)),
         "unfinished": [f"{check.check}: {check.reason}" for check in told if check.status is Status.BLOCKED],
         "findings": [
             [item.check, item.joint, item.message]
