@@ -289,7 +289,7 @@ class EvidenceSettings(StageConfig):
     blocked: float
     """Share of the declared range that the parent blocks, from which a joint of a linkage is doubtful."""
     neighbour_deg: float
-    """Up to this angle to the declared axis, motion about another line is comparable [deg]."""
+    """Up to this angle to the declared axis, another line is nearby [deg]."""
     contact_band: float
     """Places this much farther apart than the nearest are in contact at rest, fraction of the child's diagonal."""
     contact_places: int
@@ -299,6 +299,8 @@ class EvidenceSettings(StageConfig):
     diagonal."""
     bearing_opens: float
     """The same where both bodies are round about the line that fits best."""
+    opens_across: float
+    """The same where that line is not nearby, outside linkages."""
     stays_closed: float
     """About the line that fits best it opens by at most this share."""
     widest_turn: float

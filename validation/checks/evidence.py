@@ -429,7 +429,7 @@ def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: flo
 @check(
     "KV349",
     title="A part stays with what carries it along its line",
-    fails="A part lifts off what carries it, and not about a line nearby",
+    fails="A part lifts off what carries it, and not about another line",
     severity=Severity.WARNING,
     blame=Blame.KINEMATICS,
     feedback=FeedbackRow.LINE,
@@ -438,8 +438,9 @@ def _wide(result: OpenCheck, case: JointCase, name: str, span: float, limit: flo
 def contact_opens(result: OpenCheck, case: JointCase) -> None:
     """Where KV342, KV343 or KV344 doubt the line of a joint, its motion is held against that about the line that fits
     best: half of the places at which child and parent touch at rest do not get farther apart by evidence.opens of the
-    child's size than they do about that other line (evidence.bearing_opens where both bodies are round about it), by
-    visible geometry, over the declared range up to evidence.widest_turn or evidence.longest_slide.
+    child's size than they do about that other line (evidence.bearing_opens where both bodies are round about it,
+    evidence.opens_across where it runs across), by visible geometry, over the declared range up to
+    evidence.widest_turn or evidence.longest_slide.
 
     Why it matters: Bearings and guides do not let go of each other: an axis that is tilted, or beside the hinge, lifts
     the part off what carries it, and no engine complains.
@@ -455,7 +456,7 @@ def contact_opens(result: OpenCheck, case: JointCase) -> None:
     where = f"{value:.3g} m" if case.measures.slides else f"{np.degrees(value):.3g} deg"
     result.find(
         f"{case.child} lifts off {case.parent}: at {where} of {joint.source}, half of where they touch at rest is "
-        f"{own.width:.3g} m or more farther apart. About a line nearby it is {max(other.width, 0.0):.3g} m.",
+        f"{own.width:.3g} m or more farther apart. About the line that fits best it is {max(other.width, 0.0):.3g} m.",
         _instead(case),
         joint=joint.source,
         pair=(case.parent, case.child),

@@ -139,14 +139,20 @@ class JointCase:
     def opened(self) -> tuple[Opening, Opening] | None:
         """How far the contact opens about the declared line and about the one that fits best, if that is much less.
 
-        None where the two bodies touch at too few places to say so, or where the lines are not comparable: far apart in
-        direction, without a bearing about the other one.
+        None where the two bodies touch at too few places to say so, and in linkages also where the other line runs
+        across the declared one without a bearing about it: what a leg without bearings touches says little.
         """
         measures, settings = self.measures, self.settings
         joint, line, size = measures.joint, measures.line, measures.weighed.scene.frame.diagonal
         turned = float(np.degrees(np.arccos(np.clip(abs(line.best_axis @ joint.axis), 0.0, 1.0))))
-        if not (self.contradicted or turned <= settings.neighbour_deg):
+        if self.contradicted:
+            limit = settings.bearing_opens
+        elif turned <= settings.neighbour_deg:
+            limit = settings.opens
+        elif self.linkage:
             return None
+        else:
+            limit = settings.opens_across
         cache = measures.weighed.scene.cache
         contact = Contact(cache, joint.parent, joint.child, band=settings.contact_band * size)
         if contact.places < settings.contact_places:
@@ -161,7 +167,6 @@ class JointCase:
             ),
             key=lambda opening: opening.width,
         )
-        limit = settings.bearing_opens if self.contradicted else settings.opens
         clear = own.width - other.width > limit * size and other.width < settings.stays_closed * own.width
         return (own, other) if clear else None
 
