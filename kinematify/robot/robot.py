@@ -59,6 +59,8 @@ class Shape:
     """The element's origin, shape (4, 4). Read-only."""
     color: tuple[float, float, float, float] | None = None
     """Red, green, blue, opacity in [0, 1]; None where the file states none."""
+    concave: bool = False
+    """Whether the file asks engines to collide its surface, not its hull (``concave="yes"``, which PyBullet heeds)."""
     line: int = 0
     """Where the file declares it; 0 for what no file declares, here and below."""
 

@@ -44,12 +44,15 @@ class GeometrySource:
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
 
+        Primitives with a length of zero stand for no shape, and are left out.
+
         Raises:
             DescriptionError: An element has no geometry, an unknown one, bad numbers, or a mesh that is missing.
         """
-        return tuple(self._shape(element, f"link {link.get('name')}") for element in link.findall(tag))
+        shapes = (self._shape(element, f"link {link.get('name')}") for element in link.findall(tag))
+        return tuple(shape for shape in shapes if shape is not None)
 
-    def _shape(self, element: _Element, where: str) -> Shape:
+    def _shape(self, element: _Element, where: str) -> Shape | None:
         geometry = element.find("geometry")
         if geometry is None or len(geometry) != 1:
             raise DescriptionError(
@@ -59,7 +62,8 @@ class GeometrySource:
         shape, transform = geometry[0], origin_transform(element, where)
         color, line = _color(element.find("material")), line_of(element)
         if shape.tag != "mesh":
-            return replace(primitive(str(shape.tag), _primitive_size(shape, where), transform, color), line=line)
+            size = _primitive_size(shape, where)
+            return replace(primitive(str(shape.tag), size, transform, color), line=line) if min(size) > 0.0 else None
         mesh = self._mesh_file(shape, where)
         scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
         # A mirroring scale turns the triangles inside out.
@@ -74,6 +78,7 @@ class GeometrySource:
             scale=scale,
             T_link_shape=transform,
             color=color,
+            concave=element.get("concave") in ("yes", "true", "1"),
             line=line,
         )
 
@@ -134,8 +139,8 @@ def _primitive_size(shape: _Element, where: str) -> tuple[float, ...]:
         size = tuple(vector(shape, "size", None, where).tolist())
     else:
         size = tuple(number(shape, attribute, None, where) for attribute in SIZES[str(shape.tag)])
-    if not all(length > 0 for length in size):
-        raise DescriptionError(f"The {shape.tag} of {where} has the size {size}. Every length must be above zero.")
+    if not all(length >= 0.0 for length in size):
+        raise DescriptionError(f"The {shape.tag} of {where} has the size {size}. No length may be below zero.")
     return size
 
 

@@ -32,6 +32,8 @@ class Servos:
     """What each may exert: its motion's need with a margin [N m or N], shape (leaders,)."""
     holding: FloatArray
     """Torques and forces that hold the model still in each row of the sweep, shape (rows, leaders)."""
+    resistance: FloatArray
+    """Damping and friction of the joints that each moves, as (damping, friction), shape (2, leaders)."""
 
 
 def servos(
@@ -57,14 +59,15 @@ def servos(
     way = np.array([max(t.upper - t.rest, t.rest - t.lower) for t in mechanism.travels])
     speed, acceleration = np.pi / settings.drive_seconds * way / 2.0, (np.pi / settings.drive_seconds) ** 2 * way / 2.0
     holding = gravity @ leads
-    drag = (np.abs(leads).T ** 2 @ resistance[0]) * speed + np.abs(leads).T @ resistance[1]
+    drag = np.stack([np.abs(leads).T ** 2 @ resistance[0], np.abs(leads).T @ resistance[1]])
     inertial = np.max(np.abs(coupled) * acceleration, axis=1, initial=0.0)
-    need = np.max(np.abs(holding), axis=0, initial=0.0) + inertial + drag
+    need = np.max(np.abs(holding), axis=0, initial=0.0) + inertial + drag[0] * speed + drag[1]
     return Servos(
         stiffness=inertia * rate**2,
         damping=2.0 * inertia * rate,
         force=settings.servo_margin * need,
         holding=holding,
+        resistance=drag,
     )
 
 
@@ -114,14 +117,14 @@ def _drive(leader: int, travel: Travel, end: float, settings: EngineSettings, st
 
 
 def commands(drive: Drive, mechanism: Mechanism, servos: Servos, samples: int) -> FloatArray:
-    """Return what each servo is told per step, weight and speed made up for in advance, shape (steps, leaders)."""
+    """Return what each servo is told per step, shape (steps, leaders); weight and resistance are made up for."""
     travel = mechanism.travels[drive.leader]
     places = np.linspace(travel.lower, travel.upper, samples)
     holding = servos.holding[sweep_rows(drive.leader, samples)]
     told = np.tile(mechanism.rest, (len(drive.reference), 1))
-    told[:, drive.leader] = (
-        drive.reference + drive.speed * servos.damping[drive.leader] / servos.stiffness[drive.leader]
-    )
+    damping, friction = servos.resistance[:, drive.leader]
+    ahead = drive.speed * (servos.damping[drive.leader] + damping) + friction * np.sign(drive.speed)
+    told[:, drive.leader] = drive.reference + ahead / servos.stiffness[drive.leader]
     for leader in range(told.shape[1]):
         told[:, leader] += np.interp(drive.reference, places, holding[:, leader]) / servos.stiffness[leader]
     return told

@@ -92,6 +92,12 @@ def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit:
     np.testing.assert_allclose(found, np.multiply(unit, [[0, 0, 0], [1, 2, 3]]), atol=1e-6)
 
 
+def test_a_primitive_without_size_is_no_shape(tmp_path: Path) -> None:
+    shapes = visual('<sphere radius="0"/>') + visual('<box size="1 2 3"/>')
+    (shape,) = read_robot(urdf(tmp_path, link("a", shapes))).links[0].visuals
+    assert shape.size == (1.0, 2.0, 3.0)
+
+
 LYING = """<robot name="stack">{links}
   <joint name="turn" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0 0 {height}"/></joint>
 </robot>"""
@@ -189,7 +195,7 @@ def two(kind: str, inside: str = "") -> tuple[str, ...]:
         (two("continuous", '<mimic joint="j"/>'), "circle"),
         (two("floating"), "freely"),
         (two("planar"), "freely"),
-        ((link("a", visual('<box size="1 -2 1"/>')),), "above zero"),
+        ((link("a", visual('<box size="1 -2 1"/>')),), "below zero"),
         ((link("a", visual('<cone size="1"/>')),), "<cone>"),
         ((link("a", "<visual/>"),), "no geometry element"),
         (('<link name=""/>',), "no name"),

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.configurations import read_poses
@@ -277,3 +278,38 @@ def test_contacts_are_left_for_the_comparison_with_engines(tmp_path: Path) -> No
     values = left.q[left.contacts[:, 0], left.joints.index("drawer_joint")]
     assert values.max() < -0.004  # 5 mm are free behind the drawer
     assert left.contact_depth.max() > 0.015
+
+
+RING = """<robot name="ring">
+  <link name="ring">
+    <visual><geometry><mesh filename="ring.stl"/></geometry></visual>
+    <collision{concave}><geometry><mesh filename="ring.stl"/></geometry></collision>
+  </link>
+  <link name="plug">
+    <visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
+    <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>
+  </link>
+  <joint name="push" type="prismatic">
+    <origin xyz="0 0 0.25"/><parent link="ring"/><child link="plug"/><axis xyz="0 0 -1"/>
+    <limit lower="0" upper="0.25" effort="10" velocity="1"/>
+  </joint>
+</robot>"""
+"""A plug that slides into the hole of a ring, whose hull has none."""
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A ring that may be declared concave."""
+
+    concave: str
+
+    def write(self, folder: Path) -> Path:
+        """Write URDF and mesh."""
+        trimesh.creation.annulus(0.4, 0.5, 0.2).export(folder / "ring.stl")
+        (folder / "model.urdf").write_text(RING.format(concave=self.concave))
+        return folder / "model.urdf"
+
+
+@pytest.mark.parametrize(("concave", "told_of"), [("", True), (' concave="yes"', False)])
+def test_hulls_of_what_is_declared_concave_are_not_held_against_it(tmp_path: Path, concave: str, told_of: bool) -> None:
+    assert ("KV332" in found(Ring(concave), tmp_path)) is told_of  # type: ignore[arg-type]

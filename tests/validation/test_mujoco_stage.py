@@ -161,6 +161,13 @@ def test_strong_motor_holds(tmp_path: Path) -> None:
     assert told(pendulum(effort=5.0), tmp_path).results["KV404"].status is Status.PASS
 
 
+def test_stiff_joint_is_driven_against_its_friction(tmp_path: Path) -> None:
+    light = {"mass": 0.01, "inertia": (2e-6, 1.4e-4, 1.4e-4), "extra": '<dynamics damping="2.0" friction="4.0"/>'}
+    result = told(pendulum(**light), tmp_path)
+    assert result.results["KV405"].status is Status.PASS
+    assert result.results["KV405"].measured["arrived"] == 2
+
+
 def test_loads_what_the_file_says_or_says_so(tmp_path: Path) -> None:
     request = prepared_request(cabinet(), tmp_path)
     urdf = tmp_path / URDF_FILE

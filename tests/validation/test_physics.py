@@ -399,3 +399,5 @@ def test_a_hollow_collision_mesh_is_a_note(tmp_path: Path) -> None:
     (finding,) = checked(urdf)["KV242"].findings
     assert (finding.link, finding.severity) == ("ring", Severity.NOTE)
     assert finding.value == pytest.approx(0.25 / (0.25 - 0.16), rel=0.02)
+    urdf.write_text(urdf.read_text().replace("<collision>", '<collision concave="yes">'))
+    assert checked(urdf)["KV242"].findings == ()

@@ -135,7 +135,7 @@ FAULTS = {
     "empty limit": ('lower="0" upper="1.5" ', "", "KV136", "hinge", None, 19, True),
     "swapped limits": ('lower="0" upper="1.5"', 'lower="1.5" upper="0"', "KV137", "hinge", None, 19, False),
     "negative box": ('size="1 1 0.1"', 'size="1 -1 0.1"', "KV138", None, "lid", 8, False),
-    "zero radius": ('radius="0.1"', 'radius="0"', "KV138", None, "knob", 12, False),
+    "zero radius": ('radius="0.1"', 'radius="0"', "KV138", None, "knob", 12, True),
     "zero scale": ('scale="1 1 1"', 'scale="0 1 1"', "KV139", None, "lid", 9, False),
     "no geometry": ('<geometry><box size="1 1 1"/></geometry>', "", "KV140", None, "base", 4, False),
     "two shapes": ('<box size="1 1 1"/>', '<box size="1 1 1"/><sphere radius="1"/>', "KV140", None, "base", 4, False),

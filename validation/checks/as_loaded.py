@@ -45,7 +45,7 @@ def nothing_moves(context: AsLoadedContext) -> str | None:
     severity=Severity.ERROR,
     blame=Blame.ASSET,
     engines=_ENGINES,
-    follows=dict.fromkeys(NOT_A_BODY, Shared.BODY),
+    follows={**dict.fromkeys(NOT_A_BODY, Shared.BODY), "KV138": Shared.MODEL},
 )
 def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     """The untouched file, loaded with the engine's own defaults (`MjModel.from_xml_path`; `loadURDF` with a fixed

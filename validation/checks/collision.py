@@ -150,7 +150,7 @@ def _vector(values: FloatArray) -> str:
     needs=(something_collides,),
 )
 def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
-    """The hull of a closed collision mesh has at most `inflation` times its volume.
+    """The hull of a closed collision mesh has at most `inflation` times its volume, unless it is declared concave.
 
     Why it matters: MuJoCo and PyBullet collide the hull: a drawer cannot enter a cabinet that is one mesh.
     Kinematify cuts such meshes into convex pieces for its own runs.
@@ -159,7 +159,10 @@ def inflated_hulls(result: OpenCheck, physics: Physics) -> None:
     """
     # one finding per link, about the worst of its meshes
     for link in physics.model.links:
-        ratio, index = max(((physics.inflation(shape), k) for k, shape in enumerate(link.collisions)), default=(0.0, 0))
+        ratio, index = max(
+            ((physics.inflation(shape), k) for k, shape in enumerate(link.collisions) if not shape.concave),
+            default=(0.0, 0),
+        )
         if ratio > physics.settings.inflation:
             shape = link.collisions[index]
             name = shape.file.name if shape.file is not None else shape.kind

@@ -32,11 +32,13 @@ _KNOWN = ("mesh", *_SIZES)
     blame=Blame.ASSET,
 )
 def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
-    """Every length of a box, sphere, cylinder or capsule is above zero.
+    """Every length of a box, sphere, cylinder or capsule is above zero. A length of zero is a warning: such a shape
+    stands for none, and all other checks leave it out.
 
-    Why it matters: PyBullet accepts a negative size and collides with something else than the picture shows.
+    Why it matters: PyBullet accepts a negative size and collides with something else than the picture shows. MuJoCo
+    refuses a size of zero.
 
-    Remedy: Write the true size in metres.
+    Remedy: Write the true size in metres, or delete the element.
     """
     for link, element, shape in _shapes(urdf):
         for attribute in _SIZES.get(str(shape.tag), ()):
@@ -46,6 +48,7 @@ def bad_sizes(result: OpenCheck, urdf: Urdf) -> None:
                     f"The <{shape.tag}> of a {element.tag} of the link {link} has {attribute}="
                     f"{shown(shape.get(attribute))}; every length must be above zero.",
                     "Write the true size in metres, or delete the element.",
+                    severity=Severity.WARNING if min(values) == 0.0 else None,
                     blame=blame_of(element),
                     link=link,
                     value=min(values),

@@ -120,7 +120,8 @@ def _two_bodies_that_collide(look: GeometryLook) -> str | None:
 )
 def hulls_block(result: OpenCheck, look: GeometryLook) -> None:
     """Where the exact surfaces are clear, so are the convex hulls of the collision shapes, which engines collide
-    instead (neighbours only if the parent is the base).
+    instead (neighbours only if the parent is the base). What the file declares concave="yes" is left out: PyBullet
+    collides its surface then.
 
     Why it matters: A drawer in a hollow cabinet is stuck in an engine although nothing is wrong with its joint.
 

@@ -92,7 +92,13 @@ class HullView:
         return worst
 
     def _seen_by_engines(self, pair: Pair) -> bool:
-        """Engines leave out contacts of parent and child, except with a base that is fixed to the world."""
+        """Engines leave out contacts of parent and child, except with a base that is fixed to the world.
+
+        Of a body that the file declares concave they collide the surface, those that heed it.
+        """
+        links = [name for index in pair for name in self._scene.bodies[index].links]
+        if any(shape.concave for name in links for shape in self._scene.model.link_by_name[name].collisions):
+            return False
         return pair not in self._scene.connection_of or pair[0] == 0
 
 
