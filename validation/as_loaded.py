@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import CheckResult, Finding
 
 _FAMILY, _OPENS, _MOVES, _ENERGY = "KV8", "KV801", "KV804", "KV806"
+_CONTACTS = ("KV802", "KV803", _MOVES)
+"""Checks that tell of contacts."""
 
 
 def as_loaded_words(checks: Sequence[CheckResult]) -> str:
@@ -41,6 +43,8 @@ def as_loaded_words(checks: Sequence[CheckResult]) -> str:
 def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> list[CheckResult]:
     """Make errors of the untouched file warnings where another engine has none, and say which.
 
+    What blames an engine and only one shows is a note then, and a warning where no other engine runs the file.
+
     Args:
         checks: All results.
         engines: That were asked for. Where they are not the default ones a user has named them, and errors stay.
@@ -59,7 +63,7 @@ def across_engines(checks: Sequence[CheckResult], engines: Sequence[str]) -> lis
         if finding.severity is Severity.ERROR
     ]
     return [
-        replace(check, findings=tuple(_across(finding, errors, ran) for finding in check.findings))
+        check.with_findings(_across(finding, errors, ran) for finding in check.findings)
         if check.check.startswith(_FAMILY)
         else check
         for check in checks
@@ -77,7 +81,7 @@ def shown_as_loaded(checks: Sequence[CheckResult]) -> list[CheckResult]:
     """
     if not any(check.check == _MOVES and "joints" in check.measured and not check.unfinished for check in checks):
         return list(checks)
-    shown = [finding for check in checks if check.check.startswith(_FAMILY) for finding in check.findings]
+    shown = [finding for check in checks if check.check in _CONTACTS for finding in check.findings]
     joints = {finding.joint for finding in shown if finding.severity is not Severity.NOTE}
     pairs = {frozenset(finding.pair) for finding in shown if finding.pair is not None}
 
@@ -103,6 +107,15 @@ def _across(finding: Finding, errors: Sequence[Finding], ran: Mapping[str, set[s
         if other.joint in (None, finding.joint) and (other.check == _ENERGY) <= (finding.check == _ENERGY)
     }
     works = [entry.title for name, entry in ENGINES.items() if name in ran.get(finding.check, set()) - failing]
-    if finding.severity is not Severity.ERROR or not works:
+    if finding.severity is not Severity.ERROR:
         return finding
-    return replace(finding, severity=Severity.WARNING, message=f"{finding.message} It works in {' and '.join(works)}.")
+    alone = finding.blame is Blame.ENGINE and not any(
+        other.check == finding.check and other.engine != finding.engine for other in errors
+    )
+    if not works:
+        return replace(finding, severity=Severity.WARNING) if alone else finding
+    return replace(
+        finding,
+        severity=Severity.NOTE if alone else Severity.WARNING,
+        message=f"{finding.message} It works in {' and '.join(works)}.",
+    )

@@ -15,7 +15,7 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.simulation.engines import DEFAULT_ENGINES
-from kinematify.validation.as_loaded import across_engines, as_loaded_words
+from kinematify.validation.as_loaded import across_engines, as_loaded_words, shown_as_loaded
 from kinematify.validation.as_loaded_context import AsLoadedContext
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status
@@ -233,6 +233,49 @@ def test_what_works_in_another_engine_is_a_warning_unless_the_engine_was_named()
     both = [*opened, jam("mujoco"), jam("pybullet")]
     assert across_engines(both, DEFAULT_ENGINES) == both
     assert as_loaded_words(one) == "as loaded: MuJoCo 1 of 2 joints move, PyBullet 2 of 2"
+
+
+def energy(engine: str, *, gains: bool) -> CheckResult:
+    finding = Finding(
+        check="KV806",
+        severity=Severity.ERROR,
+        blame=Blame.ENGINE,
+        engine=engine,
+        message="It gains.",
+        remedy="Mend it.",
+    )
+    status = Status.FAIL if gains else Status.PASS
+    return CheckResult(check="KV806", engine=engine, status=status, findings=(finding,) if gains else ())
+
+
+def test_energy_that_one_engine_alone_makes_is_its_time_step() -> None:
+    mujoco, pybullet = across_engines([energy("mujoco", gains=False), energy("pybullet", gains=True)], DEFAULT_ENGINES)
+    assert (mujoco.status, pybullet.status) == (Status.PASS, Status.PASS)
+    assert pybullet.findings[0].severity is Severity.NOTE
+    (alone,) = across_engines([energy("pybullet", gains=True)], DEFAULT_ENGINES)
+    assert (alone.status, alone.findings[0].severity) == (Status.FAIL, Severity.WARNING)
+    both = [energy("mujoco", gains=True), energy("pybullet", gains=True)]
+    assert across_engines(both, DEFAULT_ENGINES) == both
+
+
+def stop(**about: object) -> CheckResult:
+    """A drive that a prepared copy stops."""
+    fields = {"joint": "hinge", "pair": ("frame", "door"), "blame": Blame.PHYSICS, **about}
+    finding = Finding(check="KV405", severity=Severity.WARNING, message="It stops.", remedy="Mend it.", **fields)  # type: ignore[arg-type]
+    return CheckResult(check="KV405", engine="mujoco", status=Status.FAIL, findings=(finding,))
+
+
+def test_contacts_that_only_the_prepared_copy_shows_are_notes() -> None:
+    fine = replace(jam("mujoco"), status=Status.PASS, findings=())
+    (told,) = shown_as_loaded([stop(), fine])[0].findings
+    assert (told.severity, shown_as_loaded([stop(), fine])[0].status) == (Severity.NOTE, Status.PASS)
+    assert told.message.endswith("no engine that loads the file itself.")
+    pressed = replace(jam("pybullet").findings[0], check="KV805", joint="hinge")
+    other = CheckResult(check="KV805", engine="pybullet", status=Status.FAIL, findings=(pressed,))
+    assert shown_as_loaded([stop(), fine, other])[0].status is Status.PASS
+    jammed = jam("mujoco").findings[0].joint
+    for kept in ([stop()], [stop(joint=jammed), jam("mujoco")], [stop(blame=Blame.KINEMATICS), fine]):
+        assert shown_as_loaded(kept) == kept
 
 
 def test_the_verdict_says_what_moves_as_loaded(tmp_path: Path) -> None:

@@ -300,14 +300,17 @@ def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_RUNNING,
-    follows={"KV801": Shared.JOINT},
+    follows={
+        **dict.fromkeys(("KV221", "KV801"), Shared.JOINT),
+        **dict.fromkeys(("KV204", "KV205", "KV207"), Shared.BODY),
+    },
     needs=(not_loaded, nothing_moves, late),
 )
 def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint that has limits is pressed against both by as_loaded.force or as_loaded.torque,
     by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press, the others
     held, without contacts and gravity. It gives way by no more than as_loaded.still of its range (at least
-    as_loaded.still_angle or as_loaded.still_length).
+    as_loaded.still_angle or as_loaded.still_length). A limit that gives way and holds then is a warning.
 
     Why it matters: A range that an engine does not keep is none: MuJoCo takes limits that are equal for no limits.
 
@@ -316,13 +319,15 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     for run in context.presses:
         travel, end, stop = run.travel, run.values[run.travel.joint], run.pushed.farthest
         if abs(stop - end) > context.still(travel):
+            through = abs(stop - end) >= abs(run.push.target - end)
             unit = "N m" if travel.turns else "N"
             result.find(
                 f"Pressed with up to {run.push.force:.3g} {unit} against its limit of {end:.4g} {travel.unit} in "
                 f"{context.title}, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
-                f"{' at least' if abs(stop - end) >= abs(run.push.target - end) else ''}.",
+                f"{' at least' if through else ''}.",
                 f"Give {travel.joint} limits that {context.title} keeps (the lower one less than the upper one), or a "
                 "part of plausible mass and inertia; a joint that does not move is a fixed one.",
+                severity=None if through else Severity.WARNING,
                 joint=travel.joint,
                 q={travel.joint: stop},
                 value=stop,
@@ -337,7 +342,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     title="As loaded: nothing gains energy",
     fails="As loaded: energy comes out of nothing",
     severity=Severity.ERROR,
-    blame=Blame.PHYSICS,
+    blame=Blame.ENGINE,
     engines=_RUNNING,
     follows=NOT_A_BODY,
     needs=(not_loaded, nothing_moves, late),
@@ -345,7 +350,8 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
 def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file all joints are given a hand's speed and let go for as_loaded.release_seconds, with the
     friction and damping of the file, without motors and contacts. The sum of kinetic and potential energy never grows
-    by more than as_loaded.energy of the largest kinetic energy.
+    by more than as_loaded.energy of the largest kinetic energy. What one engine alone gains is its time step's: a note
+    if the file works in another one, else a warning.
 
     Why it matters: What gains energy by itself blows up, sooner or later, with whatever hangs on it.
 
@@ -358,6 +364,7 @@ def gains_no_energy(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"Given a push and let go in {context.title}, the model comes apart: {run.complaint}.",
             "Give every moving link a plausible mass and inertia, and every joint a damping that is not negative.",
+            blame=Blame.PHYSICS,
             reproduction=reproduction,
         )
         return
