@@ -57,6 +57,16 @@ class CollisionConfig(StageConfig):
     """What would be left thinner is dropped, fraction of the clearance."""
     most_pieces: int
     """Convex pieces of a link before it is carved."""
+    most_carved: int
+    """Pieces of a link after that; those that stand for least of its surface are dropped."""
+    link_gap: float
+    """Pieces may reach so far beyond a link's surface, fraction of its diagonal."""
+    model_gap: float
+    """Or so far, whichever is more, fraction of the model's diagonal."""
+    cuts: int
+    """Cuts through concave meshes of a model."""
+    cuts_per_link: int
+    """The same for models with many links."""
     corners: int
     """Vertices of a piece that was joined from others, at most."""
     forced_share: float

@@ -4,7 +4,9 @@ Every joint is swept over its range from rest, the others at rest. Two pieces ar
 face plane of one of them, or a plane across an axis of the joint's frame, has the other one on its far side at both
 ends of the step; the arc between them is counted by its height over the chord. That is a statement about the whole
 step, so nothing slips through between two samples. Where no plane is found, the piece that loses less of its link is
-cut: by one plane if that leaves nearly all of it, else into the convex rest around the swept obstacle.
+cut: by one plane if that leaves nearly all of it, else into the convex rest around the swept obstacle. What is lost is
+how far points on the link's surface are then from its pieces, because these also fill hollows, where nothing is lost;
+volume counts where the surface does not decide.
 """
 
 from __future__ import annotations
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
     FreeRange = Callable[[int, int, int], tuple[float, float]]
     """Values of a sweep between which two bodies may be kept apart [rad or m]: sweep, body, body."""
 
+_SAME = 1e-4
+"""A point lies on two pieces if they are equally near to it, but for this share of the body's size."""
 _SAMPLES = 160
 """Points in a piece by which the share that a plane cuts off is estimated."""
 _LEAST_STEPS = 48
@@ -41,8 +45,10 @@ _MOST_PARTS = 6
 """Pieces that one obstacle may leave of one piece: a box has six sides."""
 _LEAST_PART = 0.02
 """A part of a piece that is smaller than this share of it, and of its link, is dropped."""
-_PIECE_COST = 0.01
-"""Share of a link that is given up to save one more piece."""
+_FILLING = 1e-3
+"""What the volume of a piece counts beside the distance of its surface."""
+_PIECE_COST = 3e-4
+"""What one more piece costs: as much as 3 % of the surface that is cut back by 1 % of the link's size."""
 _ROUNDING = 1e-3
 """Cuts keep this much more than the clearance, as a share of it."""
 _BEGUN = 0.25
@@ -99,8 +105,9 @@ class Carved:
 class _Polytope:
     """A convex piece of a body, with its planes."""
 
-    def __init__(self, body: int, piece: ConvexPiece) -> None:
-        self.body, self.piece = body, piece
+    def __init__(self, body: int, piece: ConvexPiece, marks: FloatArray) -> None:
+        """Keep the piece, and the points (n, 3) of its body's surface that it stands for."""
+        self.body, self.piece, self.marks = body, piece, marks
         self.vertices = piece.vertices
         self.low, self.high = piece.low, piece.high
 
@@ -136,6 +143,7 @@ class _Polytope:
             return None
         if heights.min() >= 0.0:
             return self
+        marks = self.marks[self.marks @ normal >= offset]
         faces = self.piece.faces
         edges = np.unique(
             np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0
@@ -149,40 +157,77 @@ class _Polytope:
             vertices, faces = convex_hull(points)
         except (QhullError, ValueError):  # what is left is flat
             return None
-        return _Polytope(self.body, ConvexPiece(vertices=vertices, faces=faces))
+        return _Polytope(self.body, ConvexPiece(vertices=vertices, faces=faces), marks)
+
+    def stray(self, parts: Sequence[_Polytope]) -> float:
+        """Sum of the distances of its marks from parts of it; from farthest off where there are none [m]."""
+        far = float(np.linalg.norm(self.high - self.low))
+        nearest = np.full(len(self.marks), far)
+        for part in parts:
+            normals, offsets = part.planes
+            nearest = np.minimum(nearest, np.maximum((self.marks @ normals.T - offsets).max(axis=1), 0.0))
+        return float(nearest.sum())
+
+    def share(self, volume: float, marks: int) -> float:
+        """How much it is of something with so much volume and surface."""
+        return len(self.marks) / max(marks, 1) + _FILLING * self.piece.volume / max(volume, 1e-300)
 
 
 def carved(
     bodies: Sequence[Sequence[ConvexPiece]],
+    surfaces: Sequence[FloatArray],
     sweeps: Sequence[Sweep],
     free_range: FreeRange,
     *,
     clearance: float,
     thinnest: float,
+    most: int,
 ) -> Carved:
     """Cut pieces back until no sweep brings two of them nearer than the clearance where the bodies are free to move.
 
     Args:
         bodies: Convex pieces of every body, world frame at rest.
+        surfaces: Points on the surface of every body, shape (n, 3) each, spread evenly.
         sweeps: One per joint that moves.
         free_range: Where the bodies themselves do not block each other; asked only for those whose pieces meet. What
             lies beyond is left as it is: carving there would hide that the motion is not possible.
         clearance: Distance that is kept between what moves and what does not [m].
         thinnest: What would be left thinner than this is dropped [m].
+        most: Pieces of a body at most; those are dropped that stand for least of its surface.
     """
-    alive = [[_Polytope(index, piece) for piece in pieces] for index, pieces in enumerate(bodies)]
+    alive = [_marked(index, *of_body) for index, of_body in enumerate(zip(bodies, surfaces, strict=True))]
     volumes = [sum(item.piece.volume for item in group) for group in alive]
+    # The sum of distances of a body's surface from its pieces is measured by its size, times the points that it has.
+    extents = [
+        max(len(surface) * float(np.linalg.norm(np.ptp(surface, axis=0))), 1e-300) if len(surface) else 1.0
+        for surface in surfaces
+    ]
     jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
         free = partial(free_range, number)
-        clearing = _Clearing(alive, volumes, sweep, free, clearance=clearance, thinnest=thinnest)
+        clearing = _Clearing(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest)
         jams += [(number, one, other) for one, other in clearing.run()]
+    for group, volume, surface in zip(alive, volumes, surfaces, strict=True):
+        while len(group) > most:
+            group.remove(min(group, key=partial(_Polytope.share, volume=volume, marks=len(surface))))
     left = [sum(item.piece.volume for item in group) for group in alive]
     return Carved(
         pieces=tuple(tuple(item.piece for item in group) for group in alive),
         lost=tuple(max(0.0, 1.0 - now / max(before, 1e-300)) for now, before in zip(left, volumes, strict=True)),
         jams=tuple(jams),
     )
+
+
+def _marked(body: int, pieces: Sequence[ConvexPiece], surface: FloatArray) -> list[_Polytope]:
+    """The pieces of a body, each with the points of its surface to which no other one is nearer."""
+    found = [_Polytope(body, piece, surface[:0]) for piece in pieces]
+    if found and len(surface):
+        beyond = np.array([(surface @ item.planes[0].T - item.planes[1]).max(axis=1) for item in found])
+        beyond = np.maximum(beyond, 0.0)
+        nearest = beyond <= beyond.min(axis=0) + _SAME * float(np.ptp(surface, axis=0).max())
+        for item, mine in zip(found, nearest, strict=True):
+            item.marks = surface[mine]
+    return found
 
 
 class _Clearing:
@@ -192,14 +237,15 @@ class _Clearing:
         self,
         alive: list[list[_Polytope]],
         volumes: Sequence[float],
+        extents: Sequence[float],
         sweep: Sweep,
         free_range: Callable[[int, int], tuple[float, float]],
         *,
         clearance: float,
         thinnest: float,
     ) -> None:
-        """Keep the pieces of all bodies, which are cut in place, and the volumes that bodies had."""
-        self._alive, self._volumes, self._thinnest = alive, volumes, thinnest
+        """Keep the pieces of all bodies, which are cut in place, and volumes and extents of bodies."""
+        self._alive, self._volumes, self._extents, self._thinnest = alive, volumes, extents, thinnest
         self._free_range = cache(free_range)
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
         self._resting = [item for body, group in enumerate(alive) if body not in sweep.moved for item in group]
@@ -230,9 +276,10 @@ class _Clearing:
         options = []
         for piece, obstacle in ((moving, resting), (resting, moving)):
             parts = self._around(piece, obstacle, steps, backwards=piece is moving)
-            left = sum(item.piece.volume for item in self._alive[piece.body])
             # Of what is left: a body that has lost much already is spared.
-            lost = (piece.piece.volume - sum(part.piece.volume for part in parts)) / left
+            left = sum(item.piece.volume for item in self._alive[piece.body])
+            lost = _FILLING * (piece.piece.volume - sum(part.piece.volume for part in parts)) / left
+            lost += piece.stray(parts) / self._extents[piece.body]
             emptied = not parts and len(self._alive[piece.body]) == 1
             options.append((np.inf if emptied else lost + _PIECE_COST * (len(parts) - 1), piece, parts))
         cost, piece, parts = min(options, key=lambda item: item[0])
@@ -325,8 +372,10 @@ class _Path:
         along = self._normals(obstacle, steps, backwards=backwards)
         normals = np.concatenate([-piece.planes[0], self._across, along])
         offsets = (normals @ swept.T).max(axis=1) + (1.0 + _ROUNDING) * self._clearance + self._rise(obstacle)
-        kept = (piece.samples @ normals.T > offsets).sum(axis=0)
-        # Of planes that keep as many samples, the one that the piece stands out of farthest is the mildest.
+        kept = (piece.samples @ normals.T > offsets).mean(axis=0)
+        if len(piece.marks):
+            kept += (piece.marks @ normals.T > offsets).mean(axis=0)
+        # Of planes that keep as much, the one that the piece stands out of farthest is the mildest.
         reach = (normals @ piece.vertices.T).max(axis=1) - offsets
         best = np.lexsort((reach, kept))[-1]
         return normals[best], float(offsets[best])

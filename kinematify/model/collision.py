@@ -1,4 +1,4 @@
-"""Collision geometry that works as it is written: boxes and convex pieces, carved by the motion of every joint.
+"""Collision geometry that works as it is written: primitives and convex pieces, carved by the motion of every joint.
 
 Engines see each mesh as its convex hull, and MuJoCo does not filter contacts with a root that it welds to the world: a
 drawer in a hollow cabinet would start inside of a solid block. So every surface is taken apart into convex pieces
@@ -9,6 +9,7 @@ nearer to anything else than the clearance. Contacts stay switched on for every 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,14 +24,15 @@ from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.rest import Allowance
 from kinematify.geometry.scene import read_scene
 from kinematify.geometry.sweep import Sweeper
-from kinematify.model.collision_pieces import decomposed
+from kinematify.model.collision_pieces import decomposed, shapes_of
+from kinematify.model.primitives import fitted_shape
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.config import CollisionConfig
     from kinematify.config.validation import GeometrySettings, PrepareSettings
@@ -40,14 +42,15 @@ if TYPE_CHECKING:
 
 _THINNEST = 1e-4
 """Of flat pieces that are joined [m]."""
+_MARKS = 2000
+"""Points of a link's surface that pieces stand for while they are carved."""
 _PROBES = 400
 """Points of a link's surface by which it is told how much the pieces leave out."""
 _MAX_STEM = 100  # file systems end at 255 bytes for a name
-_BOX_CORNERS = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1).reshape(8, 3)
 _FILLED = 1e-3
 """A mesh is convex if its hull is larger by less than this share."""
-_SQUARE = 1e-6
-"""A piece is a box if its corners differ from those of one by less than this fraction of its diagonal."""
+_ROUND = 0.25
+"""Cylinders and spheres reach beyond the pieces that they replace by at most this share of the clearance."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,10 +59,12 @@ class FittedLink:
 
     link: str
     boxes: int
+    cylinders: int
+    spheres: int
     convex: int
     """Convex meshes."""
     outside: float
-    """How far the pieces reached beyond the surface at most before they were carved [m]."""
+    """How far the pieces reach beyond the surface at most; carving takes some of it away [m]."""
     left_out: float
     """Largest distance of the surface from the nearest piece [m]."""
     carved: float
@@ -96,7 +101,7 @@ class FittedCollision:
 def fit_collision(
     robot: Robot, config: CollisionConfig, decomposition: PrepareSettings, geometry: GeometrySettings
 ) -> FittedCollision:
-    """Replace the collision geometry of every link, or its visual geometry, by boxes and convex pieces.
+    """Replace the collision geometry of every link, or its visual geometry, by boxes, cylinders and convex pieces.
 
     Joints are swept one by one, over their limits and a little beyond, because engines' limits are soft; the others
     rest. What no sweep meets stays: primitives are the same ones. Where the surfaces themselves block a motion, the
@@ -104,33 +109,40 @@ def fit_collision(
 
     Args:
         robot: The robot; a link may have any number of shapes.
-        config: Clearance and slack.
-        decomposition: How surfaces are taken apart.
+        config: Clearance and slack, and how finely surfaces are taken apart.
+        decomposition: The rest of how they are.
         geometry: When surfaces block a motion.
 
     Returns:
         The robot with pieces in the link frames; meshes among them name files in ``meshes/`` that are not written yet.
     """
-    pieces = decomposed(robot, decomposition)
+    finer = {name: getattr(config, name) for name in ("link_gap", "model_gap", "cuts", "cuts_per_link")}
+    pieces = decomposed(robot, decomposition.model_copy(update=finer))
     poses = forward_kinematics(robot, rest_configuration(robot))
     bodies = [_in_world(_few(pieces[link.name], config), poses[link.name]) for link in robot.links]
     clearance = min(config.clearance, config.clearance_share * _size(bodies))
     exact = _ExactSweeps(robot, geometry, config.forced_share)
     result = carved(
         bodies,
+        [_marks(link, poses[link.name]) for link in robot.links],
         _sweeps(robot, poses, config),
         exact.free_range,
         clearance=clearance,
         thinnest=config.thinnest_share * clearance,
+        most=config.most_carved,
     )
     links, facts = [], []
     for index, link in enumerate(robot.links):
         uncut = dict(zip(map(id, bodies[index]), pieces[link.name].primitives, strict=False))
         T_link_world = np.asarray(np.linalg.inv(poses[link.name]), dtype=np.float64)
-        shapes = tuple(uncut.get(id(piece)) or _shape(_moved(piece, T_link_world)) for piece in result.pieces[index])
+        fitted = [fitted_shape(_moved(piece, T_link_world), _ROUND * clearance) for piece in result.pieces[index]]
+        shapes = tuple(
+            uncut.get(id(piece)) or shape for piece, (shape, _) in zip(result.pieces[index], fitted, strict=True)
+        )
         links.append(replace(link, collisions=_named(shapes, link.name, index)))
         if shapes:
-            facts.append(_fitted(link, shapes, outside=pieces[link.name].gap, lost=result.lost[index]))
+            outside = pieces[link.name].gap + max(beyond for _, beyond in fitted)
+            facts.append(_fitted(link, shapes, outside=outside, lost=result.lost[index]))
     joints = _moving(robot)
     return FittedCollision(
         robot=replace(robot, links=tuple(links)),
@@ -254,67 +266,43 @@ def _named(shapes: Sequence[Shape], link: str, index: int) -> tuple[Shape, ...]:
     )
 
 
+def _marks(link: Link, T_world_link: FloatArray) -> FloatArray:
+    """Points on what the pieces of a link stand for, world frame, shape (n, 3)."""
+    points = _on_surface((shape.mesh for shape in shapes_of(link)), _MARKS)
+    return points @ T_world_link[:3, :3].T + T_world_link[:3, 3]
+
+
 def _moved(piece: ConvexPiece, T: FloatArray) -> ConvexPiece:
     return ConvexPiece(vertices=piece.vertices @ T[:3, :3].T + T[:3, 3], faces=piece.faces)
 
 
-def _shape(piece: ConvexPiece) -> Shape:
-    """A box where the piece is one, which engines collide exactly and quickest, else its mesh."""
-    mesh = LinkMesh(vertices=piece.vertices, faces=piece.faces)
-    axes = _box_axes(piece)
-    if axes is None:
-        return Shape(mesh=mesh)
-    along = piece.vertices @ axes.T
-    low, high = along.min(axis=0), along.max(axis=0)
-    T_link_box = np.eye(4)
-    T_link_box[:3, :3] = axes.T
-    T_link_box[:3, 3] = 0.5 * (low + high) @ axes
-    x, y, z = (high - low).tolist()
-    return Shape(kind="box", mesh=mesh, size=(x, y, z), T_link_shape=T_link_box)
-
-
-def _box_axes(piece: ConvexPiece) -> FloatArray | None:
-    """Axes of the box that a piece is, as rows, those nearest to the frame's; None if it is none."""
-    if len(piece.vertices) != len(_BOX_CORNERS):
-        return None
-    a, b, c = (piece.vertices[piece.faces[:, k]] for k in range(3))
-    normals = crossed(b - a, c - a)
-    normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
-    first = normals[np.argmax(np.abs(normals[:, 0]))]
-    second = normals[np.argmin(np.abs(normals @ first) - 1e-3 * np.abs(normals[:, 1]))]
-    axes = np.stack([first, second, crossed(first, second)])
-    axes = np.stack([axes[k] for k in np.argmax(np.abs(axes), axis=0)])
-    axes *= np.where(np.diag(axes) < 0.0, -1.0, 1.0)[:, None]
-    if abs(float(np.linalg.det(axes)) - 1.0) > _SQUARE:
-        return None
-    along = piece.vertices @ axes.T
-    low, high = along.min(axis=0), along.max(axis=0)
-    corners = low + _BOX_CORNERS * (high - low)
-    farthest = np.linalg.norm(along[:, None] - corners[None], axis=2).min(axis=0).max()
-    return axes if farthest <= _SQUARE * float(np.linalg.norm(high - low)) else None
-
-
 def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float) -> FittedLink:
-    boxes = sum(shape.kind == "box" for shape in shapes)
+    kinds = Counter(shape.kind for shape in shapes)
     return FittedLink(
         link=link.name,
-        boxes=boxes,
-        convex=len(shapes) - boxes,
+        boxes=kinds["box"],
+        cylinders=kinds["cylinder"],
+        spheres=kinds["sphere"],
+        convex=kinds["mesh"],
         outside=outside,
         left_out=_left_out(link, shapes),
         carved=lost,
     )
 
 
+def _on_surface(meshes: Iterable[LinkMesh], count: int) -> FloatArray:
+    """Points on meshes, evenly by area, shape (count, 3); none where there is no face."""
+    shown = [mesh for mesh in meshes if len(mesh.faces)]
+    if not shown:
+        return np.empty((0, 3))
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in shown)])
+    faces = [mesh.faces + start for mesh, start in zip(shown, starts, strict=False)]
+    return surface_points(np.concatenate([mesh.vertices for mesh in shown]), np.concatenate(faces), count)
+
+
 def _left_out(link: Link, shapes: Sequence[Shape]) -> float:
     """Largest distance of points on the surface of a link from the nearest of its pieces [m]."""
-    points = np.concatenate(
-        [
-            surface_points(mesh.vertices, mesh.faces, max(_PROBES // len(link.meshes), 1))
-            for mesh in link.meshes
-            if len(mesh.faces)
-        ]
-    )
+    points = _on_surface(link.meshes, _PROBES)
     nearest = np.full(len(points), np.inf)
     for shape in shapes:
         a, b, c = (shape.mesh.vertices[shape.mesh.faces[:, k]] for k in range(3))

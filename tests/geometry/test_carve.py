@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from kinematify.geometry.carve import Sweep, carved
-from kinematify.geometry.convex import ConvexPiece, convex_piece
+from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,8 +46,11 @@ def everywhere(sweep: int, first: int, second: int) -> tuple[float, float]:
     return -math.inf, math.inf
 
 
-def freed(bodies: Sequence[Sequence[ConvexPiece]], sweep: Sweep, free_range=everywhere) -> Carved:
-    return carved(bodies, [sweep], free_range, clearance=CLEARANCE, thinnest=0.2 * CLEARANCE)
+def freed(bodies: Sequence[Sequence[ConvexPiece]], sweep: Sweep, free_range=everywhere, most: int = 64) -> Carved:
+    surfaces = [
+        np.concatenate([surface_points(piece.vertices, piece.faces, 500) for piece in pieces]) for pieces in bodies
+    ]
+    return carved(bodies, surfaces, [sweep], free_range, clearance=CLEARANCE, thinnest=0.2 * CLEARANCE, most=most)
 
 
 def convex(piece: ConvexPiece) -> coal.ConvexBase:
@@ -130,6 +133,19 @@ def test_what_is_blocked_is_not_carved() -> None:
 def test_a_body_inside_another_one_keeps_a_piece() -> None:
     result = freed([[rod(0.1, 0.3)], [rod(0.02, 0.02)]], turn(1, (0.0, 0.0, 0.0), -1.0, 1.0))
     assert all(result.pieces)
+
+
+def test_a_thin_wall_beside_a_thick_filler_stays() -> None:
+    """The wall is 2 % of the volume that the filler has, and all that there is of its side."""
+    drawer = [box((-0.2, 0.0, 0.0), (0.2, 0.4, 0.05)), box((0.19, 0.0, 0.05), (0.2, 0.4, 0.15))]
+    result = freed([[box((0.195, 0.0, 0.0), (0.25, 0.4, 0.3))], drawer], slide(1, (0.0, -1.0, 0.0), 0.35))
+    assert max(float(piece.high[2]) for piece in result.pieces[1]) == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize("most", [1, 3])
+def test_a_body_keeps_so_many_pieces_at_most(most: int) -> None:
+    result = freed(*SCENES["a drawer drawn as a box in a solid block"], most=most)
+    assert all(1 <= len(pieces) <= most for pieces in result.pieces)
 
 
 def test_the_answer_is_the_same_every_time() -> None:
