@@ -85,6 +85,10 @@ class DynamicsConfig(StageConfig):
     """What a hand pulls a drawer with [N]."""
     hand_torque: float
     """What a hand turns a door with [N m]."""
+    motor_torque: float
+    """The most that the motor of a joint that turns is given [N m]."""
+    motor_force: float
+    """The same for one that slides [N]."""
     hand_share: float
     """Weight and friction take at most this share of it."""
     holding: float

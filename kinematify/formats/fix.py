@@ -68,7 +68,7 @@ def fix_urdf(
     fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry)
     inertials = prepared_inertials(robot, settings.prepare)
     weighed = replace(robot, links=tuple(replace(link, inertial=inertials[link.name]) for link in robot.links))
-    moved = with_dynamics(weighed, config.dynamics)
+    moved = with_dynamics(weighed, config.dynamics, measured=True)
     document = etree.parse(str(model), etree.XMLParser(resolve_entities=False))
     root, changes = document.getroot(), list[str]()
     folder = Path(f"{out.stem}_collision")

@@ -1,7 +1,8 @@
 """Friction, damping and weight that a hand can cope with: nothing moves by itself, and everything moves when pushed.
 
 What hangs on the base by one or two joints is opened by hand: doors, drawers, lids, knobs. Longer chains are machines
-with motors; they get the same friction and damping, and their masses stay.
+with motors: their friction holds what hangs on them, as a worm gear or a valve does, and where an engine has no
+friction their damping lets it sink slowly.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ _AT_LIMIT = 1e-6
 """A limit that is nearer to rest [rad or m] takes the weight."""
 _NEAR_REST = 0.1
 """What stands on its head would fall [rad]: the weight is looked at so far to both sides of rest."""
+_QUICKEST = 0.02
+"""Damping stops nothing in less time [s]: engines that apply it as a force of the last step would swing."""
 _VALUES = 33
 """Values of a joint at which its weight is looked at."""
 
@@ -44,25 +47,28 @@ class JointLoad:
     """Length of the range [rad or m]."""
 
 
-def with_dynamics(robot: Robot, config: DynamicsConfig) -> Robot:
+def with_dynamics(robot: Robot, config: DynamicsConfig, *, measured: bool = False) -> Robot:
     """Return the robot with damping and friction for every joint that has none, and with parts that can be moved.
 
     Friction holds what rests in the middle of its range against its weight; damping lets a hand's force move it over
-    its range in a few seconds and no quicker than in a fraction of one. Where a hand could not lift what a joint
-    carries, its masses are made smaller: they come from the volume of a closed surface as if it were solid. Motors of
-    machines get the effort that their load asks for.
+    its range in a few seconds and no quicker than in a fraction of one. Motors of machines get the effort that their
+    load asks for. Where a hand, or the strongest motor, could not lift what a joint carries, its masses are made
+    smaller: they come from the volume of a closed surface as if it were solid.
 
     Args:
         robot: Links with mass properties; zero is their pose as given.
         config: Forces of a hand, friction, times.
+        measured: Masses and efforts stay; friction and damping leave motors enough to move.
     """
-    for joint in reversed(robot.joints_downward):
-        if joint.leads and moved_by_hand(robot, joint):
+    for joint in () if measured else reversed(robot.joints_downward):
+        if joint.leads:
             robot = _lightened(robot, joint, config)
     joints = tuple(
         joint
         if joint.kind is JointType.FIXED or joint.damping is not None or joint.friction is not None
         else _with_dynamics(robot, joint, config)
+        if moved_by_hand(robot, joint)
+        else _with_motor(robot, joint, config, measured=measured)
         for joint in robot.joints
     )
     return replace(robot, joints=joints)
@@ -85,10 +91,13 @@ def _longest_below(robot: Robot, link: str) -> int:
 
 
 def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
-    """Scale the masses that a joint carries so that a hand moves them against weight and friction."""
+    """Scale the masses that a joint carries so that a hand, or a motor, moves them against weight and friction."""
     load = joint_load(robot, joint)
-    needed = load.largest + _rubbing(load, config)
-    bearable = config.hand_share * _hand(joint, config)
+    if moved_by_hand(robot, joint):
+        needed, bearable = load.largest + _rubbing(load, config), config.hand_share * _hand(joint, config)
+    else:
+        needed = _Motor.of(load, config).effort
+        bearable = config.motor_torque if joint.kind.turns else config.motor_force
     if needed <= bearable:
         return robot
     scale = bearable / needed
@@ -112,12 +121,44 @@ def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig) -> Joint:
     friction = _friction(load, config, hand)
     left = max(hand - load.largest - friction, (1.0 - config.hand_share) * hand)
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
-    effort = joint.effort
-    if effort is not None and not moved_by_hand(robot, joint):
+    return _stated(joint, damping, friction)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Motor:
+    """What a machine needs at a joint: all of it grows with the masses that the joint carries."""
+
+    friction: float
+    damping: float
+    lifting: float
+    """Largest weight and inertia [N m or N]."""
+    effort: float
+    """That and friction and damping, over the share of it that is used [N m or N]."""
+
+    @classmethod
+    def of(cls, load: JointLoad, config: DynamicsConfig) -> _Motor:
         pace = load.travel / config.opening_time
-        needed = load.largest + friction + (load.inertia / config.opening_time + damping) * pace
-        effort = max(effort, float(f"{needed / config.hand_share:.3g}"))
-    return replace(joint, effort=effort, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
+        friction = _rubbing(load, config)
+        sinking = max(load.inertia / config.settling_time, load.largest / max(pace, 1e-9))
+        damping = min(sinking, load.inertia / _QUICKEST)
+        lifting = load.largest + load.inertia * pace / config.opening_time
+        effort = (lifting + friction + damping * pace) / config.hand_share
+        return cls(friction=friction, damping=damping, lifting=lifting, effort=effort)
+
+
+def _with_motor(robot: Robot, joint: Joint, config: DynamicsConfig, *, measured: bool) -> Joint:
+    needed = _Motor.of(joint_load(robot, joint), config)
+    if joint.effort is None or needed.effort <= joint.effort:
+        return _stated(joint, needed.damping, needed.friction)
+    if not measured:
+        return _stated(replace(joint, effort=float(f"{needed.effort:.3g}")), needed.damping, needed.friction)
+    left = max(config.hand_share * joint.effort - needed.lifting, 0.0)
+    share = left / (config.hand_share * needed.effort - needed.lifting)
+    return _stated(joint, share * needed.damping, share * needed.friction)
+
+
+def _stated(joint: Joint, damping: float, friction: float) -> Joint:
+    return replace(joint, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
 
 
 def _friction(load: JointLoad, config: DynamicsConfig, hand: float) -> float:

@@ -46,6 +46,17 @@ def lid(mass: float, lower: float) -> Robot:
     )
 
 
+def arm(mass: float, effort: float) -> Robot:
+    """Three horizontal links, one after the other."""
+    names = ("base", "a", "b", "c")
+    joints = [hinge(child, parent, (0.0, 1.0, 0.0), -1.0, 1.0) for parent, child in pairwise(names)]
+    return Robot(
+        name="arm",
+        links=tuple(body(name, mass, (1.0, 0.0, 0.0)) for name in names),
+        joints=tuple(replace(joint, effort=effort) for joint in joints),
+    )
+
+
 def test_the_load_is_weight_times_arm() -> None:
     robot = lid(2.0, -0.5)
     load = joint_load(robot, robot.joints[0])
@@ -75,19 +86,38 @@ def test_light_parts_keep_their_mass() -> None:
     assert made.links[1].inertial.mass == 0.5
 
 
-def test_machines_keep_their_masses_and_get_the_effort_that_they_need() -> None:
-    names = ("base", "a", "b", "c")
-    arm = Robot(
-        name="arm",
-        links=tuple(body(name, 100.0, (1.0, 0.0, 0.0)) for name in names),
-        joints=tuple(hinge(child, parent, (0.0, 1.0, 0.0), -1.0, 1.0) for parent, child in pairwise(names)),
-    )
-    assert not any(moved_by_hand(arm, joint) for joint in arm.joints)
-    made = with_dynamics(arm, CONFIG)
-    assert [link.inertial for link in made.links] == [link.inertial for link in arm.links]
+def test_machines_get_the_effort_that_they_need() -> None:
+    light = arm(50.0, 100.0)
+    assert not any(moved_by_hand(light, joint) for joint in light.joints)
+    made = with_dynamics(light, CONFIG)
+    assert [link.inertial for link in made.links] == [link.inertial for link in light.links]
     first = made.joints[0]
     assert first.effort is not None
     assert first.effort > joint_load(made, first).largest
+
+
+def test_no_motor_needs_more_than_limits_of_engines_bear() -> None:
+    made = with_dynamics(arm(5000.0, 100.0), CONFIG)
+    assert max(joint.effort or 0.0 for joint in made.joints) == pytest.approx(CONFIG.motor_torque, rel=0.01)
+
+
+def test_friction_of_a_machine_holds_what_hangs_on_it_and_its_motor_overcomes_both() -> None:
+    made = with_dynamics(arm(100.0, 100.0), CONFIG)
+    for joint in made.joints:
+        load = joint_load(made, joint)
+        assert joint.friction is not None
+        assert joint.effort is not None
+        assert load.at_rest < joint.friction < joint.effort - load.largest
+
+
+@pytest.mark.parametrize("effort", [100.0, 4000.0, 1.0e5])
+def test_where_the_effort_is_kept_friction_and_damping_leave_enough_to_lift(effort: float) -> None:
+    made = with_dynamics(arm(100.0, effort), CONFIG, measured=True)
+    for joint in made.joints:
+        load = joint_load(made, joint)
+        assert joint.effort == effort
+        assert joint.friction is not None
+        assert joint.friction <= max(effort - load.largest, 0.0)
 
 
 def test_what_a_file_states_stays() -> None:
