@@ -99,14 +99,22 @@ def _beside(name: str, size: Size, apron: float, wall: float) -> Side:
 def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     """A pickup: bonnet, cab and an open bed; it looks along -y."""
     width, depth, height = size
-    half, sill, rail = 0.5 * width, 0.22 * height, 0.66 * height
-    cab, bed, top = 0.26 * depth, 0.58 * depth, rail - 0.05 * height
+    half, sill, rail = 0.5 * width, 0.14 * height, 0.66 * height
+    cab, bed = 0.26 * depth, 0.58 * depth
     frame = box((-half, 0, sill), (half, depth, 0.42 * height))
     bonnet = box((-half, 0, sill), (half, cab + 0.01, 0.6 * height))
     cabin = box((-half, cab, sill), (half, bed, height))
     board = 0.035 * width
     walls = [box((x, bed - 0.01, sill), (x + board, depth, rail)) for x in (-half, half - board)]
     workshop.body(BODY, frame, bonnet, cabin, *walls)
+    rail_wide, sheet, deck = 0.2 * width, 0.06 * width, 0.42 * height
+    workshop.cut(
+        BODY,
+        box((rail_wide - half, rail_wide, 0), (half - rail_wide, depth - rail_wide, deck - sheet)),
+        box((rail_wide - half, rail_wide, 0), (half - rail_wide, bed - sheet, deck + 1e-3)),
+        box((sheet - half, sheet, deck), (half - sheet, cab - sheet, 0.6 * height - sheet)),
+        box((sheet - half, cab + sheet, deck), (half - sheet, bed - sheet, height - sheet)),
+    )
     doorway = Opening(
         left=-0.45 * (bed - cab),
         right=0.45 * (bed - cab),
@@ -115,9 +123,7 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         depth=0.42 * width,
         wall=wall,
     )
-    low = Opening(
-        left=-0.5 * depth + 0.17 * depth, right=0.5 * depth - 0.17 * depth, bottom=sill, top=top, depth=0.3, wall=wall
-    )
+    low = Opening(left=-0.33 * depth, right=0.33 * depth, bottom=0.17 * height, top=0.27 * height, depth=0.3, wall=wall)
     gate = Opening(left=-half, right=half, bottom=0.42 * height, top=rail, depth=wall, wall=wall)
     return {
         "left": _flank("left", size, doorway, low, 0.5 * (cab + bed)),
@@ -241,6 +247,7 @@ BODIES = (
         words=("pickup truck", "pickup", "truck", "lorry"),
         size=(1.8, 4.6, 1.75),
         build=_truck,
+        material="plastic",
     ),
     Body(words=("drum", "barrel", "tank"), size=(0.5, 0.5, 0.7), build=_drum),
     Body(words=("column", "post", "pedestal", "stand"), size=(0.36, 0.36, 1.0), build=_column),

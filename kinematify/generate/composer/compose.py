@@ -135,6 +135,7 @@ def _built(composition: Composition, size: Size, name: str, clearance: float) ->
     fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
     numbers: Counter[str] = Counter()
     for side, wanted in _by_side(composition, sides).items():
+        here: Counter[str] = Counter()
         for item, area in _arranged(side, sides[side], wanted, size):
             word = item.mechanism.words[0].replace(" ", "_").replace("-", "_")
             numbers[word] += 1
@@ -144,8 +145,10 @@ def _built(composition: Composition, size: Size, name: str, clearance: float) ->
                 area=area,
                 hollow=sides[side].hollow,
                 fitting=fitting,
-                index=numbers[word] - 1,
+                side=side,
+                index=here[word],
             )
+            here[word] += 1
             lids = sum(other.count for other in wanted if other.mechanism.words[0] == "lid")
             if item.mechanism.arranged == "over" and lids > 1:
                 raise InputError(f"A {item.mechanism.words[0]} goes on one lid, but there are {lids}. Ask for one lid.")
@@ -283,6 +286,8 @@ def _corners(area: Opening, count: int) -> list[Opening]:
     inset = 1.5 * half
     xs = np.linspace(area.left + inset, area.right - inset, across) if across > 1 else np.zeros(1)
     # An odd one is left out behind, where the others then stand between those in front.
-    behind = xs if count % 2 == 0 else np.convolve(xs, [0.5, 0.5], "valid")
+    behind = xs if count % 2 == 0 else 0.5 * (xs[1:] + xs[:-1])
     spots = [(float(x), area.bottom + inset) for x in behind] + [(float(x), area.top - inset) for x in xs]
+    if count == 1:
+        spots = [(0.0, 0.5 * (area.bottom + area.top))]
     return [replace(area, left=x - half, right=x + half, bottom=z - half, top=z + half) for x, z in spots]

@@ -49,6 +49,8 @@ class Place:
     hollow: bool
     """A room may be cut behind it."""
     fitting: Fitting
+    side: str
+    """Name of the side."""
     index: int
     """Among those of its kind on the side, from 0."""
 
@@ -72,20 +74,27 @@ class Place:
         if self.hollow:
             self.workshop.cut(BODY, room(self.area))
 
-    def on_shaft(self, name: str, *solids: Manifold, shaft: float, limits: tuple[float, float] | None = None) -> None:
+    def on_shaft(
+        self,
+        *solids: Manifold,
+        shaft: float,
+        limits: tuple[float, float] | None = None,
+        material: str | None = None,
+    ) -> None:
         """Add what turns clockwise about the normal through the middle, on a shaft in a bore of the body."""
         x, _, z = self.middle
         # Behind a side that may be hollow, only its wall is sure to be there.
         deep, out = (min(0.02, self.area.wall) if self.hollow else 0.8 * self.area.depth), self.clearance + 1e-3
         self.workshop.cut(BODY, bore(shaft, self.clearance, (x, deep, z), (x, -0.01, z)))
         end = deep - max(self.clearance, 1e-3)
-        self.workshop.body(name, cylinder(shaft, (x, end, z), (x, -out, z)), *solids)
-        self.workshop.turns(name, BODY, (0, 1, 0), self.middle, limits, rest=self.fitting.rest)
+        self.workshop.body(self.name, cylinder(shaft, (x, end, z), (x, -out, z)), *solids, material=material)
+        self.workshop.turns(self.name, BODY, (0, 1, 0), self.middle, limits, rest=self.fitting.rest)
 
 
 def _door(place: Place) -> None:
     place.hollowed()
-    side = "left" if place.index % 2 == 0 else "right"
+    # Doors of a front open from the middle of each pair; those beside are hinged at their front edge, as cars have it.
+    side = {"left": "right", "right": "left"}.get(place.side, "left" if place.index % 2 == 0 else "right")
     add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side, outermost=False, hinge="edge")
 
 
@@ -212,7 +221,7 @@ def _crank(place: Place) -> None:
         0.8 * shaft, (x, -gap - shaft, z + reach - shaft), (x, -gap - shaft - 0.6 * reach, z + reach - shaft)
     )
     hub = cylinder(1.6 * shaft, (x, -gap, z), (x, -gap - 2.0 * shaft, z))
-    place.on_shaft(place.name, arm, grip, hub, shaft=0.8 * shaft)
+    place.on_shaft(arm, grip, hub, shaft=0.8 * shaft)
 
 
 def _hand_wheel(place: Place) -> None:
@@ -223,7 +232,7 @@ def _hand_wheel(place: Place) -> None:
     spokes = [rod(0.6 * wire, (0, 0, 0), (radius * math.cos(a), radius * math.sin(a), 0)) for a in _angles(4)]
     wheel = union(ring(radius, wire), *spokes).transform(_at(place, out))
     x, _, z = place.middle
-    place.on_shaft(place.name, wheel, cylinder(1.5 * wire, (x, -gap, z), (x, -out, z)), shaft=wire)
+    place.on_shaft(wheel, cylinder(1.5 * wire, (x, -gap, z), (x, -out, z)), shaft=wire)
 
 
 def _rotor(place: Place) -> None:
@@ -238,7 +247,7 @@ def _rotor(place: Place) -> None:
     ]
     x, _, z = place.middle
     body = cylinder(hub, (x, -gap, z), (x, -gap - 2.4 * hub, z))
-    place.on_shaft(place.name, body, union(*blades).transform(_at(place, gap + 1.6 * hub)), shaft=0.5 * hub)
+    place.on_shaft(body, union(*blades).transform(_at(place, gap + 1.6 * hub)), shaft=0.5 * hub)
 
 
 def _needle(place: Place) -> None:
@@ -253,7 +262,7 @@ def _needle(place: Place) -> None:
     stem = cylinder(half, (x, 0, z), (x, -out - 1e-3, z))
     raised = replace(place, fitting=replace(place.fitting, rest=0.0))
     place.workshop.cut(BODY, bore(half, gap, (x, 0.2 * place.area.wall, z), (x, -1.0, z)))
-    raised.on_shaft(place.name, pointer, hub, stem, shaft=half, limits=(0.0, 4.5))
+    raised.on_shaft(pointer, hub, stem, shaft=half, limits=(0.0, 4.5))
 
 
 def _turntable(place: Place) -> None:
@@ -264,7 +273,7 @@ def _turntable(place: Place) -> None:
     mark = box(
         (x - 0.04 * radius, -gap - 0.014 - 0.06 * radius, z + 0.6 * radius), (x + 0.04 * radius, -gap, z + 0.9 * radius)
     )
-    place.on_shaft(place.name, plate, mark, shaft=min(0.3 * radius, 0.02))
+    place.on_shaft(plate, mark, shaft=min(0.3 * radius, 0.02))
 
 
 def _wheel(place: Place) -> None:
@@ -274,7 +283,7 @@ def _wheel(place: Place) -> None:
     wide, shaft = 0.35 * radius, min(0.2 * radius, 0.3 * place.area.depth)
     tyre = cylinder(radius, (x, -gap - 0.1 * radius, z), (x, -gap - 0.1 * radius - wide, z))
     hub = cylinder(1.6 * shaft, (x, -gap, z), (x, -gap - 0.15 * radius - wide, z))
-    place.on_shaft(place.name, tyre, hub, shaft=shaft)
+    place.on_shaft(tyre, hub, shaft=shaft, material="rubber")
 
 
 def _caster(place: Place) -> None:
