@@ -34,6 +34,7 @@ if TYPE_CHECKING:
         "kinematify generate --gallery docs",
         "kinematify generate --corpus 100 --seed 1 -o corpus",
         "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
+        'kinematify generate --text "a cantilever toolbox" --source llm --budget 60000 -o out/box',
         "kinematify generate --image chair.png --source command --command 'partcrafter {image} {out}' -o out/chair",
     ),
 )
@@ -65,14 +66,19 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--source",
-    type=click.Choice(["rodin", "command"]),
-    help="Let a web service (key in RODIN_API_KEY) or a program of yours make the parts.",
+    type=click.Choice(["rodin", "command", "llm"]),
+    help="Let a web service (key in RODIN_API_KEY) or a program of yours make the parts, or a language model (address "
+    "in KINEMATIFY_LLM_URL) write a blueprint.",
 )
 @click.option("--command", "program", metavar="WORDS", help="The program with {image}, {text}, {seed} and {out}.")
 @click.option("--time-limit", type=click.FloatRange(min=1.0), metavar="SECONDS", help="For the program, or one job.")
 @click.option(
-    "--budget", type=click.FloatRange(min=0.0), metavar="CREDITS", help="Refuse what is expected to cost more."
+    "--budget",
+    type=click.FloatRange(min=0.0),
+    metavar="CREDITS",
+    help="Refuse what is expected to cost more; for llm the tokens after which no round begins.",
 )
+@click.option("--rounds", type=click.IntRange(min=1), metavar="N", help="Answers of the language model at most.")
 @click.option(
     "--record", type=click.Path(path_type=Path), metavar="DIR", help="Keep what the source makes, for --replay."
 )
@@ -105,6 +111,7 @@ def command(
     program: str | None,
     time_limit: float | None,
     budget: float | None,
+    rounds: int | None,
     record: Path | None,
     replay: Path | None,
     resend: bool,
@@ -133,10 +140,12 @@ def command(
 
     Without --source nothing is downloaded: objects are put together from boards, hinges, slides and bearings by rules.
 
-    With --source another generator makes the parts from --image or --text, and the joints are inferred. Its job is
+    With --source another generator makes the parts from --image or --text, and the joints are inferred; a language
+    model (llm) writes a blueprint, which is built, and what the validation finds goes back to it. The job is
     kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
     """
     from kinematify.cli.generation import Generation
+    from kinematify.cli.language import LanguageGeneration, written_request
     from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
 
     if listing:
@@ -149,20 +158,28 @@ def command(
         _write_corpus(corpus, seed or 0, _needed(out), text or category)
         return 0
     if source is not None:
-        if inferred:
-            raise click.UsageError("What a --source makes is always inferred. Leave --infer out.")
         if category is not None or settings or blueprint is not None:
             raise click.UsageError(
                 "--category, --set and --blueprint belong to objects built by rules. Leave --source out for those."
             )
         asked = ProvidedOptions(
             text=text, images=images, source=source, command=program, time_limit=time_limit, budget=budget,
-            record=record, replay=replay, resend=resend, up=up, scale=scale, seed=seed or 0,
+            rounds=rounds, record=record, replay=replay, resend=resend, up=up, scale=scale, seed=seed,
         )  # fmt: skip
-        return _run(
-            ProvidedGeneration(asked, _needed(out), not no_preview, not no_validation, collision), force, json_to
-        )
-    _refuse_without_source(images, program, time_limit, budget, record, replay, resend)
+        place = _needed(out)
+        if source == "llm":
+            return _run(
+                LanguageGeneration(
+                    written_request(place), None, place, not no_preview, not no_validation, inferred, collision,
+                    options=asked,
+                ),
+                force,
+                json_to,
+            )  # fmt: skip
+        if inferred:
+            raise click.UsageError("What this --source makes is always inferred. Leave --infer out.")
+        return _run(ProvidedGeneration(asked, place, not no_preview, not no_validation, collision), force, json_to)
+    _refuse_without_source(images, program, time_limit, budget, rounds, record, replay, resend)
     if (text is not None) + (category is not None) + (blueprint is not None) != 1:
         raise click.UsageError(
             "Give either --text, --category or --blueprint (or --corpus, or --list to see what there is)."
@@ -212,7 +229,9 @@ def _refuse_without_source(images: tuple[Path, ...], *others: object) -> None:
             "program of yours). Objects built by rules take --text or --category."
         )
     if any(others):
-        raise click.UsageError("--command, --time-limit, --budget, --record, --replay and --resend belong to --source.")
+        raise click.UsageError(
+            "--command, --time-limit, --budget, --rounds, --record, --replay and --resend belong to --source."
+        )
 
 
 def _needed(out: Path | None) -> Path:

@@ -94,7 +94,7 @@ class Generation:
             OutputError: The folder exists and must not be replaced, or cannot be written.
         """
         check_output(self.out, overwrite=overwrite)
-        self.blueprint = self.request.build(seed=self.seed)
+        self.blueprint = self.build(progress)
         if self.validated:
             start_server()  # its imports take seconds, on another core than the inference
         config = with_collision(load_config(), self.collision)
@@ -106,6 +106,15 @@ class Generation:
         write_model_folder(self.out, lambda folder: self._write(folder, config), overwrite=overwrite)
         if self.validated:
             self._validate(lambda stage, done: progress(f"validation: {stage}", _WRITTEN + (1.0 - _WRITTEN) * done))
+
+    def build(self, progress: Reporter) -> Blueprint:
+        """Build what is asked for.
+
+        Raises:
+            InputError: A parameter is out of its bounds.
+        """
+        del progress
+        return self.request.build(seed=self.seed)
 
     def _write(self, folder: Path, config: Config) -> None:
         self.model = write_blueprint(self.blueprint, folder, config)

@@ -15,6 +15,7 @@ from kinematify.cli.verdict import say
 from kinematify.config import load_config
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.language_model import LanguageModel, language_model
 from kinematify.generate.providers.prompt import check_prompt
 from kinematify.generate.providers.recorded import RecordingSource, ReplayedSource
 from kinematify.generate.providers.rodin.source import RodinSource
@@ -44,12 +45,13 @@ class ProvidedOptions:
     command: str | None
     time_limit: float | None
     budget: float | None
+    rounds: int | None
     record: Path | None
     replay: Path | None
     resend: bool
     up: str
     scale: float
-    seed: int
+    seed: int | None
 
     def part_source(self) -> PartSource:
         """The generator that was asked for.
@@ -57,12 +59,33 @@ class ProvidedOptions:
         Raises:
             click.UsageError: Options do not go together.
         """
-        if self.record is not None and self.replay is not None:
-            raise click.UsageError("--record and --replay exclude each other.")
+        self._refuse_both()
+        if self.rounds is not None:
+            raise click.UsageError("--rounds belongs to --source llm. Leave it out.")
         source = self._plain_source()
         if self.record is not None:
             return RecordingSource(source, self.record)
         return source if self.replay is None else ReplayedSource(source, self.replay)
+
+    def language_model(self) -> LanguageModel:
+        """The language model that was asked for.
+
+        Raises:
+            click.UsageError: Options do not go together.
+            InputError: No address is set.
+        """
+        self._refuse_both()
+        if self.command is not None or self.seed is not None:
+            raise click.UsageError("--command and --seed mean nothing to a language model. Leave them out.")
+        asked = {"rounds": self.rounds, "answer_seconds": self.time_limit}
+        settings = load_config().sources.language_model.model_copy(
+            update={name: value for name, value in asked.items() if value is not None}
+        )
+        return language_model(settings, budget=self.budget, record=self.record, replay=self.replay)
+
+    def _refuse_both(self) -> None:
+        if self.record is not None and self.replay is not None:
+            raise click.UsageError("--record and --replay exclude each other.")
 
     def _plain_source(self) -> PartSource:
         settings = load_config().sources
@@ -78,6 +101,11 @@ class ProvidedOptions:
         if self.time_limit is not None:
             chosen = chosen.model_copy(update={"job_seconds": self.time_limit})
         return RodinSource(chosen, self.budget)
+
+
+def job_folder(out: Path) -> Path:
+    """Beside the model: it stays, so that the same request never costs anything again."""
+    return out.parent / f"{out.name}{JOB_SUFFIX}"
 
 
 @dataclass
@@ -127,12 +155,12 @@ class ProvidedGeneration:
 
     @property
     def job_folder(self) -> Path:
-        """Beside the model: it stays, so that the same request never costs anything again."""
-        return self.out.parent / f"{self.out.name}{JOB_SUFFIX}"
+        """See `job_folder`."""
+        return job_folder(self.out)
 
     def _make_parts(self, progress: Reporter) -> None:
         source = self.options.part_source()
-        prompt = check_prompt(self.options.text, self.options.images, seed=self.options.seed)
+        prompt = check_prompt(self.options.text, self.options.images, seed=self.options.seed or 0)
         with open_job(self.job_folder, source.name, prompt.digest(source.options())) as job:
             if self.options.resend:
                 job.resend()

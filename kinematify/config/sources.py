@@ -27,9 +27,21 @@ class RodinConfig(ServiceConfig):
     """A job has so long to be done [s]."""
 
 
+class LanguageModelConfig(ServiceConfig):
+    """A language model that writes blueprints."""
+
+    model: str
+    """Name of the model at the service; the variable KINEMATIFY_LLM_MODEL wins."""
+    rounds: int
+    """Answers at most: the first one, and those that mend it."""
+    answer_tokens: int
+    """Of one answer at most."""
+
+
 class SourcesConfig(StageConfig):
     """Where parts come from."""
 
     rodin: RodinConfig
+    language_model: LanguageModelConfig
     command_seconds: float
     """A program of the user's has so long [s]."""

@@ -1,0 +1,196 @@
+"""A language model writes blueprints, against a local server that behaves well, badly, slowly, and not at all."""
+
+from __future__ import annotations
+
+import base64
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+from PIL import Image
+
+from kinematify.cli.app import run
+from kinematify.config import load_config
+from kinematify.errors import EnvironmentFault, InputError
+from kinematify.generate.blueprint_file import read_blueprint
+from kinematify.generate.providers.job import open_job
+from kinematify.generate.providers.language_model import ADDRESS, KEY, MODEL, LanguageModel, language_model
+from kinematify.generate.providers.prompt import check_prompt
+from kinematify.robot.read import read_robot
+from tests.generate.providers import chat_server
+from tests.generate.providers.chat_server import ChatServer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+SETTINGS = load_config().sources.language_model.model_copy(
+    update={"first_pause": 0.01, "longest_pause": 0.02, "tries": 2, "answer_seconds": 10.0}
+)
+TEXT = "a box with a lid"
+
+
+def lidded(axis: float = -1.0, **more: object) -> str:
+    """A box with a lid; it opens with the axis as it is, and into the box with the other one."""
+    shape = {"kind": "box", "size": [0.4, 0.3, 0.2], "xyz": [0, 0, 0.1]}
+    body = {"name": "body", "shapes": [shape], "material": "wood"}
+    lid = {"name": "lid", "shapes": [{"kind": "box", "size": [0.4, 0.3, 0.02], "xyz": [0, 0, 0.211]}]}
+    joint = {"type": "revolute", "parent": "body", "child": "lid", "axis": [axis, 0, 0], "pivot": [0, 0.15, 0.2005]}
+    joint |= {"lower": 0, "upper": 1.5}
+    return json.dumps({"name": "box", "parts": [body, lid], "joints": [joint], **more})
+
+
+@pytest.fixture
+def server() -> Iterator[ChatServer]:
+    made = ChatServer(lidded())
+    yield made
+    made.close()
+
+
+def model_at(server: ChatServer, **options: object) -> LanguageModel:
+    return LanguageModel(server.url, "tester", chat_server.KEY, SETTINGS, **options)
+
+
+def written(model: LanguageModel, folder: Path, judge=lambda _: (), images: tuple[Path, ...] = ()):
+    prompt = check_prompt(TEXT, images, seed=0)
+    with open_job(folder, "llm", prompt.digest(model.options())) as job:
+        return model.write(prompt, job, judge, lambda *_: None)
+
+
+def test_what_the_model_writes_is_built_and_judged(server, tmp_path):
+    judged = []
+    found = written(model_at(server), tmp_path, lambda blueprint: judged.append(blueprint) or ())
+    assert [part.name for part in read_blueprint(found.path).parts] == ["body", "lid"]
+    assert [blueprint.root for blueprint in judged] == ["body"]
+    assert (found.rounds, found.tokens, found.findings) == (1, 1000, ())
+    system, user = server.requests[0]["messages"]
+    assert "rounded_box" in system["content"], "it is given the schema"
+    assert user["content"] == TEXT
+
+
+def test_a_fence_about_the_answer_does_no_harm(server, tmp_path):
+    server.script = [f"Here it is:\n```json\n{lidded()}\n```\nEnjoy!"]
+    assert written(model_at(server), tmp_path).rounds == 1
+
+
+def test_what_is_wrong_goes_back_until_nothing_is(server, tmp_path):
+    server.script = ["It is a box.", lidded(axis=0.0), lidded(colour="red"), lidded()]
+    assert written(model_at(server), tmp_path).rounds == 4
+    told = [request["messages"][-1]["content"] for request in server.requests[1:]]
+    assert "no JSON" in told[0]
+    assert "joints.0.axis" in told[1]
+    assert "colour: Extra inputs" in told[2]
+
+
+def test_the_best_of_all_rounds_is_kept(server, tmp_path):
+    server.script = [lidded(name="one"), lidded(name="two"), "nothing more"]
+    findings = {"one": ("a", "b"), "two": ("c",)}
+    found = written(model_at(server), tmp_path, lambda blueprint: findings[blueprint.name])
+    assert read_blueprint(found.path).name == "two"
+    assert found.findings == ("c",)
+    assert found.rounds == SETTINGS.rounds
+
+
+def test_the_budget_ends_the_rounds(server, tmp_path):
+    found = written(model_at(server, budget=1500.0), tmp_path, lambda _: ("never good",))
+    assert (found.rounds, found.tokens) == (2, 2000)
+
+
+@pytest.mark.parametrize(
+    ("line", "error", "message"),
+    [
+        ("I cannot do that.", InputError, "wrote no blueprint that can be built"),
+        ("refusal", InputError, "I do not design such things"),
+        ("[1, 2]", InputError, "no object"),
+        ("[" * 100_000, InputError, "no JSON"),
+        ("odd", EnvironmentFault, "without a message"),
+        (400, InputError, "refuses the request"),
+        (402, InputError, "not enough credit"),
+        (429, EnvironmentFault, "nothing was paid"),
+        (500, EnvironmentFault, "may have been paid"),
+        ("drop", EnvironmentFault, "may have been paid"),
+    ],
+    ids=lambda value: str(value)[:20],
+)
+def test_bad_answers_end_with_a_clear_error(server, tmp_path, line, error, message):
+    server.script = [line]
+    with pytest.raises(error, match=message):
+        written(model_at(server), tmp_path)
+
+
+def test_a_slow_service_is_not_waited_for_for_ever(server, tmp_path):
+    server.script = ["slow"]
+    hasty = SETTINGS.model_copy(update={"answer_seconds": 0.2})
+    with pytest.raises(EnvironmentFault, match="no answer came"):
+        written(LanguageModel(server.url, "tester", chat_server.KEY, hasty), tmp_path)
+
+
+def test_no_service_at_all(server, tmp_path):
+    model = model_at(server)
+    server.close()
+    with pytest.raises(EnvironmentFault, match="nothing was paid"):
+        written(model, tmp_path)
+
+
+def test_a_wrong_key_is_said_and_never_shown(server, tmp_path):
+    model = LanguageModel(server.url, "tester", "another-key", SETTINGS)
+    with pytest.raises(InputError, match=KEY) as caught:
+        written(model, tmp_path)
+    assert "another-key" not in str(caught.value)
+
+
+def test_the_same_request_is_sent_once(server, tmp_path):
+    for _ in range(2):
+        written(model_at(server), tmp_path)
+    assert len(server.requests) == 1
+
+
+def test_a_recording_answers_without_a_service(server, tmp_path):
+    written(model_at(server, record=tmp_path / "tape"), tmp_path / "one")
+    server.close()
+    model = model_at(server, replay=tmp_path / "tape")
+    assert written(model, tmp_path / "two").rounds == 1
+    assert chat_server.KEY not in "".join(path.read_text() for path in (tmp_path / "tape").iterdir())
+    with pytest.raises(InputError, match="Nothing is recorded"):
+        written(model, tmp_path / "three", lambda _: ("not good",))
+
+
+def test_pictures_are_sent_as_they_are(server, tmp_path):
+    picture = tmp_path / "box.png"
+    Image.new("RGB", (64, 64), "red").save(picture)
+    written(model_at(server), tmp_path / "job", images=(picture,))
+    kind, url = server.requests[0]["messages"][1]["content"][1].values()
+    assert kind == "image_url"
+    assert base64.b64decode(url["url"].partition(",")[2]) == picture.read_bytes()
+
+
+def test_the_environment_names_the_service(monkeypatch):
+    for name, value in ((ADDRESS, " http://localhost:1/v1/ "), (KEY, "k"), (MODEL, "m")):
+        monkeypatch.setenv(name, value)
+    found = language_model(SETTINGS)
+    assert (found.url, found.key, found.model) == ("http://localhost:1/v1", "k", "m")
+    monkeypatch.delenv(ADDRESS)
+    with pytest.raises(InputError, match=ADDRESS):
+        language_model(SETTINGS)
+
+
+def test_what_the_validation_finds_is_mended(server, tmp_path, monkeypatch):
+    """The first lid turns into its box; the second one opens."""
+    monkeypatch.setenv(ADDRESS, server.url)
+    monkeypatch.setenv(KEY, chat_server.KEY)
+    server.script = [lidded(axis=1.0), lidded()]
+    out, answer = tmp_path / "box", tmp_path / "answer.json"
+    command = ["generate", "--text", TEXT, "--source", "llm", "-o", str(out), "--no-preview", "--json", str(answer)]
+    assert run(command) == 0
+    told = server.requests[1]["messages"][-1]["content"]
+    assert "lid" in told
+    facts = json.loads(answer.read_text())
+    assert facts["language_model"]["rounds"] == 2
+    assert facts["validation"]["failed"] == []
+    assert read_robot(out / "model.urdf").joints[0].axis[0] == -1.0
+    assert json.loads((out / "source.json").read_text())["parameters"]["source"] == "llm"
+
+
+@pytest.mark.parametrize("more", [["--seed", "1"], ["--command", "x"], ["--record", "a", "--replay", "b"]], ids=str)
+def test_options_that_mean_nothing_to_a_model_are_refused(more, tmp_path):
+    assert run(["generate", "--text", TEXT, "--source", "llm", "-o", str(tmp_path / "out"), *more]) == 2
