@@ -34,6 +34,21 @@ _NO_CONTACTS = """bodies = [plant.get_body(k) for k in plant.GetBodyIndices(Mode
 scene.collision_filter_manager(scene.GetMyContextFromRoot(context)).Apply(CollisionFilterDeclaration().ExcludeWithin(\
 GeometrySet([shape for body in bodies for shape in plant.GetCollisionGeometriesForBody(body)])))
 """
+_JOINTS = (
+    _LOAD
+    + """joints = [plant.get_joint(k) for k in plant.GetJointIndices()]
+for joint in joints: joint.num_velocities() == 1 and print(joint.name(), *joint.position_lower_limits(), \
+*joint.position_upper_limits())
+"""
+)
+_OVERLAP = (
+    _LOAD
+    + """query = scene.get_query_output_port().Eval(scene.GetMyContextFromRoot(context)); \
+name = lambda shape: plant.GetBodyFromFrameId(query.inspector().GetFrameId(shape)).name()
+pairs = [pair for pair in query.ComputePointPairPenetration() if {{name(pair.id_A), name(pair.id_B)}} == {links}]
+print(np.max([-query.ComputeSignedDistancePairClosestPoints(pair.id_A, pair.id_B).distance for pair in pairs]))
+"""
+)
 _REST = (
     _LOAD
     + """seen = [simulator.AdvanceTo((k + 1) * {step!r}) and plant.GetPositions(state)[{joint}] for k in range({steps})]
@@ -58,8 +73,8 @@ _RELEASE = (
     + _NO_CONTACTS
     + """plant.SetVelocities(state, {speeds})
 energy = lambda: plant.CalcPotentialEnergy(state) + plant.CalcKineticEnergy(state)
-seen = [energy()] + [simulator.AdvanceTo((k + 1) * {step!r}) and energy() for k in range({steps})]
-print(seen[0], np.max(seen))
+seen = [energy()] + [simulator.AdvanceTo(k * {step!r}) and energy() for k in range({looks}, {steps} + 1, {looks})]
+print(np.max(seen) - seen[0])
 """
 )
 _EARTH, _NOWHERE = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
@@ -82,9 +97,9 @@ class DrakeFile:
         plant = self._world(contacts=True).plant
         moving = [plant.get_joint(index) for index in plant.GetJointIndices()]
         moving = sorted((joint for joint in moving if joint.num_velocities()), key=lambda joint: joint.position_start())
-        if not all(isinstance(joint, RevoluteJoint | PrismaticJoint) for joint in moving):
-            raise Unloadable("it gives links other joints than hinges and slides")
         self.joints: Sequence[str] = tuple(joint.name() for joint in moving)
+        if not all(isinstance(joint, RevoluteJoint | PrismaticJoint) for joint in moving):
+            raise Unloadable("it gives links other joints than hinges and slides", self.lines_of_joints())
         self.limits: Mapping[str, tuple[float, float]] = {
             joint.name(): (float(joint.position_lower_limits()[0]), float(joint.position_upper_limits()[0]))
             for joint in moving
@@ -158,6 +173,14 @@ class DrakeFile:
         port.FixValue(world.state, np.zeros(len(rest)))
         return Pushed(farthest=progress.value, steps=done, overlaps=world.overlaps())
 
+    def lines_of_joints(self) -> str:
+        """See `LoadedFile`."""
+        return _JOINTS.format(**self._facts(None, dict.fromkeys(self.joints, 0.0)))
+
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """See `LoadedFile`."""
+        return _OVERLAP.format(**self._facts(None, values), links=set(links))
+
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """See `RunningFile`."""
         return _REST.format(**self._facts(joint, values), steps=round(seconds / self.time_step))
@@ -170,17 +193,19 @@ class DrakeFile:
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """See `RunningFile`."""
-        facts = self._facts(self.joints[0], values)
-        return _RELEASE.format(**facts, speeds=self._row(speeds).tolist(), steps=round(seconds / self.time_step))
+        facts = self._facts(None, values)
+        return _RELEASE.format(
+            **facts, speeds=self._row(speeds).tolist(), steps=round(seconds / self.time_step), looks=_LOOK_STEPS
+        )
 
-    def _facts(self, joint: str, values: Mapping[str, float]) -> dict[str, object]:
+    def _facts(self, joint: str | None, values: Mapping[str, float]) -> dict[str, object]:
         return {
             "path": str(self._path),
             "root": self._root,
             "folders": self._folders,
             "gravity": _EARTH,
             "values": self._row(values).tolist(),
-            "joint": self.joints.index(joint),
+            "joint": None if joint is None else self.joints.index(joint),
             "step": self.time_step,
         }
 
@@ -258,7 +283,8 @@ def _loaded(urdf: Path, root: str, folders: Sequence[str], *, contacts: bool, gr
         plant.Finalize()
         diagram = builder.Build()
     except RuntimeError as error:
-        raise Unloadable(" ".join(str(error).split())[:400].rstrip(".")) from error
+        lines = _LOAD.partition("context =")[0].format(path=str(urdf), root=root, folders=folders, gravity=_EARTH)
+        raise Unloadable(str(error), lines) from error
     bodies = [plant.get_body(index) for index in plant.GetBodyIndices(model)]
     link_of = {shape: body.name() for body in bodies for shape in plant.GetCollisionGeometriesForBody(body)}
     context = diagram.CreateDefaultContext()

@@ -23,6 +23,11 @@ _STALL_SECONDS = 0.8
 class Unloadable(Exception):
     """An engine does not open a file; the message is the engine's."""
 
+    def __init__(self, message: str, reproduction: str) -> None:
+        """Keep the message and plain code of the engine that shows it."""
+        super().__init__(" ".join(message.split())[:400].rstrip("."))
+        self.reproduction = reproduction
+
 
 @dataclass(frozen=True, kw_only=True)
 class Overlap:
@@ -108,6 +113,17 @@ class LoadedFile(Protocol):
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
 
+    def lines_of_joints(self) -> str:
+        """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
+
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
+
+        Args:
+            links: Of an `Overlap`.
+            values: Of all joints [rad or m].
+        """
+
 
 class RunningFile(LoadedFile, Protocol):
     """A file in an engine that simulates."""
@@ -135,7 +151,7 @@ class RunningFile(LoadedFile, Protocol):
         """Return plain code of the engine that repeats `push` and prints where the joint ends."""
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """Return plain code of the engine that repeats `release` and prints the first and the largest energy."""
+        """Return plain code of the engine that repeats `release` and prints by how much the energy grows [J]."""
 
 
 def hand(

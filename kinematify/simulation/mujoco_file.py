@@ -17,11 +17,26 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.loaded_file import Overlap, Push
 
+_OPEN = """import mujoco, numpy as np
+model = mujoco.MjModel.from_xml_path({path!r})
+"""
+_JOINTS = (
+    _OPEN
+    + """for k in range(model.njnt): ends = model.jnt_range[k] if model.jnt_limited[k] else (-np.inf, np.inf); \
+print(model.joint(k).name, *ends)
+"""
+)
 _LOAD = """import mujoco, numpy as np
 model = mujoco.MjModel.from_xml_path({path!r}); data = mujoco.MjData(model)
 data.qpos[:] = {values}; mujoco.mj_forward(model, data); rest = data.qpos.copy(); push = 0.0
 """
 _NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
+_OVERLAP = (
+    _LOAD
+    + """name = lambda geom: model.body(model.geom_bodyid[geom]).name
+print(max(-contact.dist for contact in data.contact if {{name(geom) for geom in contact.geom}} == {links}))
+"""
+)
 _REST = (
     _LOAD
     + """seen = [data.qpos[{joint}] for _ in range({steps}) if mujoco.mj_step(model, data) is None]
@@ -45,7 +60,7 @@ _RELEASE = (
     + _NO_CONTACTS
     + """model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY; data.qvel[:] = {speeds}
 seen = [sum(data.energy) for _ in range({steps}) if mujoco.mj_step(model, data) is None]
-print(seen[0], max(seen))
+print(max(seen) - seen[0])
 """
 )
 
@@ -64,9 +79,10 @@ class MujocoFile:
         try:
             self._model = mujoco.MjModel.from_xml_path(str(urdf))
         except ValueError as error:
-            raise Unloadable(" ".join(str(error).split())) from error
+            raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
         if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
-            raise Unloadable("it gives links other joints than hinges and slides")
+            message = "it gives links other joints than hinges and slides"
+            raise Unloadable(message, _OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
         self._data = mujoco.MjData(self._model)
         self.joints: Sequence[str] = tuple(self._model.joint(k).name for k in range(self._model.njnt))
         self.time_step = float(self._model.opt.timestep)
@@ -167,6 +183,15 @@ class MujocoFile:
             found = self._overlaps()
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
+    def lines_of_joints(self) -> str:
+        """See `LoadedFile`."""
+        return _JOINTS.format(path=str(self._path))
+
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """See `LoadedFile`."""
+        names = {"world" if name == self._root else name for name in links}
+        return _OVERLAP.format(**self._facts(None, values), links=names)
+
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """See `RunningFile`."""
         steps = round(seconds / self.time_step)
@@ -180,12 +205,12 @@ class MujocoFile:
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """See `RunningFile`."""
-        facts = self._facts(self.joints[0], values) | {"speeds": [float(speeds[name]) for name in self.joints]}
+        facts = self._facts(None, values) | {"speeds": [float(speeds[name]) for name in self.joints]}
         return _RELEASE.format(**facts, steps=round(seconds / self.time_step))
 
-    def _facts(self, joint: str, values: Mapping[str, float]) -> dict[str, object]:
+    def _facts(self, joint: str | None, values: Mapping[str, float]) -> dict[str, object]:
         return {
             "path": str(self._path),
             "values": [float(values[name]) for name in self.joints],
-            "joint": self.joints.index(joint),
+            "joint": None if joint is None else self.joints.index(joint),
         }

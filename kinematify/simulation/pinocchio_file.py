@@ -15,8 +15,32 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.loaded_file import Overlap
 
+_OPEN = """import coal, numpy as np, pinocchio as pin
+model = pin.buildModelFromUrdf({path!r}); \
+shapes = pin.buildGeomFromUrdf(model, {path!r}, pin.GeometryType.COLLISION, package_dirs={folders})
+"""
+_JOINTS = (
+    _OPEN
+    + """for name, joint in zip(list(model.names)[1:], list(model.joints)[1:]): k = joint.idx_q; \
+ends = (-float("inf"), float("inf")) if joint.nq == 2 else (model.lowerPositionLimit[k], model.upperPositionLimit[k]); \
+print(name, *ends)
+"""
+)
+_OVERLAP = (
+    _OPEN
+    + """seen = shapes.createData(); pin.updateGeometryPlacements(model, model.createData(), shapes, seen, \
+np.array({configuration})); place = lambda k: coal.Transform3s(seen.oMg[k].rotation, seen.oMg[k].translation)
+solid = [(getattr(g.geometry, "buildConvexRepresentation", lambda _: 0)(False), \
+getattr(g.geometry, "convex", g.geometry))[1] for g in shapes.geometryObjects]
+pairs = [(i, k) for i, a in enumerate(shapes.geometryObjects) for k, b in enumerate(shapes.geometryObjects) \
+if (model.frames[a.parentFrame].name, model.frames[b.parentFrame].name) == {links}]
+print(max(-coal.distance(solid[i], place(i), solid[k], place(k), coal.DistanceRequest(), coal.DistanceResult()) \
+for i, k in pairs))
+"""
+)
 _CONVEX = 0.99
 """Volume of a mesh that counts as convex, fraction of its hull's."""
 
@@ -32,13 +56,14 @@ class PinocchioFile:
         """
         del root
         folders = [str(folder) for folder in (urdf.parent, *package_dirs)]
+        self._facts = {"path": str(urdf), "folders": folders}
         try:
             self._model = pin.buildModelFromUrdf(str(urdf))
             self._geometry = pin.buildGeomFromUrdf(
                 self._model, str(urdf), pin.GeometryType.COLLISION, package_dirs=folders
             )
         except ValueError as error:
-            raise Unloadable(" ".join(str(error).split())) from error
+            raise Unloadable(str(error), _OPEN.format(**self._facts)) from error
         self._geometry.addAllCollisionPairs()
         self.joints: Sequence[str] = tuple(self._model.names)[1:]  # the first is the world
 
@@ -53,10 +78,7 @@ class PinocchioFile:
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """See `LoadedFile`; depths are told of convex shapes, by distances: `computeCollisions` misses boxes."""
-        model, geometry, q = self._model, self._geometry, pin.neutral(self._model)
-        for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):
-            value = values[name]
-            q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
+        model, geometry, q = self._model, self._geometry, self._configuration(values)
         seen = geometry.createData()
         pin.updateGeometryPlacements(model, model.createData(), geometry, seen, q)
         places = [coal.Transform3s(place.rotation, place.translation) for place in seen.oMg]
@@ -72,6 +94,22 @@ class PinocchioFile:
             first, second = sorted(model.frames[shape.parentFrame].name for shape in shapes)
             depths[first, second] = max(depths.get((first, second), 0.0), -distance)
         return deepest_first(depths)
+
+    def _configuration(self, values: Mapping[str, float]) -> FloatArray:
+        """Joints that turn without end are points on a circle."""
+        q = np.array(pin.neutral(self._model))
+        for name, joint in zip(self.joints, list(self._model.joints)[1:], strict=True):
+            value = values[name]
+            q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
+        return q
+
+    def lines_of_joints(self) -> str:
+        """See `LoadedFile`."""
+        return _JOINTS.format(**self._facts)
+
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """See `LoadedFile`."""
+        return _OVERLAP.format(**self._facts, links=links, configuration=self._configuration(values).tolist())
 
     @cached_property
     def _solids(self) -> list[Any]:

@@ -29,6 +29,22 @@ p.connect(p.DIRECT); p.setGravity(0, 0, -9.81); rest = {values}; push = 0.0
 body = p.loadURDF({path!r}, useFixedBase=True, flags=p.URDF_USE_SELF_COLLISION); \
 [p.resetJointState(body, k, q) for k, q in rest.items()]
 """
+_OPEN = """import pybullet as p
+p.connect(p.DIRECT); body = p.loadURDF({path!r}, useFixedBase=True)
+"""
+_JOINTS = (
+    _OPEN
+    + """joints = [p.getJointInfo(body, k) for k in range(p.getNumJoints(body))]
+for info in joints: ends = info[8:10] if info[8] <= info[9] else (-float("inf"), float("inf")); \
+info[2] == p.JOINT_FIXED or print(info[1].decode(), *ends)
+"""
+)
+_OVERLAP = (
+    _LOAD
+    + """p.performCollisionDetection()
+print(max(-contact[8] for contact in p.getContactPoints(body, body) if set(contact[3:5]) == {links}))
+"""
+)
 _REST = (
     _LOAD
     + """seen = [p.getJointState(body, {joint})[0] for _ in range({steps}) if not p.stepSimulation()]
@@ -57,8 +73,8 @@ _RELEASE = (
 local = lambda s: np.reshape(p.getMatrixFromQuaternion(s[1]), (3, 3)).T @ s[7]
 energy = lambda: sum(d[0] * (9.81 * s[0][2] + 0.5 * np.dot(s[6], s[6])) + 0.5 * np.dot(d[2], local(s)**2) \
 for d, s in ((p.getDynamicsInfo(body, k), p.getLinkState(body, k, 1, 1)) for k in links))
-seen = [energy()] + [energy() for _ in range({steps}) if not p.stepSimulation()]
-print(seen[0], max(seen))
+seen = [energy()] + [energy() for k in range({steps}) if not p.stepSimulation() and k % {looks} == {looks} - 1]
+print(max(seen) - seen[0])
 """
 )
 _LOOK_STEPS = 8
@@ -213,6 +229,15 @@ class PybulletFile:
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=world.client)
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
+    def lines_of_joints(self) -> str:
+        """See `LoadedFile`."""
+        return _JOINTS.format(path=str(self._path))
+
+    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
+        """See `LoadedFile`."""
+        places = {k for k, name in self._links.items() if name in links}
+        return _OVERLAP.format(**self._facts(None, values), links=places)
+
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """See `RunningFile`."""
         return _REST.format(**self._facts(joint, values), steps=round(seconds / self.time_step))
@@ -225,15 +250,15 @@ class PybulletFile:
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """See `RunningFile`."""
-        facts = self._facts(self.joints[0], values)
+        facts = self._facts(None, values)
         given = {k: float(speeds[name]) for name, k in self._index.items()}
-        return _RELEASE.format(**facts, speeds=given, steps=round(seconds / self.time_step))
+        return _RELEASE.format(**facts, speeds=given, steps=round(seconds / self.time_step), looks=_LOOK_STEPS)
 
-    def _facts(self, joint: str, values: Mapping[str, float]) -> dict[str, Any]:
+    def _facts(self, joint: str | None, values: Mapping[str, float]) -> dict[str, Any]:
         return {
             "path": str(self._path),
             "values": {k: float(values[name]) for name, k in self._index.items()},
-            "joint": self._index[joint],
+            "joint": None if joint is None else self._index[joint],
         }
 
 
@@ -253,7 +278,7 @@ class _World:
         try:
             self.body = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
         except bullet.error as error:
-            raise Unloadable(" ".join(str(error).split())) from error
+            raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
         self.state = bullet.saveState(physicsClientId=self.client)
 
     def do(self, function: Any, *arguments: Any, **named: Any) -> Any:

@@ -61,6 +61,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
         result.find(
             f"{context.title} does not open the file as it is: {context.loading}.",
             _remedy_of_loading(context, str(context.loading)),
+            reproduction=context.loading.reproduction,
             link=_named_link(context, str(context.loading)),
         )
         return
@@ -70,6 +71,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"The joint {name} of the file does not move in {context.title}, which has lost it or taken it for fixed.",
             f"Write the joint {name} with a type, axis and limits that {context.title} reads.",
             joint=name,
+            reproduction=context.loaded.lines_of_joints(),
         )
     result.measured["read"] = float(len(context.mechanism.joints) - len(context.lost) - len(context.misread))
     for joint in context.misread:
@@ -80,6 +82,7 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
             f"{context.title}.",
             f"Give {joint.name} a lower limit that is less than the upper one; what does not move has a fixed joint.",
             joint=joint.name,
+            reproduction=context.loaded.lines_of_joints(),
         )
 
 
@@ -131,6 +134,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
                 value=overlap.depth,
                 limit=limit,
                 unit="m",
+                reproduction=context.loaded.lines_of_overlap(overlap.links, context.values),
             )
 
 
@@ -192,7 +196,9 @@ def _beyond(context: AsLoadedContext, travel: Travel) -> float:
 
 def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -> None:
     overlap, beyond = _thrown_by(context, travel), _beyond(context, travel)
-    way = float(np.abs(context.way(context.left_alone, travel) - travel.rest).max())
+    values = context.way(context.left_alone, travel)
+    farthest = float(values[np.abs(values - travel.rest).argmax()])
+    way = abs(farthest - travel.rest)
     if overlap is not None:
         said = (
             f"contacts move it by {way:.3g} {travel.unit}, without them it rests; {overlap.links[0]} and "
@@ -208,8 +214,8 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
         remedy,
         joint=travel.joint,
         pair=None if overlap is None else overlap.links,
-        value=beyond if overlap is None else way,
-        limit=context.still(travel),
+        q={travel.joint: farthest},
+        value=farthest,
         unit=travel.unit,
         reproduction=context.running.lines_of_rest(travel.joint, context.values, context.settings.seconds),
     )

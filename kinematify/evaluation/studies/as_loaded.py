@@ -5,11 +5,14 @@ that they were built with; models of others are taken as they are, and after `ki
 the checks KV8xx of `kinematify validate`: it is loaded with the engine's own defaults, left alone under gravity, and
 each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an engine in which
 no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is asked with
-`URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other.
+`URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of every
+complaint is run as it stands in the report; `shown` counts those in which it shows what is said.
 """
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -48,8 +51,10 @@ if TYPE_CHECKING:
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.validation.finding import CheckResult
+    from kinematify.validation.finding import CheckResult, Finding
 
+_SHOWN = 0.1
+"""How far what the code of a finding prints may be from what the finding says, as a fraction of it."""
 _FREE_TRAVEL = "KV310"
 """Its stage measures how far every joint is free."""
 
@@ -159,12 +164,27 @@ def _world(checks: Sequence[CheckResult], engine: str) -> Record:
         "right": measured.get("right", measured.get("read", 0.0)),
         "unfinished": [f"{check.check}: {check.reason}" for check in told if check.status is Status.BLOCKED],
         "findings": [
-            [item.check, item.joint, item.message]
+            [item.check, item.joint, item.message, shown(item)]
             for check in told
             for item in check.findings
             if item.severity is not Severity.NOTE
         ],
     }
+
+
+def shown(finding: Finding) -> bool:
+    """Whether the code of a finding, run by itself, shows what the finding says: its value, an end, a joint's lack."""
+    code = finding.reproduction or "print()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300.0, check=False)
+    lines = [line.split() for line in done.stdout.splitlines() if line.strip()]
+    if finding.value is None:
+        read = {
+            line[0]: " ".join(f"{float(end):.4g}" for end in line[1:]) for line in lines if line[0] == finding.joint
+        }
+        refused = done.returncode != 0
+        return refused if finding.joint is None else not refused and read.get(finding.joint, "") not in finding.message
+    tolerance = _SHOWN * max(abs(finding.value), abs(finding.limit or 0.0))
+    return any(abs(float(word) - finding.value) <= tolerance for word in (lines or [[]])[-1])
 
 
 def report(found: Report[Record]) -> list[str]:
@@ -196,11 +216,12 @@ def works_in(found: Report[Record]) -> str:
         for engine in ENGINES
         if engine in group[0]["worlds"]
     ]
-    return table(("set", "engine", "version", "date", "models that work", "joints that move", "blocked"), rows)
+    return table(("set", "engine", "version", "date", "models that work", "joints that move", "blocked", "shown"), rows)
 
 
 def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record]) -> tuple[str, ...]:
     tried = [record["worlds"][engine] for record in records]
+    complaints = [item for one in tried for item in one["findings"]]
     return (
         name,
         ENGINES[engine].title,
@@ -209,6 +230,7 @@ def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record
         f"{sum(_works(one) for one in tried)} of {len(tried)}",
         f"{sum(one['right'] for one in tried):.0f} of {sum(one['joints'] for one in tried):.0f}",
         str(sum(record.get("blocked", 0) for record in records)),
+        f"{sum(item[3] for item in complaints)} of {len(complaints)}",
     )
 
 
@@ -219,10 +241,24 @@ def _works(tried: Record) -> bool:
 def _failing(records: Sequence[Record]) -> Iterator[str]:
     for record in records:
         for engine, tried in record["worlds"].items():
-            for check, _, message in tried["findings"]:
-                yield f"- {record['set']}, {record['object']}, {engine}, {check}: {message}"
+            for check, _, message, seen in tried["findings"]:
+                unseen = "" if seen else " **Its code does not show it.**"
+                yield f"- {record['set']}, {record['object']}, {engine}, {check}: {message}{unseen}"
             for reason in tried["unfinished"]:
                 yield f"- {record['set']}, {record['object']}, {engine}, {reason}"
 
 
-STUDY = Study(title="The files as they are loaded", options=AsLoadedOptions, measure=measure, report=report)
+def faults(found: Report[Record]) -> list[str]:
+    """Complaints that their own code does not show."""
+    return [
+        f"{record['object']}, {engine}, {check}: its code does not show that {message}"
+        for record in found.records
+        for engine, tried in record["worlds"].items()
+        for check, _, message, seen in tried["findings"]
+        if not seen
+    ]
+
+
+STUDY = Study(
+    title="The files as they are loaded", options=AsLoadedOptions, measure=measure, report=report, faults=faults
+)
