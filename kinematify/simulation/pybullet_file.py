@@ -36,19 +36,19 @@ _JOINTS = (
     _OPEN
     + """joints = [p.getJointInfo(body, k) for k in range(p.getNumJoints(body))]
 for info in joints: ends = info[8:10] if info[8] <= info[9] else (-float("inf"), float("inf")); \
-info[2] == p.JOINT_FIXED or print(info[1].decode(), *ends)
+info[2] == p.JOINT_FIXED or print("\\n", info[1].decode(), *ends)
 """
 )
 _OVERLAP = (
     _LOAD
     + """p.performCollisionDetection()
-print(max(-contact[8] for contact in p.getContactPoints(body, body) if set(contact[3:5]) == {links}))
+print("\\n", max(-contact[8] for contact in p.getContactPoints(body, body) if set(contact[3:5]) == {links}))
 """
 )
 _REST = (
     _LOAD
     + """seen = [p.getJointState(body, {joint})[0] for _ in range({steps}) if not p.stepSimulation()]
-print(min(seen), max(seen))
+print("\\n", min(seen), max(seen))
 """
 )
 _PUSH = (
@@ -62,7 +62,7 @@ p.stepSimulation(); state = {{k: p.getJointState(body, k) for k in rest}}; \
 way = sum(w * (state[k][0] - rest[k]) for k, _, w in moved); speed = sum(w * state[k][1] for k, _, w in moved); \
 ratio = {{k: r for k, r, _ in moved}}; \
 [p.resetJointState(body, k, q + ratio.get(k, 0) * way, ratio.get(k, 0) * speed) for k, q in rest.items()]
-print(p.getJointState(body, {joint})[0])
+print("\\n", p.getJointState(body, {joint})[0])
 """
 )
 _RELEASE = (
@@ -74,7 +74,7 @@ local = lambda s: np.reshape(p.getMatrixFromQuaternion(s[1]), (3, 3)).T @ s[7]
 energy = lambda: sum(d[0] * (9.81 * s[0][2] + 0.5 * np.dot(s[6], s[6])) + 0.5 * np.dot(d[2], local(s)**2) \
 for d, s in ((p.getDynamicsInfo(body, k), p.getLinkState(body, k, 1, 1)) for k in links))
 seen = [energy()] + [energy() for k in range({steps}) if not p.stepSimulation() and k % {looks} == {looks} - 1]
-print(max(seen) - seen[0])
+print("\\n", max(seen) - seen[0])
 """
 )
 _LOOK_STEPS = 8
