@@ -5,8 +5,8 @@ that they were built with; models of others are taken as they are, and after `ki
 the checks KV8xx of `kinematify validate`: it is loaded with the engine's own defaults, left alone under gravity, and
 each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an engine in which
 no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is asked with
-`URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of every
-complaint is run as it stands in the report; `shown` counts those in which it shows what is said.
+`URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of
+complaints about models of others is run as it stands in the report; `shown` counts those where it shows what is said.
 """
 
 from __future__ import annotations
@@ -118,14 +118,14 @@ def tried_as_loaded(case: Case) -> Record:
         model = infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config).model
         return {**facts, **_written(model, config, case.engines)}
     if case.made == "as given":
-        return {**facts, **_judged(case.item.urdf, case.engines, case.item.package_dirs)}
+        return {**facts, **_judged(case.item.urdf, case.engines, case.item.package_dirs, run_code=True)}
     with tempfile.TemporaryDirectory() as folder:
         start = time.process_time()
         fixed = fix_urdf(
             case.item.urdf, Path(folder) / "model.urdf", config, load_settings(), package_dirs=case.item.package_dirs
         )
         seconds = time.process_time() - start
-        return {**facts, "seconds": seconds, **_judged(fixed.path, case.engines, case.item.package_dirs)}
+        return {**facts, "seconds": seconds, **_judged(fixed.path, case.engines, case.item.package_dirs, run_code=True)}
 
 
 def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> Record:
@@ -142,7 +142,7 @@ def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> R
     }
 
 
-def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = ()) -> Record:
+def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = (), *, run_code: bool = False) -> Record:
     """What `kinematify validate` says of a file as it is loaded, by engine."""
     checks = checks_of("KV8")
     report = validate(
@@ -152,23 +152,23 @@ def _judged(urdf: Path, engines: Sequence[str], package_dirs: Sequence[Path] = (
         selected={_FREE_TRAVEL, *(check.id for check in checks)},
         workers=1,
     )
-    return {"as_loaded": report.as_loaded, "worlds": {engine: _world(report.checks, engine) for engine in engines}}
+    return {
+        "as_loaded": report.as_loaded,
+        "worlds": {engine: _world(report.checks, engine, run_code=run_code) for engine in engines},
+    }
 
 
-def _world(checks: Sequence[CheckResult], engine: str) -> Record:
+def _world(checks: Sequence[CheckResult], engine: str, *, run_code: bool) -> Record:
     """The judgement of one engine."""
     told = [check for check in checks if check.check.startswith("KV8") and check.engine == engine]
     measured = {name: value for check in told for name, value in check.measured.items()}
+    counted = [item for check in told for item in check.findings if item.severity is not Severity.NOTE]
     return {
         "joints": measured.get("joints", 0.0),
         "right": measured.get("right", measured.get("read", 0.0)),
         "unfinished": [f"{check.check}: {check.reason}" for check in told if check.status is Status.BLOCKED],
-        "findings": [
-            [item.check, item.joint, item.message, shown(item)]
-            for check in told
-            for item in check.findings
-            if item.severity is not Severity.NOTE
-        ],
+        "findings": [[item.check, item.joint, item.message] for item in counted],
+        **({"shown": [shown(item) for item in counted]} if run_code else {}),
     }
 
 
@@ -221,7 +221,7 @@ def works_in(found: Report[Record]) -> str:
 
 def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record]) -> tuple[str, ...]:
     tried = [record["worlds"][engine] for record in records]
-    complaints = [item for one in tried for item in one["findings"]]
+    seen = [item for one in tried for item in one.get("shown", ())]
     return (
         name,
         ENGINES[engine].title,
@@ -230,7 +230,7 @@ def _row(found: Report[Record], name: str, engine: str, records: Sequence[Record
         f"{sum(_works(one) for one in tried)} of {len(tried)}",
         f"{sum(one['right'] for one in tried):.0f} of {sum(one['joints'] for one in tried):.0f}",
         str(sum(record.get("blocked", 0) for record in records)),
-        f"{sum(item[3] for item in complaints)} of {len(complaints)}",
+        f"{sum(seen)} of {len(seen)}" if seen else "",
     )
 
 
@@ -241,9 +241,8 @@ def _works(tried: Record) -> bool:
 def _failing(records: Sequence[Record]) -> Iterator[str]:
     for record in records:
         for engine, tried in record["worlds"].items():
-            for check, _, message, seen in tried["findings"]:
-                unseen = "" if seen else " **Its code does not show it.**"
-                yield f"- {record['set']}, {record['object']}, {engine}, {check}: {message}{unseen}"
+            for check, _, message in tried["findings"]:
+                yield f"- {record['set']}, {record['object']}, {engine}, {check}: {message}"
             for reason in tried["unfinished"]:
                 yield f"- {record['set']}, {record['object']}, {engine}, {reason}"
 
@@ -254,7 +253,7 @@ def faults(found: Report[Record]) -> list[str]:
         f"{record['object']}, {engine}, {check}: its code does not show that {message}"
         for record in found.records
         for engine, tried in record["worlds"].items()
-        for check, _, message, seen in tried["findings"]
+        for (check, _, message), seen in zip(tried["findings"], tried.get("shown", tried["findings"]), strict=True)
         if not seen
     ]
 
