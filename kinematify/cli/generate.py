@@ -225,8 +225,9 @@ def _run(run: Generation | ProvidedGeneration, force: bool, json_to: str | None)
 def _refuse_without_source(images: tuple[Path, ...], *others: object) -> None:
     if images:
         raise click.UsageError(
-            "Say who makes parts of the image: --source rodin (a web service, needs a key) or --source command (a "
-            "program of yours). Objects built by rules take --text or --category."
+            "Say who looks at the image: --source rodin (a web service, needs a key) or --source command (a program of "
+            "yours) makes parts of it, --source llm (a language model) a blueprint. Objects built by rules take --text "
+            "or --category."
         )
     if any(others):
         raise click.UsageError(

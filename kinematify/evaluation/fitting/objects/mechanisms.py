@@ -168,8 +168,7 @@ def drawer(
         if d.hand.drawer == "tray":
             wall = 0.06 * least
             inner = half - wall * sides
-            up = np.array([0.0, 0.0, 1.0])
-            d.cut(name, box(back + wall * out - inner + 0.0 * up, face - wall * out + inner + 2.0 * wall * up))
+            d.cut(name, box(back + wall * out - inner, face - wall * out + inner + 2.0 * wall * Z))
     if handle:
         flat = np.array([1.0, 1.0, 0.0]) * sides
         along = flat / max(float(np.linalg.norm(flat)), 1e-9)
@@ -549,60 +548,6 @@ def bail(
         d.cut(parent, rod(0.3 * thick + 1.5 * gap, a, a + (1.5 * thick + gap) * along))
         d.cut(parent, rod(0.3 * thick + 1.5 * gap, b, b - (1.5 * thick + gap) * along))
     d.hinge(name, parent, along, 0.5 * (a + b), upper, lower)
-
-
-def rocker(
-    d: Draft,
-    name: str,
-    parent: str,
-    at: Point,
-    size: tuple[float, float],
-    high: float,
-    out: FloatArray,
-    *,
-    reach: float = 0.3,
-    material: str = "plastic",
-) -> None:
-    """A rocker, treadle or see-saw of a length and a width on a surface, tilting about a line across its middle."""
-    at = np.asarray(at, dtype=np.float64)
-    wide, tall = _across(out, (size[1], size[0]))
-    axis = wide / float(np.linalg.norm(wide))
-    half = 0.5 * (wide + tall)
-    level = at + high * out
-    thick = 0.12 * size[0]
-    d.part(name, box(level - half, level + half + thick * out), material=material)
-    gap = d.gap(high)
-    shaft = rod(min(0.3 * high, 0.1 * size[0]), level - 0.5 * wide, level + 0.5 * wide)
-    if d.hand.bored:
-        post = min(0.25 * high, 0.08 * size[0])
-        d.part(
-            parent,
-            *(
-                box(
-                    at + s * 0.55 * wide - np.abs(axis) * post - 0.1 * tall,
-                    at + s * 0.55 * wide + np.abs(axis) * post + 0.1 * tall + (high + post) * out,
-                )
-                for s in (-1.0, 1.0)
-            ),
-        )
-        d.cut(
-            name,
-            *(
-                box(
-                    at
-                    + s * 0.55 * wide
-                    - np.abs(axis) * (post + gap + 0.05 * float(np.linalg.norm(wide)))
-                    - 0.16 * tall,
-                    at + s * 0.55 * wide + np.abs(axis) * (post + gap) + 0.16 * tall + (high + 3 * thick) * out,
-                )
-                for s in (-1.0, 1.0)
-            ),
-        )
-    elif d.maybe():
-        d.part(d.pick(name, parent), shaft)
-    else:
-        d.part(parent, box(at - 0.4 * wide - 0.05 * tall, at + 0.4 * wide + 0.05 * tall + high * out))
-    d.hinge(name, parent, axis, level, reach, -reach, ajar=False)
 
 
 def _across(out: FloatArray, size: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
