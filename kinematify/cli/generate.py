@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from kinematify.cli.generation import Generation, Requested
     from kinematify.cli.provided import ProvidedGeneration
+    from kinematify.generate.composer.bodies import Body
+    from kinematify.generate.composer.mechanisms import Mechanism
 
 
 @click.command(
@@ -48,6 +50,9 @@ if TYPE_CHECKING:
     help="What to build, as YAML or JSON: parts made of primitives, and joints.",
 )
 @click.option("--corpus", type=click.IntRange(min=1), metavar="N", help="N objects of all categories, as a benchmark.")
+@click.option(
+    "--compose", "composed", is_flag=True, help="With --corpus: mechanisms on bodies, each with its sentence."
+)
 @click.option("--seed", type=int, help="Draw what is not asked for; without it the defaults are taken.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
 @click.option(
@@ -103,6 +108,7 @@ def command(
     settings: tuple[str, ...],
     blueprint: Path | None,
     corpus: int | None,
+    composed: bool,
     seed: int | None,
     listing: bool,
     gallery: Path | None,
@@ -155,8 +161,10 @@ def command(
         _write_gallery(gallery)
         return 0
     if corpus is not None:
-        _write_corpus(corpus, seed or 0, _needed(out), text or category)
+        _write_corpus(corpus, seed or 0, _needed(out), text or category, composed=composed)
         return 0
+    if composed:
+        raise click.UsageError("--compose belongs to --corpus. For one object, say it in --text.")
     if source is not None:
         if category is not None or settings or blueprint is not None:
             raise click.UsageError(
@@ -252,14 +260,22 @@ def _pairs(settings: Sequence[str]) -> dict[str, str]:
 
 
 def _categories() -> str:
+    from kinematify.generate.composer.bodies import BODIES
+    from kinematify.generate.composer.mechanisms import MECHANISMS
     from kinematify.generate.procedural.families import FAMILIES
 
     rows = [(family.name, family.title, ", ".join(p.name for p in family.parameters)) for family in FAMILIES.values()]
     table = format_table(("category", "what it is", "parameters"), rows)
     return (
-        f"{table}\n\nParameters with units and ranges: kinematify generate --list --category NAME\n"
+        f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
+        f"bodies: {_named(BODIES)}\nmechanisms: {_named(MECHANISMS)}\n\n"
+        "Parameters with units and ranges: kinematify generate --list --category NAME\n"
         "A page with a picture of each: kinematify generate --gallery DIR"
     )
+
+
+def _named(kinds: Sequence[Body] | Sequence[Mechanism]) -> str:
+    return ", ".join(kind.words[0] for kind in kinds)
 
 
 def _parameters(category: str) -> str:
@@ -272,13 +288,15 @@ def _parameters(category: str) -> str:
     return f"{family.title}\n\n{table}\n\n{words}"
 
 
-def _write_corpus(count: int, seed: int, out: Path, only: str | None) -> None:
+def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, composed: bool) -> None:
     from kinematify.pipeline.corpus import write_corpus
 
     if only is not None:
         raise click.UsageError("--corpus takes all categories; leave out --text and --category.")
     with progress_reporter() as progress:
-        manifest = write_corpus(out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1)
+        manifest = write_corpus(
+            out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1, composed=composed
+        )
     click.echo(f"{count} objects: {manifest}\nNext: kinematify bench {out} -o results --name corpus")
 
 

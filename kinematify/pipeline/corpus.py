@@ -10,6 +10,7 @@ import signal
 import zlib
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +18,8 @@ import numpy as np
 from kinematify import __version__
 from kinematify.config import load_config
 from kinematify.errors import OutputError
+from kinematify.generate.composer.compose import compose, draw_composition
+from kinematify.generate.composer.sentence import told
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.generate import write_blueprint
@@ -25,13 +28,25 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
+    from kinematify.generate.blueprint import Blueprint
+
 MANIFEST = "manifest.json"
+COMPOSED = "composed"
+"""Category of objects that no family builds."""
 _AJAR = 0.25  # of the objects, as of things that are seen in rooms
 _AJAR_BY = (0.05, 0.6)  # share of the way; more is as good as open, and no object is found so
 _FEW = 8  # so many are written while other processes are still starting
 
 
-def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, float], None], workers: int = 1) -> Path:
+def write_corpus(
+    out: Path,
+    count: int,
+    *,
+    seed: int,
+    progress: Callable[[str, float], None],
+    workers: int = 1,
+    composed: bool = False,
+) -> Path:
     """Write `count` objects below a folder, one folder each with a URDF, and a manifest.
 
     Families take turns, so that their numbers differ by one at most; a quarter of the objects stand ajar. The manifest
@@ -45,6 +60,7 @@ def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, f
         seed: Draws the parameters; an object of a name has the same ones in a corpus of any size.
         progress: Told the object and the share done.
         workers: Processes at a time.
+        composed: Mechanisms on bodies instead of families; their ``source.json`` has a sentence for each.
 
     Returns:
         The path of the manifest.
@@ -54,7 +70,7 @@ def write_corpus(out: Path, count: int, *, seed: int, progress: Callable[[str, f
     """
     manifest = out / MANIFEST
     _check_seed(manifest, seed)
-    entries = [_entry(k, seed) for k in range(count)]
+    entries = [_composed_entry(k, seed) if composed else _entry(k, seed) for k in range(count)]
     try:
         out.mkdir(parents=True, exist_ok=True)
         counts = Counter(entry["category"] for entry in entries)
@@ -83,6 +99,23 @@ def _entry(k: int, seed: int) -> dict[str, Any]:
     return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn, "open": share}
 
 
+def _composed_entry(k: int, seed: int) -> dict[str, Any]:
+    """Composed object k of a corpus."""
+    rng = np.random.default_rng([seed, k])
+    drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
+    share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
+    return {"name": f"{COMPOSED}_{k:04d}", "category": COMPOSED, "seed": drawn, "open": share}
+
+
+def _built(entry: dict[str, Any]) -> Blueprint:
+    seed = entry["seed"]
+    if entry["category"] != COMPOSED:
+        return build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=seed, name=entry["name"])
+    composition = replace(draw_composition(seed), rest=entry["open"])
+    blueprint = compose(composition, name=entry["name"], seed=seed)
+    return replace(blueprint, parameters={**blueprint.parameters, "text": told(composition)})
+
+
 def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -> Iterator[str]:
     """Write the objects and yield the name of each that is finished; few are written in this process."""
     if workers == 1 or len(entries) < _FEW:
@@ -107,8 +140,7 @@ def _write_object(out: Path, entry: dict[str, Any]) -> str:
     folder: Path = out / entry["name"]
     aside = out / f".{folder.name}.{os.getpid()}"
     shutil.rmtree(aside, ignore_errors=True)
-    blueprint = build(FAMILIES[entry["category"]], {"open": entry["open"]}, seed=entry["seed"], name=entry["name"])
-    write_blueprint(blueprint, aside, load_config())
+    write_blueprint(_built(entry), aside, load_config())
     aside.rename(folder)
     return folder.name
 

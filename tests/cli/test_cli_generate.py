@@ -127,6 +127,16 @@ def test_a_corpus_is_a_benchmark_and_goes_on_where_it_stopped(tmp_path, capsys):
     assert "seed 1, not 2" in capsys.readouterr().err
 
 
+def test_a_composed_corpus_has_a_sentence_for_every_object(tmp_path):
+    out = tmp_path / "corpus"
+    assert run(["generate", "--corpus", "2", "--compose", "--seed", "1", "-o", str(out)]) == 0
+    for name in ("composed_0000", "composed_0001"):
+        text = json.loads((out / name / "source.json").read_text())["parameters"]["text"]
+        assert from_text(text).composition is not None or from_text(text).family
+        assert (out / name / "model.urdf").exists()
+    assert run(["generate", "--text", "a cart with a drawer", "--compose", "-o", str(tmp_path / "cart")]) == 2
+
+
 def test_what_a_killed_process_left_of_a_corpus_is_cleared_away_and_some_objects_stand_ajar(tmp_path):
     (tmp_path / ".bottle_000.123").mkdir()
     (tmp_path / ".bottle_000.123" / "model.urdf").write_text("<robot")

@@ -12,7 +12,7 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.mechanisms import MECHANISMS
-from kinematify.generate.composer.sentence import NoBodyError, read_composition
+from kinematify.generate.composer.sentence import NoBodyError, read_composition, told
 from kinematify.generate.procedural.request import from_text
 from kinematify.robot.joint_type import JointType
 
@@ -68,6 +68,12 @@ def test_drawn_compositions_have_whole_parts_that_stand_free(seed):
     assert all(len(solid.decompose()) == 1 for solid in solids_of(blueprint).values())
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_drawn_can_be_said(seed):
+    composition = draw_composition(seed)
+    assert read_composition(told(composition)) == composition
+
+
 def test_a_seed_draws_what_is_not_asked_for():
     composition = read_composition("a cart, 90 cm wide, with two drawers")
     first, again, other = (compose(composition, seed=seed).parts[0] for seed in (1, 1, 2))
@@ -114,6 +120,8 @@ def test_what_is_not_understood_is_named(sentence, words):
     [
         ("a cart with a push handle", "Nothing of this cart would move"),
         ("a cart with three wheels", "in pairs"),
+        ("a cart with two wheels on the left", "both sides"),
+        ("a chest with three lids and a carrying handle", "one lid"),
         ("a control panel with two drawers", "needs room behind it"),
         ("a frame with a caster", "no place for a caster"),
         ("a column with an arm and a turntable on top", "turntable"),

@@ -31,6 +31,7 @@ from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.formats.fix import fix_urdf
+from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.model.simulable import simulable_model
@@ -68,6 +69,7 @@ class AsLoadedOptions(Options):
     families: Annotated[tuple[str, ...], among(FAMILIES)] = Field(
         (), description="Only these families, separated by commas."
     )
+    composed: int = Field(0, ge=0, description="Objects composed of mechanisms on bodies.")
     engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
         ("mujoco", "pybullet"), description="Engines, separated by commas."
     )
@@ -84,6 +86,7 @@ class Case:
     item: BenchObject | None = None
     """None for an object of the generator."""
     family: str = ""
+    """Empty for a composed object."""
     seed: int = 0
 
 
@@ -99,6 +102,7 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
     for seed in range(options.seeds):
         for family in options.families or FAMILIES:
             cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
+    cases |= {f"composed {seed}": case(made="exact", seed=seed) for seed in range(options.composed)}
     return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
         "versions": package_versions(ENGINES[engine].package for engine in options.engines)
     }
@@ -109,9 +113,14 @@ def tried_as_loaded(case: Case) -> Record:
     config = load_config()
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
     if case.item is None:
-        name = f"{case.family}_{case.seed}"
-        model = true_model(build(FAMILIES[case.family], {}, seed=case.seed, name=name), config)
-        facts = {"set": "generated, exact", "object": f"{case.family} {case.seed}"}
+        kind = case.family or "composed"
+        name = f"{kind}_{case.seed}"
+        if case.family:
+            blueprint = build(FAMILIES[case.family], {}, seed=case.seed, name=name)
+        else:
+            blueprint = compose(draw_composition(case.seed), seed=case.seed, name=name)
+        model = true_model(blueprint, config)
+        facts = {"set": f"{'generated' if case.family else 'composed'}, exact", "object": f"{kind} {case.seed}"}
         return {**facts, **_written(model, config, case.engines)}
     facts = {"set": f"{case.item.urdf.parents[1].name}, {case.made}", "object": case.item.name}
     if case.made == "inferred":

@@ -77,22 +77,73 @@ def compose(
     """
     if not any(wanted.mechanism.moves for wanted in composition.wanted):
         raise InputError(f"Nothing of this {_title(composition.body)} would move. Ask for {_known()}.")
+    layout = _laid_out(composition, seed)
+    fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
+    numbers: Counter[str] = Counter()
+    here: Counter[tuple[str, str]] = Counter()
+    lidded = {side for side, item, _ in layout.placed if item.mechanism.words[0] == "lid"}
+    for name_of_side, item, area in layout.placed:
+        side, word = layout.sides[name_of_side], item.mechanism.words[0].replace(" ", "_").replace("-", "_")
+        numbers[word] += 1
+        place = Place(
+            workshop=SideWorkshop(layout.workshop, side.T_world_side, material=item.material, color=item.color),
+            name=f"{word}_{numbers[word]}",
+            area=area,
+            hollow=side.hollow,
+            fitting=fitting,
+            side=name_of_side,
+            index=here[name_of_side, word],
+        )
+        here[name_of_side, word] += 1
+        on_lid = item.mechanism.arranged == "over" and name_of_side in lidded
+        item.mechanism.build(_on_lid(place) if on_lid else place)
+    parameters = {"seed": seed, "size": layout.size, **{f"{word}s": count for word, count in numbers.items()}}
+    rng = np.random.default_rng(0)
+    named = name or _title(composition.body).replace(" ", "_")
+    return layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Layout:
+    """A body, and where everything goes on it."""
+
+    workshop: Workshop
+    """With the body alone."""
+    size: Size
+    sides: dict[str, Side]
+    placed: list[tuple[str, Wanted, Opening]]
+    """Name of the side, what goes there, and the rectangle that it takes."""
+
+
+def _laid_out(composition: Composition, seed: int | None) -> _Layout:
+    """Make the body as large as what is placed on it needs."""
     if (count := sum(wanted.count for wanted in composition.wanted)) > MOST:
         raise InputError(f"{count} mechanisms are asked for; at most {MOST} can be placed on one body.")
+    body = composition.body
     drawn = np.ones(3) if seed is None else np.random.default_rng(seed).uniform(0.85, 1.2, size=3)
     width, depth, height = (
         float(usual * share) if asked is None else asked
-        for usual, share, asked in zip(composition.body.size, drawn, composition.size, strict=True)
+        for usual, share, asked in zip(body.size, drawn, composition.size, strict=True)
     )
     size: Size = (width, depth, height)
     while True:
+        workshop = Workshop(
+            _title(body).replace(" ", "_"), material=composition.material or body.material, color=composition.color
+        )
+        sides = body.build(workshop, size, min(_WALL, 0.08 * min(size)))
         try:
-            return _built(composition, size, name, clearance)
+            placed = [
+                (side, item, area)
+                for side, wanted in _by_side(composition, sides).items()
+                for item, area in _arranged(side, sides[side], wanted)
+            ]
         except _TooSmallError as error:
             growth = [_GROWTH if k in error.axes and composition.size[k] is None else 1.0 for k in range(3)]
             size = (size[0] * growth[0], size[1] * growth[1], size[2] * growth[2])
             if max(growth) == 1.0 or max(size) > _LARGEST:
                 raise InputError(f"There is no room for {error}. Ask for fewer, or for a larger body.") from None
+        else:
+            return _Layout(workshop=workshop, size=size, sides=sides, placed=placed)
 
 
 class _TooSmallError(Exception):
@@ -111,13 +162,14 @@ def draw_composition(seed: int) -> Composition:
     for k in rng.permutation(len(MECHANISMS))[: int(rng.integers(2, 9))]:
         asked = Wanted(mechanism=MECHANISMS[int(k)], count=int(rng.choice([1, 2, 2, 3, 4])))
         try:
-            compose(Composition(body=body, wanted=(*wanted, asked)))
+            _laid_out(Composition(body=body, wanted=(*wanted, asked)), None)
         except InputError:
             continue
         wanted.append(asked)
         if len(wanted) == _MOST_KINDS:
             break
-    return Composition(body=body, wanted=tuple(wanted)) if wanted else draw_composition(seed + _ANOTHER)
+    moves = any(item.mechanism.moves for item in wanted)
+    return Composition(body=body, wanted=tuple(wanted)) if moves else draw_composition(seed + _ANOTHER)
 
 
 def _title(body: Body) -> str:
@@ -126,35 +178,6 @@ def _title(body: Body) -> str:
 
 def _known() -> str:
     return ", ".join(mechanism.words[0] for mechanism in MECHANISMS)
-
-
-def _built(composition: Composition, size: Size, name: str, clearance: float) -> Blueprint:
-    family = _title(composition.body).replace(" ", "_")
-    workshop = Workshop(family, material=composition.material or composition.body.material, color=composition.color)
-    sides = composition.body.build(workshop, size, min(_WALL, 0.08 * min(size)))
-    fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
-    numbers: Counter[str] = Counter()
-    for side, wanted in _by_side(composition, sides).items():
-        here: Counter[str] = Counter()
-        for item, area in _arranged(side, sides[side], wanted, size):
-            word = item.mechanism.words[0].replace(" ", "_").replace("-", "_")
-            numbers[word] += 1
-            place = Place(
-                workshop=SideWorkshop(workshop, sides[side].T_world_side, material=item.material, color=item.color),
-                name=f"{word}_{numbers[word]}",
-                area=area,
-                hollow=sides[side].hollow,
-                fitting=fitting,
-                side=side,
-                index=here[word],
-            )
-            here[word] += 1
-            lids = sum(other.count for other in wanted if other.mechanism.words[0] == "lid")
-            if item.mechanism.arranged == "over" and lids > 1:
-                raise InputError(f"A {item.mechanism.words[0]} goes on one lid, but there are {lids}. Ask for one lid.")
-            item.mechanism.build(_on_lid(place) if item.mechanism.arranged == "over" and lids else place)
-    parameters = {"size": size, **{f"{word}s": count for word, count in numbers.items()}}
-    return workshop.finish(name or family, parameters, style="clean", clearance=clearance, rng=np.random.default_rng(0))
 
 
 def _on_lid(place: Place) -> Place:
@@ -166,32 +189,48 @@ def _on_lid(place: Place) -> Place:
 def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list[Wanted]]:
     """What goes on which side; wheels and other pairs are divided between left and right."""
     found: dict[str, list[Wanted]] = {side: [] for side in sides}
+    body = _title(composition.body)
     for wanted in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
-        kind, body = wanted.mechanism, _title(composition.body)
-        what = kind.words[0]
-        if wanted.count < 1:
-            raise InputError(f"{wanted.count} {what}s cannot be built. Ask for one at least, or leave it out.")
-        usual = [side for side in kind.sides if side in sides and _fits(kind, sides[side])]
-        if not usual:
-            behind = f", and a {what} needs {_NEEDS[kind.needs]}" if kind.needs else ""
-            raise InputError(f"There is no place for a {what} on a {body}. It has {', '.join(sides)}{behind}.")
-        if wanted.count > kind.most:
-            raise InputError(f"{wanted.count} {what}s are asked for; a {body} takes {kind.most}.")
-        if wanted.side and wanted.side not in usual:
-            raise InputError(f"A {what} goes on the {' or '.join(usual)} of a {body}, not on the {wanted.side}.")
+        kind, usual = wanted.mechanism, _usual_sides(wanted, sides, body)
         if kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left"):
             if wanted.count % 2:
-                raise InputError(f"{wanted.count} {what}s are asked for; on a {body} they come in pairs.")
+                raise InputError(f"{wanted.count} {kind.words[0]}s are asked for; on a {body} they come in pairs.")
             for side in ("left", "right"):
                 found[side].append(replace(wanted, count=wanted.count // 2))
         else:
             found[wanted.side or _freest(usual, found, kind)].append(wanted)
     for side, items in found.items():
-        alone = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "alone"), None)
-        if alone and len(items) > 1:
-            others = ", ".join(item.mechanism.words[0] for item in items if item.mechanism.words[0] != alone)
-            raise InputError(f"A {alone} needs the {side} for itself, but there are also: {others}. Leave one out.")
+        _refuse_crowded(side, items)
     return {side: items for side, items in found.items() if items}
+
+
+def _usual_sides(wanted: Wanted, sides: dict[str, Side], body: str) -> list[str]:
+    """Sides of a body where a mechanism may go, the usual one first."""
+    kind, what = wanted.mechanism, wanted.mechanism.words[0]
+    if wanted.count < 1:
+        raise InputError(f"{wanted.count} {what}s cannot be built. Ask for one at least, or leave it out.")
+    usual = [side for side in kind.sides if side in sides and _fits(kind, sides[side])]
+    if not usual:
+        behind = f", and a {what} needs {_NEEDS[kind.needs]}" if kind.needs else ""
+        raise InputError(f"There is no place for a {what} on a {body}. It has {', '.join(sides)}{behind}.")
+    if wanted.count > kind.most:
+        raise InputError(f"{wanted.count} {what}s are asked for; a {body} takes {kind.most}.")
+    if wanted.side and kind.arranged == "axles":
+        raise InputError(f"{what.capitalize()}s go on both sides of a {body}, not on the {wanted.side} alone.")
+    if wanted.side and wanted.side not in usual:
+        raise InputError(f"A {what} goes on the {' or '.join(usual)} of a {body}, not on the {wanted.side}.")
+    return usual
+
+
+def _refuse_crowded(side: str, items: Sequence[Wanted]) -> None:
+    lids = sum(item.count for item in items if item.mechanism.words[0] == "lid")
+    over = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "over"), None)
+    if over and lids > 1:
+        raise InputError(f"A {over} goes on one lid, but there are {lids}. Ask for one lid.")
+    alone = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "alone"), None)
+    if alone and len(items) > 1:
+        others = ", ".join(item.mechanism.words[0] for item in items if item.mechanism.words[0] != alone)
+        raise InputError(f"A {alone} needs the {side} for itself, but there are also: {others}. Leave one out.")
 
 
 def _fits(kind: Mechanism, side: Side) -> bool:
@@ -211,7 +250,7 @@ def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanis
     return usual[0]
 
 
-def _arranged(name: str, side: Side, wanted: Sequence[Wanted], size: Size) -> list[tuple[Wanted, Opening]]:
+def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wanted, Opening]]:
     """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
     placed = []
     bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid")])

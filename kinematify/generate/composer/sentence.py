@@ -78,6 +78,23 @@ def read_composition(sentence: str) -> Composition:
     )
 
 
+def told(composition: Composition) -> str:
+    """Return a sentence that `read_composition` understands as this composition, its openness and lengths apart."""
+    items = [_told(item) for item in composition.wanted]
+    listed = " and ".join([*([", ".join(items[:-1])] if items[1:] else []), items[-1]])
+    return f"{_phrase(1, composition.color, composition.material, composition.body.words[0])} with {listed}"
+
+
+def _told(item: Wanted) -> str:
+    noun = item.mechanism.words[0] + ("s" if item.count > 1 else "")
+    return _phrase(item.count, item.color, item.material, noun) + (f" on the {item.side} side" if item.side else "")
+
+
+def _phrase(count: int, *words: str | None) -> str:
+    text = " ".join(word for word in words if word)
+    return f"{count if count > 1 else 'an' if text[0] in 'aeiou' else 'a'} {text}"
+
+
 class _Reader:
     """Goes through a sentence once, from noun to noun."""
 
