@@ -28,7 +28,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
     stages = [
         Stage(name="prepare", run=prepare.run, checks=()),
         Stage(name="geometry", run=geometry.run, checks=keys(checks_of("KV30", "KV31", "KV32", "KV33"))),
-        Stage(name="evidence", run=evidence.run, checks=keys(checks_of("KV34"))),
+        Stage(name="evidence", run=evidence.run, checks=keys(checks_of("KV34", "KV35"))),
     ]
     for name in chosen:
         checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))

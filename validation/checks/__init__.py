@@ -26,6 +26,7 @@ from kinematify.validation.checks import (  # noqa: F401 - each registers its ch
     file_tree,
     inertias,
     limits,
+    loops,
     masses,
     meshes,
     motion,

@@ -1,4 +1,4 @@
-"""The stage of the checks that hold each declared joint against the contact geometry."""
+"""The stage of the checks that hold each declared joint, and each pin without one, against the contact geometry."""
 
 from __future__ import annotations
 
@@ -20,9 +20,11 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     from kinematify.validation.evidence.bodies import read_bodies
     from kinematify.validation.evidence.case import JointCase, summary_of
     from kinematify.validation.evidence.measure import measure_joints
+    from kinematify.validation.evidence.pins import shared_pins
     from kinematify.validation.left_model import model_of
 
-    checks = checks_of("KV34")
+    of_joints, of_pins = checks_of("KV34"), checks_of("KV35")
+    checks = of_joints + of_pins
     if not recorder.wants(*(check.id for check in checks)):
         return
     robot, seed = model_of(request), request.settings.seed
@@ -41,7 +43,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
     ]
     left = len(bodies.truth.joints) - len(cases)
     doubts: dict[str | None, set[str]] = defaultdict(set)
-    for check in checks:
+    for check in of_joints:
         with recorder.check(check.id) as result:
             result.measured["joints"] = len(cases)
             for case in cases:
@@ -50,5 +52,12 @@ def run(request: StageRequest, recorder: Recorder) -> None:
                 result.leave(f"{left} of the joints")
         for finding in result.findings:
             doubts[finding.joint].add(check.id)
+    pins = () if left else tuple(shared_pins(bodies, robot, request.settings.evidence))
+    for check in of_pins:
+        with recorder.check(check.id) as result:
+            for pin in pins:
+                check.run(result, pin)
+            if left:
+                result.leave("the pins, and before that some of the joints")
     for case in cases:
         recorder.summarise(summary_of(robot, case, doubts[case.measures.joint.source]))
