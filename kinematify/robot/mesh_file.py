@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from lxml import etree
 
 from kinematify.errors import AssemblyError
 from kinematify.robot.gltf_file import read_gltf
@@ -146,10 +148,20 @@ def _read_scene(path: Path) -> tuple[RawMesh, ...]:
     suffix = path.suffix.lower()
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
     scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True)
+    if suffix == ".dae" and not scene.geometry:
+        # What is bound to a material that the file does not hold is dropped with it.
+        scene = trimesh.load_scene(_without_materials(path), file_type="dae", process=False, skip_materials=True)
     meshes = tuple(_scene_meshes(scene, path, trimesh.Trimesh))
     if suffix == ".stl" and not meshes and not _is_empty_stl(path):
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
     return meshes
+
+
+def _without_materials(path: Path) -> io.BytesIO:
+    """A COLLADA file in which nothing is bound to a material."""
+    tree = etree.parse(path, etree.XMLParser(resolve_entities=False, no_network=True))
+    etree.strip_elements(tree, "{*}bind_material", with_tail=False)
+    return io.BytesIO(etree.tostring(tree))
 
 
 def _is_empty_stl(path: Path) -> bool:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from lxml import etree
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import JointType
@@ -90,6 +91,17 @@ def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit:
     (tmp_path / "m.dae").write_text(text.replace("<up_axis>Y_UP</up_axis>", asset))
     found = bounds(urdf(tmp_path, link("a", visual('<mesh filename="m.dae"/>'))))
     np.testing.assert_allclose(found, np.multiply(unit, [[0, 0, 0], [1, 2, 3]]), atol=1e-6)
+
+
+def test_collada_geometry_is_read_without_the_material_that_the_file_does_not_hold(tmp_path: Path) -> None:
+    box = trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]])
+    tree = etree.fromstring(box.export(file_type="dae"))
+    for library in tree.findall("{*}library_materials") + tree.findall("{*}library_effects"):
+        library.getparent().remove(library)
+    assert tree.findall(".//{*}instance_material"), "something is bound to what is gone"
+    (tmp_path / "m.dae").write_bytes(etree.tostring(tree))
+    found = bounds(urdf(tmp_path, link("a", visual('<mesh filename="m.dae"/>'))))
+    np.testing.assert_allclose(found, [[0, 0, 0], [1, 2, 3]], atol=1e-6)
 
 
 def test_a_primitive_without_size_is_no_shape(tmp_path: Path) -> None:

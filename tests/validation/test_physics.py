@@ -286,8 +286,9 @@ def test_wrists_may_turn_by_round_numbers_of_degrees(good: Path, degrees: float,
     assert [finding.severity for finding in found] == ([] if severity is None else [severity])
 
 
-def test_ends_of_ten_radians_stand_for_no_limit(good: Path) -> None:
-    urdf = edited(good, "//joint[@name='door_joint']/limit", lower="-10", upper="10")
+@pytest.mark.parametrize("end", ["10", "9.42478"])
+def test_ends_of_ten_radians_or_some_half_turns_stand_for_no_limit(good: Path, end: str) -> None:
+    urdf = edited(good, "//joint[@name='door_joint']/limit", lower=f"-{end}", upper=end)
     assert counted(urdf) == []
     (note,) = next(result.findings for result in checked(urdf).values() if result.check == "KV220")
     assert "continuous" in note.remedy

@@ -24,7 +24,8 @@ _ROUND_DEGREES = 5.0
 _ROUND_TOLERANCE = 0.3
 """What two decimals of a radian leave of a round angle [deg]: 200 deg are written as 3.49 rad."""
 _NO_LIMIT = 10.0
-"""Limits of plus and minus this are how files say that there is none [rad]."""
+"""Limits of plus and minus this, or of half turns, are how files say that there is none [rad]."""
+_MOST_HALF_TURNS = 8
 
 
 @check(
@@ -37,7 +38,7 @@ _NO_LIMIT = 10.0
 )
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     """No hinge turns by more than `widest_turn` (a warning from `full_turn` on; a warning beyond `endless`, and a note
-    at plus and minus 10 rad, where no limit was meant), unless both limits are round numbers of degrees up to
+    at plus and minus 10 rad or a multiple of pi, where no limit was meant), unless both limits are round numbers of degrees up to
     `widest_wrist`. No slide moves by more than `widest_slide` or
     `slide_sizes` times the size of the model; beyond `slide_wrong` times it is an error.
 
@@ -58,7 +59,7 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     width = joint.upper - joint.lower
     if width <= settings.full_turn:
         return
-    unlimited = joint.upper == -joint.lower == _NO_LIMIT
+    unlimited = joint.upper == -joint.lower and (joint.upper == _NO_LIMIT or _half_turns(joint.upper))
     endless = unlimited or width > settings.endless
     # Wrists of large arms turn by 400 degrees to each side; their limits are round numbers of degrees.
     meant = _round(joint.lower) and _round(joint.upper) and width <= settings.widest_wrist
@@ -84,6 +85,12 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         unit="rad",
         line=joint.line,
     )
+
+
+def _half_turns(angle: float) -> bool:
+    """Whether somebody has written a small multiple of pi, to at least four digits; 355 is one as well, of degrees."""
+    count = round(angle / math.pi)
+    return count <= _MOST_HALF_TURNS and math.isclose(angle, count * math.pi, rel_tol=1e-4)
 
 
 def _round(angle: float) -> bool:
