@@ -38,9 +38,9 @@ _MOST_HALF_TURNS = 8
 )
 def implausible_ranges(result: OpenCheck, physics: Physics) -> None:
     """No hinge turns by more than `widest_turn` (a warning from `full_turn` on; a warning beyond `endless`, and a note
-    at plus and minus 10 rad or a multiple of pi, where no limit was meant), unless both limits are round numbers of degrees up to
-    `widest_wrist`. No slide moves by more than `widest_slide` or
-    `slide_sizes` times the size of the model; beyond `slide_wrong` times it is an error.
+    at plus and minus 10 rad or a multiple of pi, where no limit was meant), unless both limits are round numbers of
+    degrees up to `widest_wrist`. No slide moves by more than `widest_slide` or `slide_sizes` times the size of the
+    model; beyond `slide_wrong` times it is an error.
 
     Why it matters: Degrees for radians and millimetres for metres load in every engine, and the joint then moves
     freely.
