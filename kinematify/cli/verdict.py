@@ -52,6 +52,8 @@ _LONGEST = 120
 """Lines of a report unless everything is asked for."""
 _PLACES = 6
 """So many places where the same was found are named."""
+_CALL = re.compile(r"(?:mujoco\.MjModel\.from_xml_path|p\.loadURDF)\([^()]*\)")
+"""How plain code loads a file."""
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
@@ -224,8 +226,16 @@ def _short_text(group: Sequence[Told]) -> str:
         *([_wrapped(printable(f"Also: {_others(group)}."), 2, 2)] if len(group) > 1 else []),
         _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
         *([_wrapped(f"Follows from it: {follows}.", 2, 2)] if follows else []),
+        *_plain_call(group[0]),
     ]
     return "\n".join(lines)
+
+
+def _plain_call(told: Told) -> list[str]:
+    """The call of an engine that shows a finding or what follows from it; its code goes on with `--all`."""
+    codes = [item.reproduction for item in (told.finding, *told.consequences) if item.reproduction is not None]
+    call = _CALL.search(codes[0]) if codes else None
+    return [] if call is None else [_wrapped(f"To see it: {printable(call.group())} and what --all prints.", 2, 2)]
 
 
 def _others(group: Sequence[Told]) -> str:

@@ -136,6 +136,8 @@ class PhysicsSettings(StageConfig):
     """A link without collision geometry counts if it stands out so far of that of its body, fraction of its size."""
     bare_minority: float
     """It counts anyway if no larger share of the links has none."""
+    marker: float
+    """Smaller links may do without, fraction of the model's diagonal."""
     shift: float
     """Displacement of the collision geometry, fraction of the visual diagonal."""
     shift_same: float

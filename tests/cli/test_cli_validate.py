@@ -204,16 +204,16 @@ def test_warnings_beyond_a_screen_are_told_without_their_remedies(
 def test_what_follows_from_a_finding_is_told_under_it(
     answered: dict[str, Any], chest: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    cause = finding()
+    cause, code = finding(), "import mujoco\nmodel = mujoco.MjModel.from_xml_path('door.urdf')\nprint(model)"
     stops = [
-        finding(check="KV496", engine="mujoco", message="It stops.", cause=cause, reproduction="import mujoco")
-        for _ in range(2)
+        finding(check="KV496", engine="mujoco", message="It stops.", cause=cause, reproduction=code) for _ in range(2)
     ]
     answered["chest.urdf"] = report(result(cause), result(*stops, check="KV496", engine="mujoco"))
     run(["validate", str(chest)])
     text = capsys.readouterr().out
     assert ": 1 error, no warnings" in text.splitlines()[0]
     assert "Follows from it: KV496 [mujoco] 2 times." in text
+    assert "To see it: mujoco.MjModel.from_xml_path('door.urdf') and what --all prints." in text
     assert "It stops." not in text
     run(["validate", str(chest), "--all"])
     text = capsys.readouterr().out

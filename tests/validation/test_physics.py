@@ -154,8 +154,8 @@ def test_a_bad_mass_is_an_error_at_its_link(good: Path, mass: str) -> None:
 
 
 def test_no_mass_on_a_part_of_a_body_that_has_one_is_less_bad(good: Path) -> None:
-    finding = only(edited(good, "//link[@name='knob']/inertial/mass", value="0"), "KV202")
-    assert (finding.link, finding.severity) == ("knob", Severity.WARNING)
+    (finding,) = checked(edited(good, "//link[@name='knob']/inertial/mass", value="0"))["KV202"].findings
+    assert (finding.link, finding.severity) == ("knob", Severity.NOTE)
 
 
 def test_a_frame_that_is_fixed_to_a_mass_needs_none(good: Path) -> None:
@@ -264,7 +264,7 @@ def test_a_base_without_mass_is_how_pybullet_is_told_that_it_stands(good: Path) 
 
 
 def test_the_mass_that_is_suggested_is_that_of_the_link_and_not_of_all_that_it_is_fixed_to(good: Path) -> None:
-    finding = only(edited(good, "//link[@name='knob']/inertial/mass", value="0"), "KV202")
+    (finding,) = checked(edited(good, "//link[@name='knob']/inertial/mass", value="0"))["KV202"].findings
     assert f"{1000.0 * 0.03 * 0.06 * 0.03:.3g} kg" in finding.remedy
 
 
@@ -402,3 +402,10 @@ def test_a_hollow_collision_mesh_is_a_note(tmp_path: Path) -> None:
     assert finding.value == pytest.approx(0.25 / (0.25 - 0.16), rel=0.02)
     urdf.write_text(urdf.read_text().replace("<collision>", '<collision concave="yes">'))
     assert checked(urdf)["KV242"].findings == ()
+
+
+def test_a_marker_of_a_millimetre_needs_no_collision(good: Path) -> None:
+    removed(good, "//link[@name='door']/collision")
+    assert only(good, "KV240").link == "door"
+    edited(good, "//link[@name='door']/visual/geometry/box", size="0.001 0.001 0.001")
+    assert "KV240" not in {finding.check for finding in counted(good)}

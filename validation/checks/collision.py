@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 )
 def missing_collisions(result: OpenCheck, physics: Physics) -> None:
     """Every body with geometry has collision geometry, and so has each of its links that stands out of the rest by
-    `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links). Where no
-    link of the file has any, that is one finding.
+    `bare_share` of its size (others are a note, unless they are fewer than `bare_minority` of all links; so are those
+    below `marker` of the model's size). Where no link of the file has any, that is one finding.
 
     Why it matters: Grippers and other parts pass through the link in every engine.
 
@@ -58,6 +58,7 @@ def _uncovered(result: OpenCheck, physics: Physics, body: Body) -> None:
         if name in physics.collision or (felt is None and name != body.called):
             continue
         counts = felt is None or exception or _stands_out(body, name, felt) > physics.settings.bare_share
+        counts &= room.diagonal > physics.settings.marker * physics.diagonal
         result.find(
             f"The link {name} has no collision geometry, though it measures {room.diagonal:.3g} m and other "
             "links of the model have some: " + ("what meets it passes through." if counts else "it is small."),

@@ -71,8 +71,8 @@ def _suggested(room: Room | None) -> str:
     blame=Blame.PHYSICS,
 )
 def masses_not_positive(result: OpenCheck, physics: Physics) -> None:
-    """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, a note for a
-    base that does not move, and a warning where others of its body have a mass.
+    """No mass is zero or negative. Zero is allowed for a frame that is fixed to something with a mass, and a note for a
+    base that does not move and where others of its body have a mass, which may be all of it.
 
     Why it matters: MuJoCo refuses such a body if it moves; PyBullet freezes it where it is.
 
@@ -92,7 +92,7 @@ def _not_positive(result: OpenCheck, body: Body, link: Link, inertial: Inertial)
         return
     refused = body.moves and body.mass == 0.0
     certain = inertial.mass < 0.0 or (refused and not frame)
-    note = inertial.mass == 0.0 and not body.moves
+    note = inertial.mass == 0.0 and (not body.moves or body.mass > 0.0)
     consequence = (
         "no engine can compute with that"
         if inertial.mass < 0.0
@@ -100,7 +100,7 @@ def _not_positive(result: OpenCheck, body: Body, link: Link, inertial: Inertial)
         if refused
         else "PyBullet takes it for scenery that never moves"
         if not body.moves
-        else "the mass is missing from the body that it belongs to"
+        else f"if it weighs anything, that is missing from the {body.mass:.3g} kg of what it is fixed to"
     )
     result.find(
         f"The link {link.name} has a mass of {inertial.mass:g} kg: {consequence}.",
