@@ -16,7 +16,7 @@ from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import QhullError
+from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.geometry.convex import ConvexPiece
 from kinematify.geometry.hull import convex_hull
@@ -55,6 +55,8 @@ _BEGUN = 0.25
 """Share of a step that lies within a range if the step counts as one within it."""
 _DIRECTIONS = 6
 """Steps of a sweep whose face planes are tried as cuts."""
+_BLOCK = 10_000_000
+"""Numbers in a table that is held at once; hulls of scanned parts have thousands of corners and faces."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -371,7 +373,7 @@ class _Path:
         swept = self._track(obstacle, backwards=backwards)[np.union1d(steps, steps + 1)].reshape(-1, 3)
         along = self._normals(obstacle, steps, backwards=backwards)
         normals = np.concatenate([-piece.planes[0], self._across, along])
-        offsets = (normals @ swept.T).max(axis=1) + (1.0 + _ROUNDING) * self._clearance + self._rise(obstacle)
+        offsets = _support(normals, swept) + (1.0 + _ROUNDING) * self._clearance + self._rise(obstacle)
         kept = (piece.samples @ normals.T > offsets).mean(axis=0)
         if len(piece.marks):
             kept += (piece.marks @ normals.T > offsets).mean(axis=0)
@@ -412,3 +414,11 @@ class _Path:
     def _rise(self, piece: _Polytope) -> float:
         """How far the arcs of a piece rise over their chords [m]."""
         return self._arc * self._sweep.radius(piece.vertices)
+
+
+def _support(normals: FloatArray, points: FloatArray) -> FloatArray:
+    """How far points reach along each normal, shape (k,)."""
+    if len(normals) * len(points) > _BLOCK:
+        points = points[ConvexHull(points, qhull_options="QJ").vertices]
+    blocks = np.array_split(normals, 1 + len(normals) * len(points) // _BLOCK)
+    return np.concatenate([(block @ points.T).max(axis=1) for block in blocks])

@@ -57,15 +57,16 @@ print(np.min(seen), np.max(seen))
 )
 _PUSH = (
     _LOAD
-    + """{off}port = plant.get_applied_generalized_force_input_port(); push = 0.0
+    + """{off}port = plant.get_applied_generalized_force_input_port(); push = 0.0; seen = [rest[{joint}]]
 moved, ratios, weights, tau = {moved}, np.array({ratios}), np.array({weights}), np.zeros(plant.num_velocities())
 for k in range({steps}): slow = {speed!r} - plant.GetVelocities(state)[{joint}]; \
 push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
 tau[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
 port.FixValue(state, tau); simulator.AdvanceTo((k + 1) * {step!r}); \
 q, v = rest.copy(), np.zeros_like(rest); q[moved] += ratios * (weights @ (plant.GetPositions(state) - rest)[moved]); \
-v[moved] = ratios * (weights @ plant.GetVelocities(state)[moved]); plant.SetPositionsAndVelocities(state, np.r_[q, v])
-print(plant.GetPositions(state)[{joint}])
+v[moved] = ratios * (weights @ plant.GetVelocities(state)[moved]); \
+plant.SetPositionsAndVelocities(state, np.r_[q, v]); seen.append(q[{joint}])
+print(np.{farthest}(seen))
 """
 )
 _RELEASE = (
@@ -187,7 +188,13 @@ class DrakeFile:
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """See `RunningFile`."""
-        facts = {**vars(push), **self._facts(push.joint, values), "steps": steps, "gravity": _NOWHERE}
+        facts = {
+            **vars(push),
+            **self._facts(push.joint, values),
+            "farthest": push.farthest,
+            "steps": steps,
+            "gravity": _NOWHERE,
+        }
         moved = [self.joints.index(name) for name in push.moved]
         return _PUSH.format(**facts | {"moved": moved, "off": "" if contacts else _NO_CONTACTS})
 

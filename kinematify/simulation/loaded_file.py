@@ -86,6 +86,11 @@ class Push:
         """That is pushed."""
         return self.moved[0]
 
+    @property
+    def farthest(self) -> str:
+        """The function of Python that picks the value that is farthest on the way."""
+        return "max" if self.speed > 0.0 else "min"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Pushed:
@@ -148,7 +153,7 @@ class RunningFile(LoadedFile, Protocol):
         """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """Return plain code of the engine that repeats `push` and prints where the joint ends."""
+        """Return plain code of the engine that repeats `push` and prints how far the joint gets [rad or m]."""
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `release` and prints by how much the energy grows [J]."""

@@ -45,14 +45,16 @@ print(min(seen), max(seen))
 )
 _PUSH = (
     _LOAD
-    + """{off}model.opt.gravity[:] = 0.0; moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
+    + """{off}model.opt.gravity[:] = 0.0; seen = [rest[{joint}]]
+moved, ratios, weights = {moved}, np.array({ratios}), np.array({weights})
 for _ in range({steps}): slow = {speed!r} - data.qvel[{joint}]; \
 push = np.clip(push + {integral!r} * slow, -{force!r}, {force!r}); \
 data.qfrc_applied[{joint}] = np.clip({proportional!r} * slow + push, -{force!r}, {force!r}); \
 mujoco.mj_step(model, data); \
 way, speed = weights @ (data.qpos - rest)[moved], weights @ data.qvel[moved]; \
-data.qpos[:] = rest; data.qvel[:] = 0.0; data.qpos[moved] += ratios * way; data.qvel[moved] = ratios * speed
-print(data.qpos[{joint}])
+data.qpos[:] = rest; data.qvel[:] = 0.0; data.qpos[moved] += ratios * way; data.qvel[moved] = ratios * speed; \
+seen.append(data.qpos[{joint}])
+print({farthest}(seen))
 """
 )
 _RELEASE = (
@@ -199,7 +201,7 @@ class MujocoFile:
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """See `RunningFile`."""
-        facts = {**vars(push), **self._facts(push.joint, values), "steps": steps}
+        facts = {**vars(push), **self._facts(push.joint, values), "farthest": push.farthest, "steps": steps}
         off = "" if contacts else _NO_CONTACTS
         return _PUSH.format(**facts | {"moved": [self.joints.index(name) for name in push.moved], "off": off})
 

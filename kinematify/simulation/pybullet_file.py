@@ -54,15 +54,16 @@ print("\\n", min(seen), max(seen))
 _PUSH = (
     _LOAD
     + """p.setGravity(0, 0, 0); moved, clip = {moved}, lambda f: min(max(f, -{force!r}), {force!r})
-[p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k, _, _ in moved]
+seen = [rest[{joint}]]; [p.setJointMotorControl2(body, k, p.VELOCITY_CONTROL, force=0) for k, _, _ in moved]
 for _ in range({steps}): slow = {speed!r} - p.getJointState(body, {joint})[1]; \
 push = clip(push + {integral!r} * slow); \
 p.setJointMotorControl2(body, {joint}, p.TORQUE_CONTROL, force=clip({proportional!r} * slow + push)); \
 p.stepSimulation(); state = {{k: p.getJointState(body, k) for k in rest}}; \
 way = sum(w * (state[k][0] - rest[k]) for k, _, w in moved); speed = sum(w * state[k][1] for k, _, w in moved); \
 ratio = {{k: r for k, r, _ in moved}}; \
-[p.resetJointState(body, k, q + ratio.get(k, 0) * way, ratio.get(k, 0) * speed) for k, q in rest.items()]
-print("\\n", p.getJointState(body, {joint})[0])
+[p.resetJointState(body, k, q + ratio.get(k, 0) * way, ratio.get(k, 0) * speed) for k, q in rest.items()]; \
+seen.append(p.getJointState(body, {joint})[0])
+print("\\n", {farthest}(seen))
 """
 )
 _RELEASE = (
@@ -245,7 +246,11 @@ class PybulletFile:
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """See `RunningFile`."""
         moved = zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True)
-        facts = vars(push) | self._facts(push.joint, values) | {"steps": steps, "moved": list(moved)}
+        facts = (
+            vars(push)
+            | self._facts(push.joint, values)
+            | {"farthest": push.farthest, "steps": steps, "moved": list(moved)}
+        )
         return (_PUSH if contacts else _without_contacts(_PUSH)).format(**facts)
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
