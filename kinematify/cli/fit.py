@@ -29,6 +29,9 @@ from kinematify.cli.progress import progress_reporter
 @click.option("--packages", is_flag=True, help="Also objects that installed PyPI packages carry.")
 @click.option("--seed", type=int, default=0, show_default=True, help="Draws the generated objects.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Worker processes; as many as there are cores if not given.")
+@click.option(
+    "--ablation", is_flag=True, help="Also judge fits without each group of measurements, and to fewer objects."
+)
 @json_option
 def command(
     *,
@@ -39,6 +42,7 @@ def command(
     packages: bool,
     seed: int,
     jobs: int | None,
+    ablation: bool,
     json_to: str | None,
 ) -> None:
     """Fit the choice of joints to generated objects and to the objects in FOLDERS.
@@ -62,6 +66,7 @@ def command(
             seed=seed,
             workers=jobs or os.cpu_count() or 1,
             cache=out / "measured",
+            ablation=ablation,
             progress=progress,
         )
     if json_to != "-":

@@ -35,7 +35,9 @@ def test_examples_know_which_hypothesis_is_right_and_are_measured_once(tmp_path:
 
 def test_a_small_fit_writes_weights_and_tables(tmp_path: Path) -> None:
     pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
-    report = run_fit([], tmp_path, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", progress=silent)
+    report = run_fit(
+        [], tmp_path, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=True, progress=silent
+    )
     assert (tmp_path / WEIGHTS).stat().st_size > 0
     assert set(report["sets"]) == {"random mechanisms"}
     assert "left out" in (tmp_path / "choice.md").read_text()

@@ -27,10 +27,11 @@ from kinematify.robot.read import read_robot
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
     from kinematify.evaluation.fitting.examples import Example
 
-FAMILY, COMPOSED, REAL = "family", "composed", "real"
+FAMILY, COMPOSED = GENERATED = "family", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
@@ -106,28 +107,52 @@ def _key(source: Source, seed: int) -> str:
 def _measure(source: Source, path: Path, seed: int) -> None:
     """Measure one object; one that cannot be built or read gives no example."""
     try:
-        parts, truth, category, fits = _opened(source, seed)
+        opened = _generated(source, seed) if source.folder is None else _read(source.folder)
     except (KinematifyError, ValueError):
         write_examples(path, [])
         return
-    assembly = Assembly(
-        parts=parts.parts, source=f"{source.name}_{source.number}" if source.folder is None else source.name
+    name = f"{source.name}_{source.number}" if source.folder is None else source.name
+    found = examples_of(
+        Assembly(parts=opened.parts, source=name),
+        opened.truth,
+        load_config(),
+        category=opened.category,
+        origin=source.origin,
+        source=opened.source,
+        fits=opened.fits,
     )
-    found = examples_of(assembly, truth, load_config(), category=category, origin=source.origin, fits=fits)
     write_examples(path, found)
 
 
-def _opened(source: Source, seed: int) -> tuple[Assembly, GroundTruth, str, bool]:
-    if source.folder is None:
-        return _generated(source, seed)
-    facts = json.loads((source.folder / "source.json").read_text(encoding="utf-8"))
-    erased = erase(read_robot(source.folder / "model.urdf", geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Opened:
+    """An object as it is measured."""
+
+    parts: tuple[Part, ...]
+    truth: GroundTruth
+    category: str
+    source: str
+    """Whose work it is."""
+    fits: bool
+    """It may enter weights that ship."""
+
+
+def _read(folder: Path) -> _Opened:
+    facts = json.loads((folder / "source.json").read_text(encoding="utf-8"))
+    erased = erase(read_robot(folder / "model.urdf", geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
     licence = str(facts.get("license", "research")).lower()
-    fits = not any(word in licence for word in _RESEARCH)
-    return erased.assembly, erased.truth, str(facts.get("category", "unknown")), fits
+    # "osrf/gazebo_models @ 8163eb4, cessna/model.sdf" is of osrf/gazebo_models.
+    written = str(facts.get("source", "unknown")).partition(",")[0].partition("@")[0]
+    return _Opened(
+        parts=erased.assembly.parts,
+        truth=erased.truth,
+        category=str(facts.get("category", "unknown")),
+        source=str(facts.get("dataset", written)).strip(),
+        fits=not any(word in licence for word in _RESEARCH),
+    )
 
 
-def _generated(source: Source, seed: int) -> tuple[Assembly, GroundTruth, str, bool]:
+def _generated(source: Source, seed: int) -> _Opened:
     number = seed + source.number
     ways = list(WAYS)
     if source.origin == COMPOSED:
@@ -145,4 +170,10 @@ def _generated(source: Source, seed: int) -> tuple[Assembly, GroundTruth, str, b
     blueprint = remodelled(blueprint, way, rng=rng)
     # Random mechanisms have nothing in common: each is a category of its own.
     category = f"{source.name} {number}" if source.origin == COMPOSED else source.name
-    return blueprint.assembly, ground_truth(blueprint), category, True
+    return _Opened(
+        parts=blueprint.assembly.parts,
+        truth=ground_truth(blueprint),
+        category=category,
+        source=source.origin,
+        fits=True,
+    )

@@ -15,7 +15,7 @@ from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import hypotheses_of, rule_scores
 from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
+from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.topology.tree import KinematicTree
@@ -41,6 +41,8 @@ class Example:
     category: str
     origin: str
     """Of which corpus the object is."""
+    source: str
+    """Whose work it is: the data set, package or generator."""
     fits: bool
     """It may enter weights that ship; objects whose licence is for research alone judge."""
     hypotheses: Hypotheses
@@ -48,6 +50,8 @@ class Example:
     """Diagonal of the child [m]."""
     measured: Mapping[str, FloatArray]
     """Shape (h,) each."""
+    groups: Mapping[str, Sequence[str]]
+    """Names of the measurements by the group that measures them; "cues" for what the weighted cues say."""
     right: FloatArray
     """How right each hypothesis is, in [0, 1], shape (h,)."""
     angles: FloatArray
@@ -69,7 +73,7 @@ class Example:
 
 
 def examples_of(
-    assembly: Assembly, truth: GroundTruth, config: Config, *, category: str, origin: str, fits: bool
+    assembly: Assembly, truth: GroundTruth, config: Config, *, category: str, origin: str, source: str, fits: bool
 ) -> list[Example]:
     """Measure all hypotheses of the edges of the true tree of an object.
 
@@ -79,6 +83,7 @@ def examples_of(
         config: Of the inference.
         category: Of the object.
         origin: Of which corpus it is.
+        source: Whose work it is.
         fits: See `Example`.
     """
     surfaces = part_surfaces(assembly, config=config.surface)
@@ -101,6 +106,7 @@ def examples_of(
         best = np.argmax([right + 1e-3 * same for right, _, same in judged], axis=0)
         rows = np.arange(len(hypotheses))
         right, angles, same = (np.array([item[k] for item in judged])[best, rows] for k in range(3))
+        groups = measure_groups(weighed.scene, hypotheses) | {"cues": rule_scores(weighed)}
         slides = weighed.decision.kind is JointType.PRISMATIC
         stuck = weighed.decision.kind is JointType.FIXED
         found.append(
@@ -108,10 +114,12 @@ def examples_of(
                 object=assembly.source,
                 category=category,
                 origin=origin,
+                source=source,
                 fits=fits,
                 hypotheses=hypotheses,
                 size=size,
-                measured={**measure(weighed.scene, hypotheses), **rule_scores(weighed)},
+                measured={name: value for values in groups.values() for name, value in values.items()},
+                groups={group: tuple(values) for group, values in groups.items()},
                 right=right,
                 angles=angles,
                 types_right=same.astype(np.int64),
@@ -156,9 +164,11 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "object": example.object,
                 "category": example.category,
                 "origin": example.origin,
+                "source": example.source,
                 "fits": example.fits,
                 "by_cues": example.by_cues,
                 "size": example.size,
+                "groups": example.groups,
                 "sources": example.hypotheses.sources,
                 "names": names,
             }

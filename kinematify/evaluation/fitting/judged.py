@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.config import load_config
-from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY
+from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED
 from kinematify.evaluation.fitting.trees import fit_scorer
 from kinematify.joints.choice.judge import Judgement
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _FOLDS = 5
 _RIGHT_DEG = 5.0
+_RIGHT = 0.2
+"""A hypothesis is right from here on: 5 deg off, or a sixteenth of the part beside the line."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,26 +59,39 @@ def row_of(examples: Sequence[Example], picks: Sequence[int]) -> Row:
     )
 
 
-def judge_left_out(examples: Sequence[Example], progress: Callable[[str, float], None]) -> list[FloatArray]:
-    """Probabilities of the hypotheses of every example by trees whose fit had none of its category.
+def judge_left_out(
+    examples: Sequence[Example], group: Callable[[Example], str], progress: Callable[[str, float], None]
+) -> list[FloatArray]:
+    """Probabilities of the hypotheses of every example by trees whose fit had none of its group.
 
-    Categories are dealt into five groups. Of each group in turn nothing is fitted, neither real objects nor families
-    of that name.
+    Groups (categories or sources) are dealt into five folds; nothing of a fold is fitted to when it is judged.
     """
     found: dict[int, FloatArray] = {}
+    folds = [zlib.crc32(group(example).encode()) % _FOLDS for example in examples]
     for fold in range(_FOLDS):
         progress(f"left out {fold + 1} of {_FOLDS}", fold / _FOLDS)
-        fitted = [example for example in examples if example.fits and _fold(example.category) != fold]
+        judged = [k for k, at in enumerate(folds) if at == fold]
+        if not judged:
+            continue
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
         scorer = fit_scorer(fitted, seeds=(0,), provenance={})
-        for k, example in enumerate(examples):
-            if _fold(example.category) == fold:
-                found[k] = scorer.probabilities(example.kinds, example.measured)
+        found |= {k: scorer.probabilities(examples[k].kinds, examples[k].measured) for k in judged}
     return [found[k] for k in range(len(examples))]
 
 
-def picked(example: Example, probabilities: FloatArray) -> int:
-    """What the inference would choose with these probabilities, shape (h,)."""
-    judged = Judgement(
+def surprise_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> float:
+    """Mean over the objects of -log of the probability that is given to what is right; smoother than shares right."""
+    by_object: dict[str, list[float]] = {}
+    for example, given in zip(examples, likely, strict=True):
+        if example.right.max() >= _RIGHT:
+            value = -np.log(max(float(given[example.right >= _RIGHT].sum()), 1e-4))
+            by_object.setdefault(f"{example.origin}/{example.object}", []).append(value)
+    return float(np.mean([np.mean(values) for values in by_object.values()])) if by_object else 0.0
+
+
+def judgement_of(example: Example, probabilities: FloatArray) -> Judgement:
+    """What the inference would make of these probabilities, shape (h,)."""
+    return Judgement(
         hypotheses=example.hypotheses,
         likely=probabilities,
         by_cues=max(example.by_cues, 1),
@@ -84,11 +99,42 @@ def picked(example: Example, probabilities: FloatArray) -> int:
         size=example.size,
         lead=load_config().joints.confidence.cues_lead,
     )
-    return judged.best if example.by_cues else 0
 
 
-def _fold(category: str) -> int:
-    return zlib.crc32(category.encode()) % _FOLDS
+def picked(example: Example, probabilities: FloatArray) -> int:
+    """What the inference would choose with these probabilities, shape (h,)."""
+    return judgement_of(example, probabilities).best if example.by_cues else 0
+
+
+CAUSES = ("none proposed", "wrong type", "wrong direction", "line beside")
+
+
+def cause_of(example: Example, pick: int) -> str | None:
+    """Why what was picked is wrong, one of `CAUSES`; None where it is right."""
+    if example.right[pick] >= _RIGHT:
+        return None
+    if example.right.max() < _RIGHT:
+        return CAUSES[0]
+    if not example.types_right[pick]:
+        return CAUSES[1]
+    return CAUSES[2] if example.angles[pick] >= _RIGHT_DEG else CAUSES[3]
+
+
+def calibration_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> dict[str, Any]:
+    """Mean confidence and share right of each fifth of the joints, least sure first, and what follows from them."""
+    judged = [judgement_of(*pair) for pair in zip(examples, likely, strict=True)]
+    sure = np.array([item.confidence for item in judged])
+    row = [e.types_right[j.best] and e.angles[j.best] < _RIGHT_DEG for e, j in zip(examples, judged, strict=True)]
+    right = np.array(row, dtype=float)
+    fifths = np.array_split(np.argsort(sure, kind="stable"), 5)
+    confidence, share = ([float(values[rows].mean()) for rows in fifths] for values in (sure, right))
+    wrong = 1.0 - right
+    return {
+        "confidence": confidence,
+        "right": share,
+        "error": float(np.mean(np.abs(np.subtract(confidence, share)))),
+        "errors_in_least_sure": float(wrong[fifths[0]].sum() / max(wrong.sum(), 1.0)),
+    }
 
 
 def sets_of(examples: Sequence[Example]) -> dict[str, list[int]]:
@@ -96,7 +142,7 @@ def sets_of(examples: Sequence[Example]) -> dict[str, list[int]]:
     found: dict[str, list[int]] = {}
     for k, example in enumerate(examples):
         name = {FAMILY: "generated families", COMPOSED: "random mechanisms"}.get(example.origin, example.origin)
-        if example.origin not in (FAMILY, COMPOSED):
+        if example.origin not in GENERATED:
             name += ", fitted to" if example.fits else ", for research only: never fitted to"
         found.setdefault(name, []).append(k)
     return found

@@ -3,25 +3,43 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+import zlib
+from collections import Counter
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from kinematify import __version__
-from kinematify.evaluation.fitting.corpora import gather_examples, generated_sources, real_sources
-from kinematify.evaluation.fitting.judged import judge_left_out, picked, row_of, sets_of
-from kinematify.evaluation.fitting.trees import fit_scorer, write_scorer
+from kinematify.evaluation.fitting.corpora import GENERATED, gather_examples, generated_sources, real_sources
+from kinematify.evaluation.fitting.judged import (
+    CAUSES,
+    calibration_of,
+    cause_of,
+    judge_left_out,
+    picked,
+    row_of,
+    sets_of,
+    surprise_of,
+)
+from kinematify.evaluation.fitting.trees import data_key, fit_scorer, recipe_key, write_scorer
+from kinematify.evaluation.record import table
 from kinematify.joints.choice.scorer import WEIGHTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.evaluation.fitting.examples import Example
-    from kinematify.evaluation.fitting.judged import Row
+    from kinematify.robot.arrays import FloatArray
+
+    Likely = Mapping[str, Sequence[FloatArray]]
 
 _SEEDS = (0, 1)
+_LEAST = 10  # joints below which calibration says nothing
+_LEARNING = (0.25, 0.5, 1.0)
 
 
 def run_fit(
@@ -33,6 +51,7 @@ def run_fit(
     seed: int,
     workers: int,
     cache: Path,
+    ablation: bool,
     progress: Callable[[str, float], None],
 ) -> dict[str, Any]:
     """Fit the choice of joints, judge it left out, and write ``weights.npz``, ``choice.json`` and ``choice.md``.
@@ -45,6 +64,7 @@ def run_fit(
         seed: Draws the generated objects.
         workers: Processes at a time.
         cache: Folder of what was measured, so that an interrupted run goes on.
+        ablation: Also fit without each group of measurements, and to a part of the objects.
         progress: Told what is done and the share of it.
 
     Returns:
@@ -56,37 +76,105 @@ def run_fit(
     """
     sources = generated_sources(rounds, composed) + [source for folder in folders for source in real_sources(folder)]
     examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
+    drawn = {"seed": seed, "rounds": rounds, "composed": composed}
+    return fit_and_judge(examples, out, drawn=drawn, ablation=ablation, progress=progress)
+
+
+def fit_and_judge(
+    examples: Sequence[Example],
+    out: Path,
+    *,
+    drawn: Mapping[str, int],
+    ablation: bool,
+    progress: Callable[[str, float], None],
+) -> dict[str, Any]:
+    """What `run_fit` does of examples that are measured; `drawn` says how many were generated."""
     fitted = [example for example in examples if example.fits]
     provenance = {
         "kinematify": __version__,
         "lightgbm": _version(),
         "date": datetime.now(UTC).date().isoformat(),
-        "seed": seed,
-        "rounds": rounds,
-        "composed": composed,
+        **drawn,
         "objects": len({(example.origin, example.object) for example in fitted}),
         "joints": len(fitted),
-        "real": sorted({example.object for example in fitted if example.origin not in ("family", "composed")}),
+        "data": data_key(fitted),
+        "recipe": recipe_key(list({name for example in fitted for name in example.measured})),
+        "real": sorted({example.object for example in fitted if example.origin not in GENERATED}),
     }
     scorer = fit_scorer(fitted, seeds=_SEEDS, provenance=provenance)
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
-    left_out = judge_left_out(examples, progress)
-    seen = [scorer.probabilities(example.kinds, example.measured) for example in examples]
-    rows = {
-        name: {
-            "weighted cues": asdict(_row(examples, index, [example.by_cues for example in examples])),
-            "left out": asdict(_row(examples, index, [picked(*pair) for pair in zip(examples, left_out, strict=True)])),
-            "shipped weights": asdict(
-                _row(examples, index, [picked(*pair) for pair in zip(examples, seen, strict=True)])
-            ),
-        }
-        for name, index in sets_of(examples).items()
+    likely = {
+        "left out by category": judge_left_out(examples, lambda example: example.category, progress),
+        "left out by source": judge_left_out(examples, lambda example: example.source, progress),
+        "shipped weights": [scorer.probabilities(example.kinds, example.measured) for example in examples],
     }
-    report = {"schema": 1, "provenance": provenance, "sets": rows}
+    report = {
+        "schema": 2,
+        "provenance": provenance,
+        "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
+        "calibration": _calibration(examples, likely["left out by category"]),
+    }
+    if ablation:
+        report |= _ablation(examples, progress)
     (out / "choice.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     (out / "choice.md").write_text(as_markdown(report), encoding="utf-8")
     return report
+
+
+def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
+    """Figures and causes of errors of one set by what chose."""
+    some = [examples[k] for k in index]
+    picks = {"weighted cues": [example.by_cues for example in some]}
+    picks |= {by: [picked(examples[k], given[k]) for k in index] for by, given in likely.items()}
+    return {
+        by: asdict(row_of(some, chosen))
+        | {"causes": Counter(cause for cause in map(cause_of, some, chosen) if cause is not None)}
+        for by, chosen in picks.items()
+    }
+
+
+def _calibration(examples: Sequence[Example], likely: Sequence[FloatArray]) -> dict[str, Any]:
+    """Of real objects, but of robots, which are all sure and right."""
+    index = [k for k, example in enumerate(examples) if example.origin not in (*GENERATED, "robots")]
+    return calibration_of([examples[k] for k in index], [likely[k] for k in index]) if len(index) >= _LEAST else {}
+
+
+def _ablation(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, Any]:
+    """Left out by category: each group of measurements taken away, and a part of the objects alone."""
+    groups = sorted({group for example in examples for group in example.groups})
+    without = {"nothing": examples} | {group: [_without(group, example) for example in examples] for group in groups}
+    shares = {
+        f"{share:.0%}": [replace(example, fits=example.fits and _draw(example) < share) for example in examples]
+        for share in _LEARNING
+    }
+    return {
+        name: {of: _surprises(some, progress) for of, some in changed.items()}
+        for name, changed in (("ablation", without), ("learning", shares))
+    }
+
+
+def _without(group: str, example: Example) -> Example:
+    """The example with the measurements of a group missing; what the trees start from is level instead."""
+    names = set(example.groups.get(group, ()))
+    missing = {name: np.full_like(example.measured[name], np.nan) for name in names}
+    level = {name: np.zeros_like(example.measured[name]) for name in names & {"rules_score", "rules_odds"}}
+    return replace(example, measured={**example.measured, **missing, **level})
+
+
+def _draw(example: Example) -> float:
+    """A number in [0, 1) that is the object's own."""
+    return zlib.crc32(f"{example.origin}/{example.object}".encode()) / 2.0**32
+
+
+def _surprises(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, float]:
+    """Of the sets of real objects, left out by category."""
+    likely = judge_left_out(examples, lambda example: example.category, progress)
+    return {
+        name: surprise_of([examples[k] for k in index], [likely[k] for k in index])
+        for name, index in sets_of(examples).items()
+        if examples[index[0]].origin not in GENERATED
+    }
 
 
 def _version() -> str:
@@ -97,30 +185,49 @@ def _version() -> str:
         return ""
 
 
-def _row(examples: Sequence[Example], index: Sequence[int], picks: Sequence[int]) -> Row:
-    return row_of([examples[k] for k in index], [picks[k] for k in index])
-
-
 def as_markdown(report: dict[str, Any]) -> str:
     """The table of `run_fit` as a page."""
     facts = report["provenance"]
     introduction = (
         f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `kinematify fit` (seed {facts['seed']}, "
-        f"LightGBM {facts['lightgbm']}, {facts['date']}). The true tree is given. Left out: trees whose fit had no "
-        "object and no family of the category. Shipped weights: what ships, which has seen what it was fitted to."
+        f"LightGBM {facts['lightgbm']}, {facts['date']}). The true tree is given. Left out by category: trees whose "
+        "fit had no object and no family of the category; by source: none of the same data set, package or "
+        "generator. Shipped weights: what ships, which has seen what it was fitted to. Errors: no right joint was "
+        "proposed; type; direction given the type; line beside the right one, which counts as right in the columns "
+        "before."
     )
-    lines = [
-        "# The choice of joints",
-        "",
-        introduction,
-        "",
-        "| set | joints | chosen by | types right | type right and within 5 deg | the same, per object | angle [deg] |",
-        "| --- | --- | --- | --- | --- | --- | --- |",
+    head = ("set", "joints", "chosen by", "types right", "type right and within 5 deg", "the same, per object")
+    rows = [
+        (
+            name,
+            f"{row['joints']}",
+            by,
+            *(f"{row[key]:.1%}" for key in ("types", "within", "within_per_object")),
+            f"{row['angle_deg']:.1f}",
+            *(f"{row['causes'].get(cause, 0)}" for cause in CAUSES),
+        )
+        for name, sets in report["sets"].items()
+        for by, row in sets.items()
     ]
-    lines += [
-        f"| {name} | {row['joints']} | {by} | {row['types']:.1%} | {row['within']:.1%} "
-        f"| {row['within_per_object']:.1%} | {row['angle_deg']:.1f} |"
-        for name, rows in report["sets"].items()
-        for by, row in rows.items()
-    ]
-    return "\n".join(lines) + "\n"
+    blocks = ["# The choice of joints", introduction, table((*head, "angle [deg]", *CAUSES), rows)]
+    found = report["calibration"]
+    if found:
+        pairs = zip(found["confidence"], found["right"], strict=True)
+        fifths = ", ".join(f"{sure:.2f} ({right:.2f})" for sure, right in pairs)
+        blocks.append(
+            "Left out by category, real objects but robots: the least sure fifth holds "
+            f"{found['errors_in_least_sure']:.0%} of the errors. Mean confidence of each fifth, and share right: "
+            f"{fifths}. Calibration error: {found['error']:.3f}."
+        )
+    for key, title in (
+        (
+            "ablation",
+            "Surprise (mean of -log of the probability of what is right), left out by category, without",
+        ),
+        ("learning", "The same, fitted to a part of the objects"),
+    ):
+        if key in report:
+            sets = list(next(iter(report[key].values())))
+            body = [(name, *(f"{row[of]:.3f}" for of in sets)) for name, row in report[key].items()]
+            blocks += [f"{title}:", table((key, *sets), body)]
+    return "\n\n".join(blocks) + "\n"

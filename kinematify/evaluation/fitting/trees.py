@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections import Counter
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.joints.choice.scorer import FORMAT, Scorer, base_columns, stacked
+from kinematify.evaluation.fitting.examples import content_key
+from kinematify.joints.choice.scorer import FORMAT, SUMMARIES, Scorer, base_columns, stacked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -62,6 +64,21 @@ def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance:
     base = _fit_base(begun, starts, target, weights)
     boosters = [_boost(columns, begun @ base, starts, target, weights, seed=seed) for seed in seeds]
     return Scorer(measurements=names, base=base, temperature=1.0, provenance=dict(provenance), **_arrays(boosters))
+
+
+def recipe_key(measurements: Sequence[str]) -> str:
+    """Hash of how weights are fitted: of what measurements, from which start, with which parameters."""
+    return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, _SHARE)
+
+
+def data_key(examples: Sequence[Example]) -> str:
+    """Hash of what weights are fitted to: objects, measurements and which hypotheses are right."""
+    found = hashlib.sha256()
+    for example in examples:
+        found.update(f"{example.origin}/{example.object}".encode())
+        for values in (*(example.measured[name] for name in sorted(example.measured)), example.right):
+            found.update(np.asarray(values, dtype=np.float32).tobytes())
+    return found.hexdigest()[:20]
 
 
 def write_scorer(scorer: Scorer, path: Path) -> None:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import igl
 import numpy as np
 
 from kinematify.joints.hypotheses.frames import UP
@@ -31,6 +30,8 @@ FIXED, TURN, SLIDE = range(3)
 
 _POINTS = 90  # of a part, in tests of motion
 _CONTACT_POINTS = 50
+_FEW = 50  # in tests of symmetry
+_LEAST_SHARED = 5  # of some 800 points that may lie in the other solid
 _TURNS = np.radians([3.0, 10.0, 30.0, 75.0])
 _SLIDES = np.array([0.03, 0.1, 0.25, 0.6])  # of the child's diagonal
 _OPEN = 2  # the step at which what a motion opens is measured
@@ -97,6 +98,11 @@ class Measured:
         axes = self.hypotheses.axes
         return np.asarray(offset - np.einsum("hk,hk->h", offset, axes)[:, None] * axes)
 
+    def radii(self, points: FloatArray) -> FloatArray:
+        """Distances of points (n, 3) from each line [m], shape (h, n)."""
+        h = self.hypotheses
+        return np.asarray(lengths_of(np.cross(points[None] - h.pivots[:, None], h.axes[:, None])))
+
     def velocity(self, points: FloatArray) -> FloatArray:
         """First motion of points (n, 3) by each hypothesis, shape (h, n, 3); zero for fixed."""
         h = self.hypotheses
@@ -133,13 +139,12 @@ class Measured:
         """Share of points that enter a solid which they were not in at rest, by obstacle, shape (h, 2, steps)."""
         scene = self.scene
         own = self.child.points[self.few] - 0.01 * self.unit * self.child.normals[self.few]
-        result = {
-            "parent": self._entered(own, self._mesh((scene.parent,)), 1.0),
-            "others": self._entered(own, self._mesh(self._near_others()), 1.0),
-        }
         theirs = self.parent.points[self.few_parent] - 0.01 * self.unit * self.parent.normals[self.few_parent]
-        result["back"] = self._entered(theirs, self._mesh((scene.child,)), -1.0)
-        return result
+        return {
+            "parent": self._entered(own, (scene.parent,), 1.0),
+            "others": self._entered(own, self._near_others(), 1.0),
+            "back": self._entered(theirs, (scene.child,), -1.0),
+        }
 
     def _near_others(self) -> tuple[int, ...]:
         parts = self.scene.cache.assembly.parts
@@ -151,23 +156,14 @@ class Measured:
             if (parts[k].bounds[0] < high + slack).all() and (parts[k].bounds[1] > low - slack).all()
         )
 
-    def _mesh(self, parts: Sequence[int]) -> tuple[FloatArray, IntArray]:
-        meshes = [self.scene.cache.assembly.parts[k] for k in parts]
-        if not meshes:
-            return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
-        starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-        vertices = np.concatenate([mesh.vertices for mesh in meshes])
-        faces = np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)])
-        return vertices, faces.astype(np.int64)
-
-    def _entered(self, points: FloatArray, mesh: tuple[FloatArray, IntArray], sense: float) -> FloatArray:
+    def _entered(self, points: FloatArray, parts: Sequence[int], sense: float) -> FloatArray:
         count = len(self.hypotheses)
         result = np.zeros((count, 2, len(_TURNS)))
-        if len(points) == 0 or len(mesh[1]) == 0:
+        if len(points) == 0 or len(parts) == 0:
             return result
         poses = np.stack([self.moved(points, sense * amounts) for _, _, amounts in self.steps])
         queries = np.concatenate([points, poses.reshape(-1, 3)])
-        inside = _inside(mesh, queries)
+        inside = np.any([self.scene.cache.inside(part, queries) for part in parts], axis=0)
         at_rest, then = inside[: len(points)], inside[len(points) :].reshape(poses.shape[:3])
         entered = (then & ~at_rest).mean(axis=2)
         for (side, k, _), share in zip(self.steps, entered, strict=True):
@@ -179,17 +175,6 @@ class Measured:
         """The side on which less is in the way, shape (h,)."""
         total = np.sum([shares.sum(axis=2) for shares in self.blocked.values()], axis=0)
         return np.asarray(np.argmin(total, axis=1))
-
-
-def _inside(mesh: tuple[FloatArray, IntArray], points: FloatArray) -> BoolArray:
-    """Whether points (n, 3) lie inside a mesh, by winding number, shape (n,)."""
-    vertices, faces = mesh
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    result = np.zeros(len(points), dtype=bool)
-    near = np.flatnonzero(np.all((points > low) & (points < high), axis=1))
-    if len(near):
-        result[near] = np.abs(igl.fast_winding_number(vertices, faces, np.ascontiguousarray(points[near]))) > 0.5
-    return result
 
 
 # ---- measurements --------------------------------------------------------------------------------------------------
@@ -439,7 +424,7 @@ def where(m: Measured) -> Values:
     thin = frame.thin
     low, high = scene.cache.assembly.bounds
     whole = (scene.centre - low) / np.maximum(high - low, _TINY)
-    at_rest = _inside(m._mesh((scene.parent,)), m.child.points[m.few] - 0.01 * m.unit * m.child.normals[m.few])
+    at_rest = scene.cache.inside(scene.parent, m.child.points[m.few] - 0.01 * m.unit * m.child.normals[m.few])
     reaching = np.abs(scene.cache.assembly.parts[scene.child].bounds - scene.cache.assembly.parts[scene.parent].bounds)
     facts = {
         "inside_box": scene.inside,
@@ -467,6 +452,120 @@ def where(m: Measured) -> Values:
     ahead = np.minimum(np.abs(own_low - body[0]), np.abs(body[1] - own_high)) / m.unit
     result["flush_along"] = along @ ahead
     return result
+
+
+def symmetry(m: Measured) -> Values:
+    """What the child is carried onto by its motion: itself all around, by a fold of the circle, or along the way.
+
+    Distances of moved points to the surface at rest, in shares of the reach; 0 for a disc about its axle, small after a
+    third of a turn for a wheel of three spokes, small along its way for a rail.
+    """
+    h, scene = m.hypotheses, m.scene
+    points = m.child.points[m.few[:_FEW]]
+    reach = np.where(h.kinds == TURN, np.maximum(m.radii(points).max(axis=1), 0.02 * m.unit), m.unit)
+
+    def missed(angle_deg: float) -> FloatArray:
+        amounts = np.where(h.kinds == TURN, np.radians(angle_deg), np.where(h.kinds == SLIDE, 0.1 * m.unit, 0.0))
+        moved = m.moved(points, amounts)
+        gaps = scene.cache.distances(scene.child, moved.reshape(-1, 3)).reshape(len(h), -1)
+        return np.asarray(gaps.mean(axis=1) / reach)
+
+    odd, half = missed(37.0), missed(180.0)
+    folds = np.min([missed(360.0 / k) for k in (3, 4, 5)], axis=0)
+    everything = m.child.points[:: max(1, len(m.child.points) // 400)]
+    return {
+        "itself_odd": odd,
+        "itself_half": half,
+        "itself_folds": folds,
+        "itself_folds_gain": folds / np.maximum(odd, 1e-3),
+        **_outline(m, everything),
+        "twist": _twist(m, everything, m.child.normals[:: max(1, len(m.child.points) // 400)]),
+    }
+
+
+def _outline(m: Measured, points: FloatArray) -> Values:
+    """How round the outline about each line is: least over largest radius of twelve sectors, and their spread."""
+    h = m.hypotheses
+    first, second = _across_pair(h.axes)
+    offset = points[None] - h.pivots[:, None]
+    x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
+    sector = ((np.arctan2(y, x) + np.pi) / (2.0 * np.pi) * 12).astype(np.int64) % 12
+    radius = np.zeros((len(h), 12))
+    np.maximum.at(radius, (np.arange(len(h))[:, None], sector), np.hypot(x, y))
+    largest = np.maximum(radius.max(axis=1), _TINY)
+    turns = h.kinds == TURN
+    return {
+        "outline_least": np.where(turns, radius.min(axis=1) / largest, np.nan),
+        "outline_spread": np.where(turns, radius.std(axis=1) / largest, np.nan),
+    }
+
+
+def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two unit directions across each axis and each other, shape (h, 3) each."""
+    helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
+    first = np.cross(axes, helper)
+    first /= np.maximum(lengths_of(first), _TINY)[:, None]
+    return first, np.cross(axes, first)
+
+
+def _twist(m: Measured, points: FloatArray, normals: FloatArray) -> FloatArray:
+    """How much the surface winds about each line, as the blades of a propeller do, in [0, 1], shape (h,)."""
+    h = m.hypotheses
+    along = normals @ h.axes.T
+    way = m.velocity(points)
+    way /= np.maximum(lengths_of(way), _TINY)[..., None]
+    around = np.einsum("hnk,nk->nh", way, normals)
+    wound = np.abs((along * around).mean(axis=0)) / np.maximum(np.abs(along * around).mean(axis=0), 0.02)
+    return np.where(h.kinds == TURN, wound, np.nan)
+
+
+def axle(m: Measured) -> Values:
+    """Whether the line is an axle: how high above the floor beside its reach, what it meets on either side."""
+    h, scene = m.hypotheses, m.scene
+    radius = np.maximum(m.radii(m.child.points[m.few]).max(axis=1), 0.02 * m.unit)
+    foot = scene.centre - m.arms
+    floor = float(scene.cache.assembly.bounds[0, 2])
+    half = 0.5 * (np.abs(h.axes @ scene.frame.axes.T) @ scene.frame.extents)
+    met = []
+    for sense in (1.0, -1.0):
+        reach = (half + 0.5 * m.unit)[:, None] * h.axes * sense
+        hits = scene.cache.first_hits(scene.parent, foot, reach)
+        inside = scene.cache.inside(scene.parent, foot + 1.1 * half[:, None] * h.axes * sense)
+        met.append(np.where(inside, 0.0, np.minimum(hits, 2.0)))
+    of_contact = np.einsum("hk,hk->h", m.anchor - scene.centre + np.zeros_like(h.axes), h.axes)
+    return {
+        "above_floor": np.clip((foot[:, 2] - floor) / radius, 0.0, 5.0),
+        "axle_meets": np.min(met, axis=0),
+        "axle_meets_both": np.max(met, axis=0),
+        "contact_at_end": np.abs(of_contact) / np.maximum(half, 0.02 * m.unit),
+    }
+
+
+def standing_in(m: Measured) -> Values:
+    """Where the solids stand in each other at rest: how far from the line, and how far along it."""
+    scene, h = m.scene, m.hypotheses
+    own = m.child.points[:: max(1, len(m.child.points) // 400)]
+    near = m.parent.points[m._near_child(m.parent.points)]
+    near = near[:: max(1, len(near) // 400)]
+    shared = [own[scene.cache.inside(scene.parent, own)], near[scene.cache.inside(scene.child, near)]]
+    points = np.concatenate(shared)
+    result = {
+        "shared_child": np.full(len(h), len(shared[0]) / len(own)),
+        "shared_parent": np.full(len(h), len(shared[1]) / max(len(near), 1)),
+    }
+    if len(points) < _LEAST_SHARED:
+        missing = np.full(len(h), np.nan)
+        return result | {f"shared_{name}": missing for name in ("radius", "radius_most", "along", "offset", "at_end")}
+    radius = m.radii(points) / m.unit
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    half = 0.5 * (np.abs(h.axes @ scene.frame.axes.T) @ scene.frame.extents)
+    return result | {
+        "shared_radius": radius.mean(axis=1),
+        "shared_radius_most": radius.max(axis=1),
+        "shared_along": np.ptp(points @ h.axes.T, axis=0) / m.unit,
+        "shared_offset": lengths_of(m._across(centre)) / m.unit,
+        "shared_at_end": np.abs(h.axes @ (centre - scene.centre)) / np.maximum(half, 0.02 * m.unit),
+    }
 
 
 def gravity(m: Measured) -> Values:
@@ -587,12 +686,14 @@ def neighbours(m: Measured) -> Values:
     }
     if not twins:
         missing = np.full(count, np.nan)
-        return result | {"twin_along": missing, "twin_near": missing, "twin_thin": missing}
+        return result | {"twin_along": missing, "twin_near": missing, "twin_thin": missing, "twin_coaxial": missing}
     centres = np.array([scene.cache.samples(part).points.mean(axis=0) for part in twins])
     offset = centres - m.child.points.mean(axis=0)
     nearest = offset[int(np.argmin(lengths_of(offset)))]
     direction = nearest / max(float(np.linalg.norm(nearest)), _TINY)
+    apart = lengths_of(np.cross(offset[None] + m.arms[:, None], h.axes[:, None]))
     return result | {
+        "twin_coaxial": apart.min(axis=1) / m.unit,
         "twin_along": np.abs(h.axes @ direction),
         "twin_near": np.full(count, float(np.linalg.norm(nearest)) / m.unit),
         "twin_thin": np.full(count, abs(float(direction @ scene.frame.axes[scene.frame.thin]))),
@@ -602,8 +703,13 @@ def neighbours(m: Measured) -> Values:
 
 def measure(scene: JointScene, hypotheses: Hypotheses) -> Values:
     """Everything that is measured of the hypotheses of an edge, (h,) each; NaN or absent where it does not apply."""
+    return {name: value for values in measure_groups(scene, hypotheses).values() for name, value in values.items()}
+
+
+def measure_groups(scene: JointScene, hypotheses: Hypotheses) -> dict[str, Values]:
+    """The same by the group that measures it."""
     measured = Measured(scene, hypotheses)
-    return {name: value for group in GROUPS.values() for name, value in group(measured).items()}
+    return {name: group(measured) for name, group in GROUPS.items()}
 
 
 GROUPS: dict[str, Callable[[Measured], Values]] = {
@@ -615,6 +721,9 @@ GROUPS: dict[str, Callable[[Measured], Values]] = {
     "contact_place": contact_place,
     "child_shape": child_shape,
     "where": where,
+    "symmetry": symmetry,
+    "axle": axle,
+    "standing_in": standing_in,
     "gravity": gravity,
     "handle": handle,
     "opening": opening,

@@ -15,10 +15,14 @@ from kinematify.geometry.sampling import sample_surface
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from kinematify.assembly.part import Assembly
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.sampling import SurfaceSamples
     from kinematify.robot.arrays import FloatArray, IntArray
+
+    BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -128,6 +132,15 @@ class PartCache:
         normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
         return np.sqrt(np.maximum(squared, 0.0)), np.asarray(closest), normals
 
+    def inside(self, part: int, points: FloatArray) -> BoolArray:
+        """Whether points (n, 3) in the world frame lie inside the solid of a part, by winding number, shape (n,)."""
+        lower, upper = self.assembly.parts[part].bounds
+        result = np.all((points > lower) & (points < upper), axis=1)
+        near = np.flatnonzero(result)
+        if len(near):
+            result[near] = np.abs(self._solid(part).winding_number(np.ascontiguousarray(points[near]))) > 0.5
+        return np.asarray(result)
+
     def contact(self, parent: int, child: int, band: float) -> ContactView:
         """Contact samples of a pair that lie within `band` [m] beyond its gap."""
         edge = self.graph.by_pair.get((min(parent, child), max(parent, child)))
@@ -165,6 +178,16 @@ class PartCache:
             return tree, mesh.vertices, mesh.faces
 
         found: tuple[igl.AABB, FloatArray, IntArray] = self._once("tree", part, build)
+        return found
+
+    def _solid(self, part: int) -> igl.FastWindingNumberBVH:
+        def build() -> igl.FastWindingNumberBVH:
+            mesh = self.assembly.parts[part]
+            solid = igl.FastWindingNumberBVH()
+            solid.init(mesh.vertices, mesh.faces)
+            return solid
+
+        found: igl.FastWindingNumberBVH = self._once("solid", part, build)
         return found
 
     def _once(self, kind: str, part: int, build: Callable[[], Any]) -> Any:
