@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from kinematify.errors import EnvironmentFault
+from kinematify.evaluation.fitting.trees import recipe_key
 from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import hypotheses_of, judge, rule_scores
@@ -62,6 +63,12 @@ def test_the_measurements_are_those_that_were_fitted() -> None:
     weighed = weighed_joints("edge_door")
     measured = {**measure(weighed.scene, hypotheses_of(weighed)), **rule_scores(weighed)}
     assert set(measured) <= set(shipped_scorer().measurements)
+
+
+def test_the_weights_are_those_of_the_committed_recipe() -> None:
+    """Another parameter, start or measurement without a new fit goes red; `kinematify fit` makes the weights anew."""
+    shipped = shipped_scorer()
+    assert shipped.provenance["recipe"] == recipe_key(shipped.measurements)
 
 
 def test_the_choice_is_the_first_alternative() -> None:

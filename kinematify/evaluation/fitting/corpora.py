@@ -17,6 +17,7 @@ from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import InputError, KinematifyError
 from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
+from kinematify.evaluation.fitting.objects import OBJECTS, drawn_object
 from kinematify.generate.procedural.composed import compose
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
@@ -30,8 +31,9 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
     from kinematify.evaluation.fitting.examples import Example
+    from kinematify.generate.blueprint import Blueprint
 
-FAMILY, COMPOSED = GENERATED = "family", "composed"
+FAMILY, PROGRAMMED, COMPOSED = GENERATED = "family", "programmed", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
@@ -43,7 +45,7 @@ class Source:
     """One object to measure; small and picklable."""
 
     origin: str
-    """FAMILY, COMPOSED, or the name of the folder of real objects."""
+    """FAMILY, PROGRAMMED, COMPOSED, or the name of the folder of real objects."""
     name: str
     number: int = 0
     """Of a generated object."""
@@ -52,9 +54,10 @@ class Source:
 
 
 def generated_sources(rounds: int, composed: int) -> list[Source]:
-    """`rounds` objects of every family, each in another way of modelling, and `composed` random mechanisms."""
-    families = [Source(origin=FAMILY, name=name, number=n) for n in range(rounds) for name in sorted(FAMILIES)]
-    return families + [Source(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
+    """`rounds` objects of every family and recipe, each modelled in another way, and `composed` random mechanisms."""
+    named = [(FAMILY, name) for name in sorted(FAMILIES)] + [(PROGRAMMED, name) for name in sorted(OBJECTS)]
+    found = [Source(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
+    return found + [Source(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
 
 
 def real_sources(folder: Path) -> list[Source]:
@@ -154,20 +157,9 @@ def _read(folder: Path) -> _Opened:
 
 def _generated(source: Source, seed: int) -> _Opened:
     number = seed + source.number
-    ways = list(WAYS)
-    if source.origin == COMPOSED:
-        rng = np.random.default_rng(number)
-        blueprint = compose(number)
-        way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
-    else:
-        rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
-        ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
-        drawn = int(rng.integers(2**31))
-        blueprint = build(FAMILIES[source.name], {"open": ajar}, seed=drawn, name=source.name)
-        way = ways[(number + zlib.crc32(source.name.encode())) % len(ways)]
+    blueprint = _drawn(source, number)
     if len(blueprint.joints) > _MOST_JOINTS:
         raise ValueError(f"{source.name} has {len(blueprint.joints)} joints, more than {_MOST_JOINTS}.")
-    blueprint = remodelled(blueprint, way, rng=rng)
     # Random mechanisms have nothing in common: each is a category of its own.
     category = f"{source.name} {number}" if source.origin == COMPOSED else source.name
     return _Opened(
@@ -177,3 +169,17 @@ def _generated(source: Source, seed: int) -> _Opened:
         source=source.origin,
         fits=True,
     )
+
+
+def _drawn(source: Source, number: int) -> Blueprint:
+    ways = list(WAYS)
+    if source.origin == PROGRAMMED:
+        return drawn_object(source.name, number)
+    if source.origin == COMPOSED:
+        way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
+        return remodelled(compose(number), way, rng=np.random.default_rng(number))
+    rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
+    ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
+    drawn = int(rng.integers(2**31))
+    blueprint = build(FAMILIES[source.name], {"open": ajar}, seed=drawn, name=source.name)
+    return remodelled(blueprint, ways[(number + zlib.crc32(source.name.encode())) % len(ways)], rng=rng)

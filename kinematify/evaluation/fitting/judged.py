@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.config import load_config
-from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED
+from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
 from kinematify.evaluation.fitting.trees import fit_scorer
 from kinematify.joints.choice.judge import Judgement
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 _FOLDS = 5
+_GENERATED_SETS = {FAMILY: "families", PROGRAMMED: "objects as people program them", COMPOSED: "random mechanisms"}
 _RIGHT_DEG = 5.0
 _RIGHT = 0.2
 """A hypothesis is right from here on: 5 deg off, or a sixteenth of the part beside the line."""
@@ -67,7 +68,7 @@ def judge_left_out(
     Groups (categories or sources) are dealt into five folds; nothing of a fold is fitted to when it is judged.
     """
     found: dict[int, FloatArray] = {}
-    folds = [zlib.crc32(group(example).encode()) % _FOLDS for example in examples]
+    folds = folds_of(examples, group)
     for fold in range(_FOLDS):
         progress(f"left out {fold + 1} of {_FOLDS}", fold / _FOLDS)
         judged = [k for k, at in enumerate(folds) if at == fold]
@@ -77,6 +78,12 @@ def judge_left_out(
         scorer = fit_scorer(fitted, seeds=(0,), provenance={})
         found |= {k: scorer.probabilities(examples[k].kinds, examples[k].measured) for k in judged}
     return [found[k] for k in range(len(examples))]
+
+
+def folds_of(examples: Sequence[Example], group: Callable[[Example], str]) -> list[int]:
+    """The fold of each example; those of one group are in one fold."""
+    places = {name: place for place, name in enumerate(sorted({group(example) for example in examples}))}
+    return [places[group(example)] % _FOLDS for example in examples]
 
 
 def surprise_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> float:
@@ -97,13 +104,19 @@ def judgement_of(example: Example, probabilities: FloatArray) -> Judgement:
         by_cues=max(example.by_cues, 1),
         support=example.measured["rules_score"],
         size=example.size,
-        lead=load_config().joints.confidence.cues_lead,
+        lead=_cues_lead(),
     )
 
 
 def picked(example: Example, probabilities: FloatArray) -> int:
     """What the inference would choose with these probabilities, shape (h,)."""
     return judgement_of(example, probabilities).best if example.by_cues else 0
+
+
+@cache
+def _cues_lead() -> float:
+    """As the inference has it; read once, since tables ask for it thousands of times."""
+    return load_config().joints.confidence.cues_lead
 
 
 CAUSES = ("none proposed", "wrong type", "wrong direction", "line beside")
@@ -141,7 +154,7 @@ def sets_of(examples: Sequence[Example]) -> dict[str, list[int]]:
     """Name of each set that has a row of its own -> positions of its examples."""
     found: dict[str, list[int]] = {}
     for k, example in enumerate(examples):
-        name = {FAMILY: "generated families", COMPOSED: "random mechanisms"}.get(example.origin, example.origin)
+        name = _GENERATED_SETS.get(example.origin, example.origin)
         if example.origin not in GENERATED:
             name += ", fitted to" if example.fits else ", for research only: never fitted to"
         found.setdefault(name, []).append(k)

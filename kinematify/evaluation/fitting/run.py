@@ -104,11 +104,10 @@ def fit_and_judge(
     scorer = fit_scorer(fitted, seeds=_SEEDS, provenance=provenance)
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
-    likely = {
-        "left out by category": judge_left_out(examples, lambda example: example.category, progress),
-        "left out by source": judge_left_out(examples, lambda example: example.source, progress),
-        "shipped weights": [scorer.probabilities(example.kinds, example.measured) for example in examples],
-    }
+    likely = {"left out by category": judge_left_out(examples, lambda example: example.category, progress)}
+    if len({example.source for example in examples}) > 1:
+        likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
+    likely["shipped weights"] = [scorer.probabilities(example.kinds, example.measured) for example in examples]
     report = {
         "schema": 2,
         "provenance": provenance,

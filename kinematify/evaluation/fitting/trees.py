@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 _PARAMETERS = {
     "learning_rate": 0.08,
-    "num_leaves": 10,
-    "min_data_in_leaf": 30,
+    "num_leaves": 7,
+    "min_data_in_leaf": 50,
     "min_sum_hessian_in_leaf": 0.5,
     "lambda_l2": 5.0,
-    "feature_fraction": 0.25,
+    "feature_fraction": 0.1,
     "bagging_fraction": 0.7,
     "bagging_freq": 1,
     "max_bin": 63,
@@ -37,8 +37,8 @@ _PARAMETERS = {
     "deterministic": True,
     "verbosity": -1,
 }
-_ROUNDS = 130
-_SHARE = {"family": 0.2, "composed": 0.02}
+_ROUNDS = 220
+_SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
 """Weight of an example of such an origin beside one of a real object."""
 
 
