@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from kinematify.evaluation.fitting.corpora import gather_examples, generated_sources
+from kinematify.evaluation.fitting.judged import cause_of, folds_of
 from kinematify.evaluation.fitting.run import run_fit
 from kinematify.joints.choice.scorer import WEIGHTS
 
@@ -33,10 +35,24 @@ def test_examples_know_which_hypothesis_is_right_and_are_measured_once(tmp_path:
         np.testing.assert_array_equal(a.right, b.right)
 
 
+def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> None:
+    example = gather_examples(generated_sources(0, 1), tmp_path, seed=0, workers=1, progress=silent)[0]
+    assert cause_of(example, int(np.argmax(example.right))) is None
+    assert cause_of(example, int(np.argmin(example.types_right))) == "wrong type"
+    assert cause_of(replace(example, right=np.zeros_like(example.right)), 0) == "none proposed"
+
+
+def test_groups_of_one_name_share_a_fold(tmp_path: Path) -> None:
+    examples = gather_examples(generated_sources(0, 2), tmp_path, seed=0, workers=1, progress=silent)
+    folds = folds_of(examples, lambda example: example.category)
+    by_category = {(example.category, fold) for example, fold in zip(examples, folds, strict=True)}
+    assert len(by_category) == len({category for category, _ in by_category}) == len(set(folds)) == 2
+
+
 def test_a_small_fit_writes_weights_and_tables(tmp_path: Path) -> None:
     pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
     report = run_fit(
-        [], tmp_path, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=True, progress=silent
+        [], tmp_path, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=False, progress=silent
     )
     assert (tmp_path / WEIGHTS).stat().st_size > 0
     assert set(report["sets"]) == {"random mechanisms"}
