@@ -66,7 +66,7 @@ class Mechanism:
             Travel(
                 joint=joint.name,
                 turns=joint.kind.turns,
-                limited=bool(np.isfinite([joint.lower, joint.upper]).all()),
+                limited=not joint.endless and bool(np.isfinite([joint.lower, joint.upper]).all()),
                 lower=float(low),
                 rest=rest[joint.name],
                 upper=float(high),

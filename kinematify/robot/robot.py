@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _UNLIMITED_TURN = np.pi
+_NO_LIMIT = 10.0
+"""Limits of plus and minus this are how files say that there is none [rad]."""
 _WIDEST_TURN = 4.0 * np.pi
 """Wider ranges [rad] repeat the same poses."""
 _WIDEST_SLIDE = 100.0
@@ -173,6 +175,16 @@ class Joint:
         """True if it moves by itself: neither fixed nor mimic."""
         return self.kind is not JointType.FIXED and self.mimic is None
 
+    @property
+    def endless(self) -> bool:
+        """True of a hinge whose limits say that there are none: infinite, 10 rad, or three to eight half turns."""
+        if not self.kind.turns or self.lower != -self.upper:
+            return False
+        if self.upper in (_NO_LIMIT, np.inf):
+            return True
+        half_turns = self.upper / np.pi
+        return bool(2.5 < half_turns < 8.5 and abs(half_turns - round(half_turns)) < 1e-4 * half_turns)
+
     def motion(self, value: float) -> FloatArray:
         """Return the transform of the child in the joint frame, shape (4, 4), at `value` [rad or m]."""
         return joint_motion(self.kind, self.axis, np.zeros(3), value)
@@ -323,6 +335,7 @@ def rest_configuration(robot: Robot) -> dict[str, float]:
 def joint_ends(joints: Sequence[Joint]) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest value of each joint [rad or m], shape (n,) each; unlimited ones turn once."""
     widest = np.array([_WIDEST_TURN if joint.kind.turns else _WIDEST_SLIDE for joint in joints])
-    lower = np.array([joint.lower if np.isfinite(joint.lower) else -_UNLIMITED_TURN for joint in joints])
-    upper = np.array([joint.upper if np.isfinite(joint.upper) else _UNLIMITED_TURN for joint in joints])
+    given = [(joint.lower, joint.upper) if not joint.endless else (-np.inf, np.inf) for joint in joints]
+    lower = np.array([low if np.isfinite(low) else -_UNLIMITED_TURN for low, _ in given])
+    upper = np.array([high if np.isfinite(high) else _UNLIMITED_TURN for _, high in given])
     return np.clip(lower, -widest, widest), np.clip(upper, -widest, widest)

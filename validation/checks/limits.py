@@ -23,9 +23,6 @@ _ROUND_DEGREES = 5.0
 """People choose limits that are multiples of this [deg]."""
 _ROUND_TOLERANCE = 0.3
 """What two decimals of a radian leave of a round angle [deg]: 200 deg are written as 3.49 rad."""
-_NO_LIMIT = 10.0
-"""Limits of plus and minus this, or of half turns, are how files say that there is none [rad]."""
-_MOST_HALF_TURNS = 8
 
 
 @check(
@@ -59,8 +56,7 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
     width = joint.upper - joint.lower
     if width <= settings.full_turn:
         return
-    unlimited = joint.upper == -joint.lower and (joint.upper == _NO_LIMIT or _half_turns(joint.upper))
-    endless = unlimited or width > settings.endless
+    endless = joint.endless or width > settings.endless
     # Wrists of large arms turn by 400 degrees to each side; their limits are round numbers of degrees.
     meant = _round(joint.lower) and _round(joint.upper) and width <= settings.widest_wrist
     if meant:
@@ -74,7 +70,7 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         if endless
         else f"Write lower and upper in radians: {degrees} if they are degrees.",
         severity=Severity.NOTE
-        if unlimited
+        if joint.endless
         else Severity.WARNING
         if endless or width <= settings.widest_turn
         else Severity.ERROR,
@@ -85,12 +81,6 @@ def _turn(result: OpenCheck, physics: Physics, joint: Joint) -> None:
         unit="rad",
         line=joint.line,
     )
-
-
-def _half_turns(angle: float) -> bool:
-    """Whether somebody has written a small multiple of pi, to at least four digits; 355 is one as well, of degrees."""
-    count = round(angle / math.pi)
-    return count <= _MOST_HALF_TURNS and math.isclose(angle, count * math.pi, rel_tol=1e-4)
 
 
 def _round(angle: float) -> bool:
