@@ -108,6 +108,15 @@ def test_sides_looks_and_openness_are_as_said():
         ("three carts with a wheel", "3 cart"),
         ("a cart with two crocodiles", "crocodiles"),
         ("a cart with a drawer and no drawer", "drawer"),
+        ("a cart with two drawers with a knob on each drawer", "each"),
+        ("a cart with two drawers; the drawers are red", "drawer"),
+        ("a cart with red and blue knobs", "blue"),
+        ("a cart with two drawers, red", "red"),
+        ("a cart with two drawers 20 cm deep", "cm"),
+        ("a cart with a half open lid and a drawer", "half"),
+        ("a drawer of a cart", "drawer"),
+        ("a box truck with four wheels", "truck"),
+        ("a cart with two three drawers", "three"),
     ],
 )
 def test_what_is_not_understood_is_named(sentence, words):

@@ -237,7 +237,7 @@ BODIES = (
     Body(words=("cart", "trolley", "tool cart", "utility cart"), size=(0.75, 0.45, 0.7), build=_block),
     Body(words=("platform", "dolly", "base plate"), size=(0.8, 0.5, 0.1), build=_block),
     Body(
-        words=("crate", "tub", "toolbox", "bin", "container", "chest"),
+        words=("crate", "tub", "toolbox", "tool box", "bin", "container", "chest"),
         size=(0.55, 0.35, 0.32),
         build=_tub,
         material="plastic",

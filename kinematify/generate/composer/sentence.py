@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _Kind = TypeVar("_Kind")
 _SIDES = {side: side for side in FACING} | {"rear": "back", "underside": "bottom"}
 _PLACED = ("on", "at", "in")
+_REPEATING = ("each", "every", "per", "both")
+"""Words that count what was named before, which is not built."""
 _SIDE_NOUNS = ("side", "face")
 _UNDER = ("underneath", "below")
 _MOVING = ("opening", "movable", "moving", "working")
@@ -117,10 +119,15 @@ class _Reader:
         while k < len(self._tokens):
             steps = (self._length, self._mechanism, self._named_body, self._openness, self._described, self._counted)
             taken = next((words for step in steps if (words := step(k))), 0)
-            token = self._tokens[k]
-            if not taken and not token.is_sign and token.text not in STOP_WORDS and token.text not in _MOVING:
-                self.left.append(token.given)
+            if not taken and not self._says_nothing(self._tokens[k]):
+                self.left.append(self._tokens[k].given)
             k += max(taken, 1)
+        if self._look != _Look():
+            self.left.append(self._tokens[-1].given)  # it describes nothing that follows
+
+    @staticmethod
+    def _says_nothing(token: Token) -> bool:
+        return token.is_sign or (token.text in STOP_WORDS and token.text not in _REPEATING) or token.text in _MOVING
 
     def _texts(self, k: int) -> tuple[str, ...]:
         return tuple(token.text for token in self._tokens[k : k + 5])
@@ -138,6 +145,8 @@ class _Reader:
         name = next((name for name, words in DIMENSIONS.items() if texts[2] in words), "")
         if name not in _AXES:
             return 0
+        if self.wanted and self._tokens[k - 1].text != ",":
+            return 0  # it would be the length of a mechanism
         metres = number * UNITS[texts[1]]
         if not _SHORTEST <= metres <= _LONGEST:
             raise InputError(
@@ -153,6 +162,10 @@ class _Reader:
             return 0
         words, mechanism = named
         look, end = self._described_so_far(), k + len(words)
+        again = look.count is None and any(item.mechanism is mechanism for item in self.wanted)
+        if self.body is None or again:
+            self.left.append(" ".join(words))  # a part of something else, or one that was named before
+            return len(words)
         if look.count == 0:
             self.excluded.append(mechanism)
             return len(words)
@@ -185,7 +198,8 @@ class _Reader:
         """`half open`."""
         texts = self._texts(k)
         for words, share in _OPENNESS.items():
-            if texts[: len(words)] == words:
+            # Amid a sentence it would be said of one mechanism alone.
+            if texts[: len(words)] == words and (self.body is None or k + len(words) == len(self._tokens)):
                 self.rest = share
                 return len(words)
         return 0
@@ -195,16 +209,18 @@ class _Reader:
         texts = self._texts(k)
         for length in (2, 1):
             words = " ".join(texts[:length])
-            if words in COLOR_WORDS:
+            if words in COLOR_WORDS and self._look.color is None:
                 self._look.color = COLOR_WORDS[words]
                 return length
-        self._look.material = _MATERIAL_WORDS.get(texts[0], self._look.material)
-        return int(texts[0] in _MATERIAL_WORDS)
+        if texts[0] in _MATERIAL_WORDS and self._look.material is None:
+            self._look.material = _MATERIAL_WORDS[texts[0]]
+            return 1
+        return 0
 
     def _counted(self, k: int) -> int:
-        """`four`, `no`; a number that is not whole is not understood."""
+        """`four`, `no`; a number that is not whole, or a second one, is not understood."""
         number = self._tokens[k].number
-        if number is None or number != int(number):
+        if number is None or number != int(number) or self._look.count is not None:
             return 0
         self._look.count = int(number)
         return 1
