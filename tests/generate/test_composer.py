@@ -47,6 +47,7 @@ def ends_of(joint):
         (TRUCK, {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 3}),
         (BOX, {JointType.CONTINUOUS: 1, JointType.REVOLUTE: 1, JointType.PRISMATIC: 9}),
         ("a toolbox with a lid and a carrying handle", {JointType.REVOLUTE: 2}),
+        ("a crate with a carrying handle", {JointType.REVOLUTE: 1}),
         ("a column with a folding arm and a crank", {JointType.REVOLUTE: 2, JointType.CONTINUOUS: 1}),
         ("a platform with four wheels and a telescopic mast", {JointType.CONTINUOUS: 4, JointType.PRISMATIC: 1}),
     ],
@@ -56,6 +57,7 @@ def test_what_is_asked_for_is_built_and_moves_freely(sentence, counts):
     kinds = [joint.kind for joint in blueprint.joints]
     assert {kind: kinds.count(kind) for kind in set(kinds)} == counts
     assert not overlaps(blueprint)
+    assert all(len(solid.decompose()) == 1 for solid in solids_of(blueprint).values())
     for joint in blueprint.joints:
         for value in ends_of(joint):
             assert not overlaps(blueprint.moved({joint.child: value})), (joint.child, value)
@@ -72,6 +74,12 @@ def test_drawn_compositions_have_whole_parts_that_stand_free(seed):
 def test_what_is_drawn_can_be_said(seed):
     composition = draw_composition(seed)
     assert read_composition(told(composition)) == composition
+
+
+def test_parts_are_called_as_they_were_said():
+    blueprint = from_text("a tool box with a hatch and two toggle switches").build()
+    assert {part.name for part in blueprint.parts} == {"body", "hatch_1", "toggle_switch_1", "toggle_switch_2"}
+    assert blueprint.family == "tool_box"
 
 
 def test_a_seed_draws_what_is_not_asked_for():
@@ -115,7 +123,7 @@ def test_sides_looks_and_openness_are_as_said():
         ("a cart with two drawers 20 cm deep", "cm"),
         ("a cart with a half open lid and a drawer", "half"),
         ("a drawer of a cart", "drawer"),
-        ("a box truck with four wheels", "truck"),
+        ("a drum truck with four wheels", "truck"),
         ("a cart with two three drawers", "three"),
     ],
 )

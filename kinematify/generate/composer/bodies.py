@@ -230,7 +230,7 @@ BODIES = (
         material="wood",
     ),
     Body(
-        words=("control box", "box", "console", "housing"),
+        words=("control box", "console", "housing"),
         size=(0.4, 0.22, 0.3),
         build=_block,
     ),

@@ -40,11 +40,18 @@ class Wanted:
     """One kind of mechanism on an object."""
 
     mechanism: Mechanism
+    said: str = ""
+    """Word for it, where it is not the usual one."""
     count: int = 1
     side: str = ""
     """Of `FACING`; its usual one if empty."""
     material: str | None = None
     color: str | None = None
+
+    @property
+    def title(self) -> str:
+        """What it is called, singular."""
+        return self.said or self.mechanism.words[0]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,12 +60,19 @@ class Composition:
 
     body: Body
     wanted: tuple[Wanted, ...]
+    said: str = ""
+    """Word for the body, where it is not the usual one."""
     size: tuple[float | None, float | None, float | None] = (None, None, None)
     """Width, depth and height [m]; as large as is needed where None."""
     material: str | None = None
     color: str | None = None
     rest: float = 0.0
     """Share of the way that moving parts stand open."""
+
+    @property
+    def title(self) -> str:
+        """What the object is called."""
+        return self.said or self.body.words[0]
 
 
 def compose(
@@ -76,14 +90,14 @@ def compose(
         InputError: Nothing moves, a side is not there or taken, or there is no room; the message names what.
     """
     if not any(wanted.mechanism.moves for wanted in composition.wanted):
-        raise InputError(f"Nothing of this {_title(composition.body)} would move. Ask for {_known()}.")
+        raise InputError(f"Nothing of this {composition.title} would move. Ask for {_known()}.")
     layout = _laid_out(composition, seed)
     fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
     numbers: Counter[str] = Counter()
     here: Counter[tuple[str, str]] = Counter()
-    lidded = {side for side, item, _ in layout.placed if item.mechanism.words[0] == "lid"}
+    lids: dict[str, str] = {}
     for name_of_side, item, area in layout.placed:
-        side, word = layout.sides[name_of_side], item.mechanism.words[0].replace(" ", "_").replace("-", "_")
+        side, word = layout.sides[name_of_side], item.title.replace(" ", "_").replace("-", "_")
         numbers[word] += 1
         place = Place(
             workshop=SideWorkshop(layout.workshop, side.T_world_side, material=item.material, color=item.color),
@@ -95,11 +109,14 @@ def compose(
             index=here[name_of_side, word],
         )
         here[name_of_side, word] += 1
-        on_lid = item.mechanism.arranged == "over" and name_of_side in lidded
-        item.mechanism.build(_on_lid(place) if on_lid else place)
+        if item.mechanism.words[0] == "lid":
+            lids[name_of_side] = place.name
+        if item.mechanism.arranged == "over" and name_of_side in lids:
+            place = _on_lid(place, lids[name_of_side])
+        item.mechanism.build(place)
     parameters = {"seed": seed, "size": layout.size, **{f"{word}s": count for word, count in numbers.items()}}
     rng = np.random.default_rng(0)
-    named = name or _title(composition.body).replace(" ", "_")
+    named = name or composition.title.replace(" ", "_")
     return layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
 
 
@@ -128,7 +145,7 @@ def _laid_out(composition: Composition, seed: int | None) -> _Layout:
     size: Size = (width, depth, height)
     while True:
         workshop = Workshop(
-            _title(body).replace(" ", "_"), material=composition.material or body.material, color=composition.color
+            composition.title.replace(" ", "_"), material=composition.material or body.material, color=composition.color
         )
         sides = body.build(workshop, size, min(_WALL, 0.08 * min(size)))
         try:
@@ -172,29 +189,25 @@ def draw_composition(seed: int) -> Composition:
     return Composition(body=body, wanted=tuple(wanted)) if moves else draw_composition(seed + _ANOTHER)
 
 
-def _title(body: Body) -> str:
-    return body.words[0]
-
-
 def _known() -> str:
     return ", ".join(mechanism.words[0] for mechanism in MECHANISMS)
 
 
-def _on_lid(place: Place) -> Place:
+def _on_lid(place: Place, lid: str) -> Place:
     """The same place on the lid that covers the side."""
     level = place.clearance + place.area.wall
-    return replace(place, workshop=place.workshop.turned(np.eye(3), (0, -level, 0)), parent="lid_1", hollow=True)
+    return replace(place, workshop=place.workshop.turned(np.eye(3), (0, -level, 0)), parent=lid, hollow=True)
 
 
 def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list[Wanted]]:
     """What goes on which side; wheels and other pairs are divided between left and right."""
     found: dict[str, list[Wanted]] = {side: [] for side in sides}
-    body = _title(composition.body)
+    body = composition.title
     for wanted in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
         kind, usual = wanted.mechanism, _usual_sides(wanted, sides, body)
         if kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left"):
             if wanted.count % 2:
-                raise InputError(f"{wanted.count} {kind.words[0]}s are asked for; on a {body} they come in pairs.")
+                raise InputError(f"{wanted.count} {wanted.title}s are asked for; on a {body} they come in pairs.")
             for side in ("left", "right"):
                 found[side].append(replace(wanted, count=wanted.count // 2))
         else:
@@ -206,7 +219,7 @@ def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list
 
 def _usual_sides(wanted: Wanted, sides: dict[str, Side], body: str) -> list[str]:
     """Sides of a body where a mechanism may go, the usual one first."""
-    kind, what = wanted.mechanism, wanted.mechanism.words[0]
+    kind, what = wanted.mechanism, wanted.title
     if wanted.count < 1:
         raise InputError(f"{wanted.count} {what}s cannot be built. Ask for one at least, or leave it out.")
     usual = [side for side in kind.sides if side in sides and _fits(kind, sides[side])]

@@ -319,8 +319,9 @@ def _telescope(place: Place) -> None:
 def _bail(place: Place) -> None:
     """A bow on two pins, which lies down to either side; where there is no floor, its ears stand on the rim."""
     x, _, z = place.middle
-    half = min(0.42 * place.area.width, 0.2) if place.hollow else 0.5 * (place.area.width + place.area.wall)
     gap, ear, pin, rise = place.clearance, 0.008, 0.005, 0.022
+    on_rim = 0.5 * (place.area.width + place.area.wall + ear) + 2.0 * pin + gap
+    half = min(0.42 * place.area.width, 0.2) if place.hollow else on_rim
     high = rise + 0.8 * half
     solids = [rod(pin, (x - half, -high, z), (x + half, -high, z))]
     for sign in (-1.0, 1.0):

@@ -72,6 +72,7 @@ def read_composition(sentence: str) -> Composition:
     width, depth, height = reader.size
     return Composition(
         body=reader.body,
+        said=reader.said,
         wanted=tuple(reader.wanted),
         size=(width, depth, height),
         material=reader.of_body.material,
@@ -84,11 +85,11 @@ def told(composition: Composition) -> str:
     """Return a sentence that `read_composition` understands as this composition, its openness and lengths apart."""
     items = [_told(item) for item in composition.wanted]
     listed = " and ".join([*([", ".join(items[:-1])] if items[1:] else []), items[-1]])
-    return f"{_phrase(1, composition.color, composition.material, composition.body.words[0])} with {listed}"
+    return f"{_phrase(1, composition.color, composition.material, composition.title)} with {listed}"
 
 
 def _told(item: Wanted) -> str:
-    noun = item.mechanism.words[0] + ("s" if item.count > 1 else "")
+    noun = item.title + ("s" if item.count > 1 else "")
     return _phrase(item.count, item.color, item.material, noun) + (f" on the {item.side} side" if item.side else "")
 
 
@@ -105,6 +106,7 @@ class _Reader:
         self._tokens = tokens
         self._look = _Look()
         self.body: Body | None = None
+        self.said = ""
         self.of_body = _Look()
         self.wanted: list[Wanted] = []
         self.excluded: list[Mechanism] = []
@@ -175,6 +177,7 @@ class _Reader:
         self.wanted.append(
             Wanted(
                 mechanism=mechanism,
+                said=_unusual(words, mechanism.words),
                 count=look.count or (2 if plural else 1),
                 side=side,
                 material=look.material,
@@ -189,6 +192,7 @@ class _Reader:
         if named is None:
             return 0
         words, self.body = named
+        self.said = _unusual(words, self.body.words)
         self.of_body = self._described_so_far()
         if self.of_body.count not in (None, 1):
             self.left.append(f"{self.of_body.count} {' '.join(words)}")
@@ -235,6 +239,11 @@ class _Reader:
             return "", 0
         skipped = words[1:].index(place[0])
         return _SIDES[place[0]], 2 + skipped + (len(place) > 1 and place[1] in _SIDE_NOUNS)
+
+
+def _unusual(words: tuple[str, ...], names: Sequence[str]) -> str:
+    said = next(name for name in names if tuple(name.replace("-", " ").split()) == words)
+    return "" if said == names[0] else said
 
 
 def _longest(texts: tuple[str, ...], named: Mapping[tuple[str, ...], _Kind]) -> tuple[tuple[str, ...], _Kind] | None:

@@ -85,14 +85,11 @@ def _composed(sentence: str) -> Request:
     """Read a sentence as mechanisms on a body, and see that they can be built."""
     composition = read_composition(sentence)
     compose(composition)
-    told = [
-        f"{item.count} {item.mechanism.words[0]}{f' on the {item.side}' if item.side else ''}"
-        for item in composition.wanted
-    ]
+    told = [f"{item.count} {item.title}{f' on the {item.side}' if item.side else ''}" for item in composition.wanted]
     return Request(
-        family=composition.body.words[0].replace(" ", "_"),
+        family=composition.title.replace(" ", "_"),
         values={},
-        understood=(composition.body.words[0], *told),
+        understood=(composition.title, *told),
         composition=composition,
     )
 
