@@ -22,6 +22,7 @@ are made from it. The functions stand in `validation/checks`; reading them loads
 from __future__ import annotations
 
 import inspect
+import re
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypedDict
@@ -30,7 +31,7 @@ from kinematify.simulation.engines import ENGINES
 from kinematify.validation.finding import Finding, Severity, Status, not_finished
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.validation.finding import Blame
 
@@ -175,6 +176,8 @@ class OpenCheck:
         after which later stages may read the file all the same.
         """
         check = REGISTRY[self.id]
+        names = [name for name in (joint, link, *(pair or ())) if name is not None]
+        message, remedy = (_with_numbers_quoted(text, names) for text in (message, remedy))
         self.harmful |= (severity or check.severity) is Severity.ERROR and not harmless
         self.findings.append(
             Finding(
@@ -207,6 +210,17 @@ class OpenCheck:
     def block(self, reason: str) -> None:
         """Say that an earlier failure keeps it from running."""
         self.status, self.reason = Status.BLOCKED, reason
+
+
+_BEFORE_NAME = r"(?:^|\b(?:[Jj]oints?|[Ll]inks?|[Mm]oving|[Ww]hile|of|and|If|Give) )"
+_UNIT = r"(?![\w.]| ?(?:mm|m|rad|deg|kg|N|J|s|%|times|joints|links|to)\b)"
+
+
+def _with_numbers_quoted(text: str, names: Sequence[str]) -> str:
+    """Return a text with names in quotes that are numbers, so that nobody takes them for values."""
+    for name in {name for name in names if name.isdecimal()}:
+        text = re.sub(rf"({_BEFORE_NAME}){name}{_UNIT}", rf"\g<1>'{name}'", text)
+    return text
 
 
 def check(

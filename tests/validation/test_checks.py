@@ -121,3 +121,18 @@ def test_the_example_of_contributing_is_the_code() -> None:
 
 def test_what_workers_have_imported_beforehand_is_there() -> None:
     assert [name for name in _PRELOADED if importlib.util.find_spec(name) is None] == []  # the server would not say so
+
+
+@pytest.mark.parametrize(
+    ("message", "told"),
+    [
+        ("Driven from 0 to 12 rad, joint 12 stops at 12 mm.", "Driven from 0 to 12 rad, joint '12' stops at 12 mm."),
+        ("12 is declared to go to 12.5 rad.", "'12' is declared to go to 12.5 rad."),
+        ("Moving 12 alone, base and 3 meet in 12 of 120.", "Moving '12' alone, base and '3' meet in 12 of 120."),
+    ],
+)
+def test_names_that_are_numbers_stand_in_quotes(message: str, told: str) -> None:
+    result = OpenCheck(id="KV312", engine=None)
+    result.find(message, "Mend it.", joint="12", pair=("base", "3"))
+    assert result.findings[0].message == told
+    assert result.findings[0].joint == "12"

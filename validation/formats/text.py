@@ -35,10 +35,15 @@ def printable(text: str) -> str:
 def where(finding: Finding) -> str:
     """The joint, the link or the pair that a finding is about; empty if it is about the whole model."""
     if finding.pair is not None:
-        between = " - ".join(finding.pair)
-        return f"{between} (joint {finding.joint})" if finding.joint else between
+        between = " - ".join(map(_named, finding.pair))
+        return f"{between} (joint {_named(finding.joint)})" if finding.joint else between
     names = (("joint", finding.joint), ("link", finding.link))
-    return ", ".join(f"{kind} {name}" for kind, name in names if name is not None)
+    return ", ".join(f"{kind} {_named(name)}" for kind, name in names if name is not None)
+
+
+def _named(name: str) -> str:
+    """A name in quotes where it is a number, so that nobody takes it for a value."""
+    return f"'{name}'" if name.isdecimal() else name
 
 
 def configuration(q: Mapping[str, float] | None) -> str:
