@@ -208,7 +208,7 @@ _PIP_ROBOTS = (
 
 
 def _pip_objects() -> tuple[BenchObject, ...]:
-    share = _example_robot_data()
+    share = example_robots()
     return tuple(
         BenchObject(
             name=name,
@@ -222,8 +222,12 @@ def _pip_objects() -> tuple[BenchObject, ...]:
     )
 
 
-def _example_robot_data() -> Path:
-    """Folder that holds the installed `example-robot-data` ROS package; the wheel has no module that names it."""
+def example_robots() -> Path:
+    """Return the folder that holds the installed ROS package `example-robot-data`; its wheel has no module.
+
+    Raises:
+        EnvironmentFault: It is not installed.
+    """
     try:
         package = distribution("example-robot-data")
     except PackageNotFoundError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
@@ -12,9 +13,11 @@ from kinematify.cli.app import run
 from kinematify.errors import InputError
 from kinematify.evaluation.record import document, load_report, write_report
 from kinematify.evaluation.run import RESULTS
+from kinematify.evaluation.studies.published import Judged, Judgement, load_judged
 from kinematify.evaluation.studies.same_joints import differences
 from kinematify.evaluation.study import file_stem, load_study, load_study_report, study_names
 from kinematify.evaluation.tables import benchmark_blocks
+from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
 
 REPORTS = ROOT / "results"
@@ -100,7 +103,7 @@ def test_a_study_runs_goes_on_and_ends_with_1_on_faults(
         (["refinement", "--tiers", "cheap"], "'cheap' is none of geometry, engines, task"),
         (["detection", "--only", "both"], "--only 'both' does not fit"),
         (["detection", "--count", "0"], "--count '0' does not fit"),
-        (["published", "--data", "no/such/folder"], "no/such/folder"),
+        (["published", "--folder", "no/such/folder"], "no/such/folder"),
         (["same-joints", "--against", "no.json"], "no.json"),
         (["voters", "--tables", "-o", "no/such/folder"], "is not a benchmark report"),
     ],
@@ -116,3 +119,22 @@ def test_wrong_words_end_with_2(
 def test_an_unknown_study_is_refused_with_the_known_ones() -> None:
     with pytest.raises(InputError, match=r"There are .*calibration, criteria"):
         load_study("alchemy")
+
+
+def test_the_first_judgement_that_fits_a_finding_counts() -> None:
+    entries = [
+        Judgement(model="arm", check="KV31*", where="el*", verdict="right", reason="seen"),
+        Judgement(model="*", check="KV312", verdict="wrong", reason="not seen"),
+    ]
+    judged = Judged(judged=entries)
+    finding = {"check": "KV312", "joint": "elbow", "link": None, "pair": None}
+    assert judged.of("arm", finding) is entries[0]
+    assert judged.of("arm", {**finding, "joint": None, "pair": ["base", "elbow"]}) is entries[0]
+    assert judged.of("arm", {**finding, "joint": "wrist"}) is entries[1]
+    assert judged.of("leg", finding) is entries[1]
+    assert judged.of("leg", {**finding, "check": "KV311"}) is None
+
+
+def test_every_shipped_judgement_names_a_check() -> None:
+    for entry in load_judged().judged:
+        assert any(fnmatchcase(check, entry.check) for check in CHECKS), entry
