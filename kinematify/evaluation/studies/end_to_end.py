@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import yaml
 from pydantic import Field, TypeAdapter
 
+from kinematify import evaluation
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
@@ -53,7 +54,7 @@ class EndToEndOptions(Options):
     """Which sentences."""
 
     sentences: tuple[Path, ...] = Field(
-        (Path("tests/generate/procedural/sentences.yaml"),),
+        (Path(evaluation.__path__[0], "sentences", "written.yaml"),),
         description="YAML lists of {text, family}, separated by commas.",
     )
     each: int | None = Field(None, ge=1, description="The first so many sentences of every category.")

@@ -85,6 +85,7 @@ FAMILY = Family(
     title="desk lamp",
     words=("desk lamp", "lamp", "table lamp", "reading lamp", "task lamp", "work lamp", "desk light"),
     material="metal",
+    part_words={"arm": ("arm segment", "segment")},
     parameters=(
         Parameter(
             name="joints",

@@ -73,7 +73,10 @@ FAMILY = Family(
             default="dial",
             choices=("dial", "keypad"),
             help="What it is unlocked by.",
-            choice_words={"dial": ("combination lock", "dial lock"), "keypad": ("buttons", "key pad", "digital lock")},
+            choice_words={
+                "dial": ("combination lock", "dial lock", "round dial"),
+                "keypad": ("buttons", "key pad", "digital lock"),
+            },
         ),
         Parameter(
             name="handle",

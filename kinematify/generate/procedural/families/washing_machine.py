@@ -109,6 +109,7 @@ FAMILY = Family(
         "front loader",
     ),
     material="metal",
+    part_words={"door": ("round door", "porthole")},
     parameters=(
         Parameter(name="width", default=0.6, unit="m", bounds=(0.4, 0.9), usual=(0.5, 0.7), help="Outer width."),
         Parameter(name="height", default=0.85, unit="m", bounds=(0.55, 1.2), usual=(0.75, 0.95), help="Outer height."),

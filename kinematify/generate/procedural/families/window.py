@@ -156,7 +156,12 @@ FAMILY = Family(
             },
         ),
         Parameter(
-            name="sashes", default=1, bounds=(1, 3), usual=(1, 3), words=("sash", "window", "pane"), help="That move."
+            name="sashes",
+            default=1,
+            bounds=(1, 3),
+            usual=(1, 3),
+            words=("sash", "window", "pane", "casement"),
+            help="That move.",
         ),
         Parameter(name="rows", default=1, bounds=(1, 4), usual=(1, 2), help="Of panes in a sash."),
         Parameter(name="columns", default=1, bounds=(1, 3), usual=(1, 2), help="Of panes in a sash."),

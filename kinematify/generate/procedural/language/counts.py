@@ -129,6 +129,9 @@ def _counts_of(reading: Reading, parameter: Parameter) -> list[_Count]:
             read = tuple(singular(reading.text(i), frozenset(words)) for i in where)
             if read == words and not reading.used & set(where):
                 number, counting = _number_before(reading, k)
+                of_the_whole = number is None or reading.text(counting[-1]) in ARTICLES
+                if of_the_whole and k < min(reading.named):  # a sash window is a kind of window
+                    continue
                 whole = None if number is None else _whole(reading, number, where.stop - 1)
                 found.append(_Count(number=whole, where=where, counting=counting))
                 reading.used.update((*where, *counting))

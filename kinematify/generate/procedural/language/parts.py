@@ -159,7 +159,7 @@ class PartReader:
             self._movement_before(k, end, stems)
             self._movement_behind(k, end, stems)
         for k, end, stems in self.nouns():
-            if not self.reading.used & set(range(k, end)):
+            if k > min(self.reading.named) and not self.reading.used & set(range(k, end)):
                 self._presence(k, end, stems)
 
     def _movement_before(self, k: int, end: int, stems: tuple[str, ...]) -> None:

@@ -122,9 +122,55 @@ def _built(reading: Reading) -> Blueprint:
             words = reading.said.get(name)
             raise InputError(f"{error} The text says {words!r}." if words else str(error)) from error
     try:
-        return build(reading.family, reading.values)
+        made = build(reading.family, reading.values)
     except InputError as error:
         raise InputError(f"{error} The text says {', '.join(map(repr, reading.said.values()))}.") from error
+    for parameter in (p for p in reading.family.parameters if p.name in reading.said):
+        in_layout = "layout" in reading.values and CELLS.keys() & set(nouns_of(parameter))  # says it once more
+        if not in_layout and not _matters(reading, parameter, reading.values, made):
+            made = _built_so_that_it_matters(reading, parameter)
+    return made
+
+
+def _built_so_that_it_matters(reading: Reading, parameter: Parameter) -> Blueprint:
+    """The object with the kind that has what was asked for: two handles are of a tap with a handle on either side.
+
+    Raises:
+        InputError: There is no such kind.
+    """
+    for kind in reading.family.parameters:
+        for choice in kind.choices if kind.name not in reading.values else ():
+            values = {**reading.values, kind.name: choice}
+            made = build(reading.family, values)
+            if _matters(reading, parameter, values, made):
+                reading.take(kind.name, choice, f"{kind.name}: {choice}")
+                return made
+    raise InputError(
+        f"What the text says with {reading.said[parameter.name]!r} changes nothing of such a {reading.family.title}. "
+        "Say it differently or leave it out."
+    )
+
+
+def _matters(reading: Reading, parameter: Parameter, values: Mapping[str, Value], made: Blueprint) -> bool:
+    """Whether another value of a parameter would make another object."""
+    value = values[parameter.name]
+    if isinstance(value, str):
+        others: list[Value] = [choice for choice in parameter.choices if choice != value]
+    else:
+        low, high = parameter.bounds or (value, value)
+        others = [type(value)(end) for end in (value - 1, value + 1, low, high) if low <= end <= high and end != value]
+    for other in others:
+        try:
+            if _shape(build(reading.family, {**values, parameter.name: other})) != _shape(made):
+                return True
+        except InputError:
+            return True
+    return not others
+
+
+def _shape(made: Blueprint) -> tuple[object, ...]:
+    joints = ((joint.child, joint.kind, tuple(joint.axis), tuple(joint.pivot), joint.upper) for joint in made.joints)
+    return (*((part.name, part.mesh_hash) for part in made.parts), *joints)
 
 
 def _left(reading: Reading) -> tuple[str, ...]:
