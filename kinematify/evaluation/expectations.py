@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import yaml
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
+from kinematify.generate.composer.bodies import BODIES
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
@@ -36,8 +39,8 @@ _SIZE = 0.02  # of a size, by which it may be off
 _ANGLE_DEG = 0.1
 _CALLED = {
     "arm": ("arm", "link"), "blade": ("blade", "rotor"), "carriage": ("carriage", "bridge", "ram"),
-    "caster": ("castor", "caster"), "door": ("door", "leaf"), "globe": ("ball",), "lid": ("lid", "screen"),
-    "casement": ("sash",), "rotor": ("rotor",), "switch": ("rocker", "switch"), "handle": ("handle", "lever"),
+    "caster": ("castor", "caster"), "door": ("door", "leaf", "sliding_door"), "globe": ("ball",), "lid": ("lid", "screen"),
+    "needle": ("gauge", "needle"), "tailgate": ("flap",), "casement": ("sash",), "rotor": ("rotor",), "switch": ("rocker", "switch", "lever"), "handle": ("handle", "lever"), "tray": ("tray", "pull_out_shelf"),
 }  # fmt: skip
 """How a reader calls what the models call otherwise."""
 _KINDS = {
@@ -84,7 +87,8 @@ def _family(made: Blueprint, closed: Blueprint, wanted: str) -> list[str]:
 
 def _object(made: Blueprint, closed: Blueprint, wanted: list[str]) -> list[str]:
     family = FAMILIES.get(made.family)
-    names = {made.family.replace("_", " "), *(family.words if family else ())}
+    kind = made.family.replace("_", " ")
+    names = family.words if family else next(body.words for body in BODIES if body.words[0] == kind)
     called = any(f" {name}".endswith(f" {word}") for name in names for word in wanted)
     return [] if called else [f"built is a {made.family}"]
 
@@ -205,13 +209,24 @@ def _lacks(made: Blueprint, closed: Blueprint, wanted: list[str]) -> list[str]:
 
 
 def _is_there(made: Blueprint, noun: str) -> bool:
-    chosen = [made.parameters.get(name, "none") for name in (noun, f"{noun}s")]
+    chosen = [value for name, value in made.parameters.items() if _is_last_word(noun, name.removesuffix("s"))]
     return bool(_parts(made, noun)) or any(value not in ("none", 0) for value in chosen)
 
 
+def _is_last_word(word: str, name: str) -> bool:
+    return f"_{name}".endswith(f"_{word}")
+
+
 def _count(made: Blueprint, closed: Blueprint, wanted: int) -> list[str]:
-    copies = [part for part in made.parts if _stem(part.name) == _stem(made.root)]
-    return [] if len(copies) == wanted else [f"{len(copies)} of them"]
+    base = made.parts[0]
+    bodies, _ = connected_components(
+        coo_array((np.ones(len(base.faces) * 2), _edges(base)), shape=2 * (len(base.vertices),))
+    )
+    return [] if bodies == wanted else [f"{bodies} of them"]
+
+
+def _edges(part: Part) -> tuple[np.ndarray, np.ndarray]:
+    return np.repeat(part.faces[:, 0], 2), part.faces[:, 1:].reshape(-1)
 
 
 # ---- what is expected of parts -------------------------------------------------------------------------------------
@@ -258,7 +273,7 @@ def _of_kind(joint: BlueprintJoint, kind: str) -> bool:
 def _parts(made: Blueprint, noun: str) -> list[Part]:
     """Parts that a reader calls so: their name, or its last word, without a number."""
     called = _CALLED.get(noun, (noun,))
-    return [part for part in made.parts if any(f"_{_stem(part.name)}".endswith(f"_{stem}") for stem in called)]
+    return [part for part in made.parts if any(_is_last_word(stem, _stem(part.name)) for stem in called)]
 
 
 def _stem(name: str) -> str:

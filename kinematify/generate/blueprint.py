@@ -108,6 +108,52 @@ class Blueprint:
         parts = tuple(_placed(part, T_new_old[part.name]) for part in self.parts)
         return replace(self, parts=parts, joints=tuple(joints))
 
+    def scaled(self, factor: float) -> Blueprint:
+        """Return the object larger or smaller in all directions, about the origin of the world frame."""
+
+        def joint(given: BlueprintJoint) -> BlueprintJoint:
+            way = factor if given.kind is JointType.PRISMATIC else 1.0
+            return replace(
+                given,
+                pivot=factor * given.pivot,
+                lower=way * given.lower,
+                upper=way * given.upper,
+                value=way * given.value,
+            )
+
+        parts = tuple(replace(part, vertices=factor * part.vertices) for part in self.parts)
+        return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints))
+
+    def repeated(self, count: int, pitch: float) -> Blueprint:
+        """Return several of it along x, their base links one part.
+
+        Args:
+            count: How many.
+            pitch: From one to the next [m].
+        """
+        base, *others = self.parts
+        steps = [(k, np.array([k * pitch, 0.0, 0.0])) for k in range(count)]
+        whole = replace(
+            base,
+            vertices=np.concatenate([base.vertices + step for _, step in steps]),
+            faces=np.concatenate([base.faces + k * len(base.vertices) for k, _ in steps]),
+        )
+
+        def name(given: str, k: int) -> str:
+            return given if k == 0 or given == base.name else f"{given}_{k + 1}"
+
+        parts = [
+            replace(part, name=name(part.name, k), vertices=part.vertices + s) for k, s in steps for part in others
+        ]
+        joints = [
+            replace(
+                joint, parent=name(joint.parent, k), child=name(joint.child, k), pivot=joint.pivot + step,
+                mimic=joint.mimic and replace(joint.mimic, joint=name(joint.mimic.joint, k)),
+            )
+            for k, step in steps for joint in self.joints
+        ]  # fmt: skip
+        return replace(self, parts=(whole, *parts), joints=tuple(joints))
+
 
 def _placed(part: Part, transform: FloatArray) -> Part:
     return replace(part, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3])

@@ -61,6 +61,8 @@ class Family:
     """Adds bodies and joints to the workshop."""
     material: str = "wood"
     """Of its base, if nothing is asked for."""
+    kinds: Mapping[str, Mapping[str, Value]] = field(default_factory=dict)
+    """What is usual of those that are called by one of the words, where a sentence says nothing else."""
     part_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How people call its parts, besides the names that they have without their numbers."""
 

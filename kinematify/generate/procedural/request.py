@@ -6,12 +6,15 @@ import difflib
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.errors import InputError
 from kinematify.generate.composer.compose import compose
 from kinematify.generate.composer.sentence import NoBodyError, read_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.understand import understand
+from kinematify.generate.procedural.language.sizes import OVERALL
+from kinematify.generate.procedural.language.understand import NotUnderstoodError, understand
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
     from kinematify.generate.composer.compose import Composition
     from kinematify.generate.procedural.family import Family, Value
     from kinematify.generate.procedural.language.parts import PartRequirement
+
+_SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
+_GAP = 0.05  # between several [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,6 +42,10 @@ class Request:
     """What is asked of its parts, besides the values."""
     composition: Composition | None = None
     """Of mechanisms on a body, where no family builds it."""
+    overall: tuple[str, float] | None = None
+    """A size of the whole [m] that it is scaled to."""
+    copies: int = 1
+    """How many, side by side."""
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object; a seed draws what was not asked for.
@@ -46,9 +56,14 @@ class Request:
         if self.composition is not None:
             return compose(self.composition, seed=seed)
         blueprint = build(FAMILIES[self.family], self.values, seed=seed)
+        if self.overall is not None:
+            blueprint = _scaled_to(blueprint, *self.overall)
         for requirement in self.requirements:
             blueprint = requirement.applied(blueprint)
-        return blueprint
+        if self.copies == 1:
+            return blueprint
+        width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
+        return blueprint.repeated(self.copies, width + _GAP)
 
 
 def from_text(sentence: str, *, lenient: bool = False) -> Request:
@@ -63,7 +78,7 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
     """
     try:
         meant = understand(sentence, FAMILIES)
-    except InputError as error:
+    except NotUnderstoodError as error:
         try:
             return _composed(sentence)
         except InputError as reason:
@@ -78,6 +93,8 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
         understood=meant.understood,
         ignored=meant.ignored,
         requirements=meant.requirements,
+        overall=meant.overall,
+        copies=meant.copies,
     )
 
 
@@ -92,6 +109,26 @@ def _composed(sentence: str) -> Request:
         understood=(composition.title, *told),
         composition=composition,
     )
+
+
+def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
+    """Return an object that is so wide, deep or high when it is closed.
+
+    Raises:
+        InputError: Its joints and walls would be too small or too large for what they are.
+    """
+    there = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[OVERALL.index(size)])
+    factor = metres / there
+    if not 1.0 / _SCALES <= factor <= _SCALES:
+        raise InputError(
+            f"The {size} of a {FAMILIES[blueprint.family].title} cannot be {metres:g} m; it can be from "
+            f"{there / _SCALES:.2g} m to {there * _SCALES:.2g} m."
+        )
+    return blueprint.scaled(factor)
+
+
+def _closed(blueprint: Blueprint) -> Blueprint:
+    return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
 
 
 def from_category(name: str, settings: Mapping[str, str]) -> Request:

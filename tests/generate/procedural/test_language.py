@@ -55,7 +55,9 @@ def test_slips_of_spelling_are_told_and_mended_only_if_that_is_asked_for():
         ("a truck", "truck"),
         ("a door handle", "door handle"),
         ("two cabinet doors", "cabinet"),
-        ("two nightstands", "two"),
+        ("fifty nightstands", "at most 12"),
+        ("a robot arm with a reach of 1 m, 3 m tall", "3 m tall"),
+        ("a humanoid robot 30 m tall", "can be from"),
         ("a laptop bag", "bag"),
         ("a sash window", "sash"),
         ("a microwave with a handle on the left", "left"),
@@ -70,7 +72,7 @@ def test_slips_of_spelling_are_told_and_mended_only_if_that_is_asked_for():
 )
 def test_nothing_else_is_built_than_what_is_asked_for(text, words):
     with pytest.raises(InputError, match=words):
-        from_text(text)
+        from_text(text).build()
 
 
 def test_parts_are_asked_for_by_their_names_and_by_how_they_move():
@@ -101,6 +103,28 @@ def test_the_drawer_that_is_named_stands_open_and_no_other():
     assert lids["seat"].value == 0.0
     with pytest.raises(InputError, match=r"no further than 0\.386 m"):
         from_text("a cabinet with three drawers, the top drawer pulled out by 2 m")
+
+
+def test_several_stand_side_by_side_on_one_base_link():
+    one, three = from_text("a nightstand").build(), from_text("three identical nightstands next to each other").build()
+    assert len(three.joints) == 3 * len(one.joints)
+    assert len(three.parts) == 3 * (len(one.parts) - 1) + 1
+    width = np.ptp(one.assembly.bounds, axis=0)[0]
+    assert np.ptp(three.assembly.bounds, axis=0)[0] > 3.0 * width
+    assert three.joint_above["drawer_1_3"].pivot[0] == pytest.approx(
+        one.joint_above["drawer_1"].pivot[0] + 2.0 * (width + 0.05)
+    )
+
+
+def test_the_whole_is_scaled_to_a_size_that_no_parameter_sets():
+    small, tall = from_text("a robot dog").build(), from_text("a robot dog 1 m tall").build()
+    factor = 1.0 / np.ptp(small.assembly.bounds, axis=0)[2]
+    assert np.ptp(tall.assembly.bounds, axis=0)[2] == pytest.approx(1.0)
+    np.testing.assert_allclose(tall.joints[1].pivot, factor * small.joints[1].pivot)
+    lamp, low = from_text("a stapler").build(), from_text("a stapler 5 cm high").build()
+    assert [joint.upper for joint in low.joints] == [joint.upper for joint in lamp.joints]
+    gantry, wide = (from_text(text).build().scaled(factor) for text, factor in (("a gantry", 1.0), ("a gantry", 2.0)))
+    assert [joint.upper for joint in wide.joints] == [2.0 * joint.upper for joint in gantry.joints]
 
 
 def test_small_and_tall_are_ends_of_what_is_usual():

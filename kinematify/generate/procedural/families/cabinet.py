@@ -11,7 +11,7 @@ from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_d
 from kinematify.generate.procedural.pieces.handles import HANDLES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kinematify.generate.procedural.family import Values
     from kinematify.generate.procedural.layout import Cell
@@ -73,6 +73,21 @@ def _side(cells: Sequence[Cell], cell: Cell) -> str:
     return "right" if alone else "left"
 
 
+_NIGHTSTAND = {"width": 0.45, "height": 0.55, "depth": 0.4, "doors": 0, "drawers": 2}
+_WARDROBE = {"width": 1.0, "height": 2.0, "depth": 0.6, "doors": 2, "drawers": 0}
+_SIDEBOARD = {"width": 1.6, "height": 0.8, "depth": 0.45, "doors": 3, "drawers": 0}
+_CHEST = {"doors": 0, "drawers": 4}
+_KINDS: dict[str, Mapping[str, float | int | str]] = {
+    **dict.fromkeys(("nightstand", "bedside table"), _NIGHTSTAND),
+    **dict.fromkeys(("wardrobe", "armoire", "closet"), _WARDROBE),
+    **dict.fromkeys(("sideboard", "credenza"), _SIDEBOARD),
+    **dict.fromkeys(("chest of drawer", "dresser", "drawer unit", "commode"), _CHEST),
+    **dict.fromkeys(("filing cabinet", "file cabinet"), _CHEST | {"width": 0.45, "height": 1.3}),
+    "locker": {"width": 0.35, "height": 1.8, "doors": 1, "drawers": 0},
+    "bookcase": {"width": 0.8, "height": 1.8, "depth": 0.35, "doors": 2, "drawers": 0, "shelves": 2},
+    **dict.fromkeys(("tv stand", "tv unit"), _SIDEBOARD | {"height": 0.5}),
+}
+
 FAMILY = Family(
     name="cabinet",
     title="cabinet or chest",
@@ -109,6 +124,7 @@ FAMILY = Family(
         "armoire",
     ),
     material="wood",
+    kinds=_KINDS,
     parameters=(
         Parameter(name="width", default=0.8, unit="m", bounds=(0.1, 5.0), usual=(0.4, 1.2), help="Outer width."),
         Parameter(name="height", default=0.9, unit="m", bounds=(0.1, 4.0), usual=(0.5, 1.8), help="Outer height."),

@@ -9,7 +9,7 @@ from kinematify.errors import InputError
 from kinematify.generate.procedural.language.arrangement import Mention
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.sizes import JOINING
-from kinematify.generate.procedural.language.words import ARTICLES, singular
+from kinematify.generate.procedural.language.words import ARTICLES, UNITS, singular
 from kinematify.generate.procedural.layout import CELLS
 
 if TYPE_CHECKING:
@@ -26,6 +26,11 @@ _PLACES = {
 """Words for a place of its own, by which one count is told from another of the same thing."""
 _SIDES = (("either", "each", "both"), ("side", "sides", "end", "ends"))
 _LEADING = ("on", "at", "to", "in", "the", "further", "more", "other", "another", "below", "above", "under", "over")
+_TOGETHER = (
+    ("identical",), ("equal",), ("same",), ("next", "to", "each", "other"), ("side", "by", "side"), ("in", "a", "row"),
+    ("beside", "each", "other"),
+)  # fmt: skip
+_MOST_COPIES = 12
 _ADJECTIVES = 2  # at most, between a grid and what stands in it
 
 
@@ -234,6 +239,28 @@ def read_counted_name(reading: Reading) -> None:
     if parameter is not None and number is not None and number > 1:
         whole = _whole(reading, number, where.stop - 1)
         reading.take(parameter.name, whole, f"{whole} {parameter.name}", *counting)
+
+
+def read_copies(reading: Reading) -> None:
+    """`two nightstands`, `three identical nightstands next to each other`."""
+    number, counting = _number_before(reading, min(reading.named))
+    if number is None or {reading.text(counting[-1]), reading.text(counting[-1] + 1)} & {*ARTICLES, *UNITS}:
+        return
+    if _whole(reading, number, max(reading.named)) <= 1:
+        return
+    if number > _MOST_COPIES:
+        raise InputError(
+            f"The text asks for {number:g} {reading.tokens[max(reading.named)].given}; at most {_MOST_COPIES} are "
+            "built side by side."
+        )
+    reading.copies = int(number)
+    reading.understood.append(f"{reading.copies} side by side, on one base link")
+    reading.used.update(counting)
+    for phrase in _TOGETHER:
+        for k in range(len(reading.tokens) - len(phrase) + 1):
+            where = range(k, k + len(phrase))
+            if tuple(reading.text(i) for i in where) == phrase and not reading.used & set(where):
+                reading.used.update(where)
 
 
 def _whole(reading: Reading, number: float, k: int) -> int:

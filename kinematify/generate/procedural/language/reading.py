@@ -29,6 +29,9 @@ class Reading:
     """Where the family is named; a choice may be part of its name."""
     counted: set[int] = field(default_factory=set)
     """Nouns that were counted; a choice may say their kind, as in `two cross handles`."""
+    overall: tuple[str, float] | None = None
+    """Size of the whole that no parameter sets, and metres."""
+    copies: int = 1
     mentions: list[Mention] = field(default_factory=list)
 
     def text(self, k: int) -> str:

@@ -28,13 +28,14 @@ SIZE_WORDS = {
     "narrow": (0, ("width",)), "long": (1, ("length", "width")),
 }  # fmt: skip
 """Words for a size without a number: which end of what is usual, and of which sizes; of all where none is named."""
+OVERALL = ("width", "depth", "height")
+"""Sizes of a whole, along x, y and z."""
 JOINING = ("x", "by")
 """Between numbers that are multiplied."""
 _INSTEAD = {
-    "width": ("diameter", "span", "length"),
+    "width": ("diameter", "span"),
     "length": ("width",),
     "diameter": ("width", "span"),
-    "height": ("length",),
     "reach": ("length",),
 }
 """What a word for a size means in families that do not have its first sense, the likelier first."""
@@ -69,6 +70,20 @@ def read_size_words(reading: Reading) -> None:
         if meant and not any(item.text in ("with", "and") for item in between):
             reading.understood.append(token.text)
             reading.used.add(k)
+
+
+def read_overall(reading: Reading) -> None:
+    """`1.7 m tall`, of what has no such parameter: the whole is made so large."""
+    if any(p.unit == "m" and p.name in reading.said for p in reading.family.parameters):
+        return  # which scaling would change
+    for k in range(len(reading.tokens)):
+        length = length_at(reading, k) if k not in reading.used else None
+        word = reading.text(length[1]) if length else ""
+        name = next((name for name in OVERALL if word in DIMENSIONS[name]), "")
+        if length and name and reading.overall is None and not any(p.name == name for p in reading.family.parameters):
+            reading.overall = (name, length[0])
+            reading.understood.append(f"{length[0]:g} m {word}")
+            reading.used.update(range(k, length[1] + 1))
 
 
 def length_at(reading: Reading, k: int) -> tuple[float, int] | None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from kinematify.errors import InputError
 from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.language.arrangement import layout_of
-from kinematify.generate.procedural.language.counts import read_counted_name, read_counts, read_grids
+from kinematify.generate.procedural.language.counts import read_copies, read_counted_name, read_counts, read_grids
 from kinematify.generate.procedural.language.openness import FRACTIONS, OPENNESS, read_openness
 from kinematify.generate.procedural.language.parts import MOTIONS, PartReader
 from kinematify.generate.procedural.language.reading import Reading, nouns_of
@@ -20,6 +20,7 @@ from kinematify.generate.procedural.language.sizes import (
     DIMENSIONS,
     SIZE_WORDS,
     read_bare_length,
+    read_overall,
     read_size_words,
     read_sizes,
 )
@@ -56,6 +57,10 @@ _MEANING_SIGNS = ("%", "°", "/", "+")
 _SUGGESTED = 3  # words at most, of those that are not known
 
 
+class NotUnderstoodError(InputError):
+    """A sentence names nothing that is known, or has words that are not understood."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Understanding:
     """A sentence as it was understood."""
@@ -69,6 +74,10 @@ class Understanding:
     """Words that were not understood, as they were written, those that stand together in one; only if lenient."""
     requirements: tuple[PartRequirement, ...]
     """What is asked of the parts that no parameter sets."""
+    overall: tuple[str, float] | None
+    """``width``, ``depth`` or ``height`` of the whole [m], where no parameter sets it."""
+    copies: int
+    """How many of it, side by side."""
 
 
 def understand(sentence: str, families: Mapping[str, Family], *, lenient: bool = False) -> Understanding:
@@ -89,24 +98,45 @@ def understand(sentence: str, families: Mapping[str, Family], *, lenient: bool =
     family, where = _family(sentence, tokens, names, vocabulary)
     reading = Reading(tokens=tokens, family=family, used=set(where), named=frozenset(where))
     reading.understood.append(family.title)
-    for step in (read_sizes, read_grids, read_counts, read_counted_name, _choices, _parts_it_has, read_bare_length):
+    for step in (
+        read_sizes,
+        read_overall,
+        read_grids,
+        read_counts,
+        read_counted_name,
+        _choices,
+        _parts_it_has,
+        read_bare_length,
+    ):
         step(reading)
     _arrangement(reading)
     read_size_words(reading)
+    _usual_of_its_kind(reading)
     parts = PartReader(reading=reading, made=_built(reading))
     parts.looks()
     read_openness(reading, parts)
     parts.read()
+    read_copies(reading)
     left = _left(reading)
     if left and not lenient:
-        raise InputError(_not_understood(reading, left, vocabulary))
+        raise NotUnderstoodError(_not_understood(reading, left, vocabulary))
     return Understanding(
         family=family.name,
         values=dict(reading.values),
         understood=tuple(reading.understood),
         ignored=left,
         requirements=tuple(parts.requirements),
+        overall=reading.overall,
+        copies=reading.copies,
     )
+
+
+def _usual_of_its_kind(reading: Reading) -> None:
+    """A nightstand is a small cabinet with drawers alone; who counts anything counts all."""
+    name = " ".join(reading.text(k) for k in sorted(reading.named))
+    for key, value in reading.family.kinds.get(name, {}).items():
+        if not (reading.mentions and isinstance(value, int)):
+            reading.values.setdefault(key, value)
 
 
 def _built(reading: Reading) -> Blueprint:
@@ -244,7 +274,7 @@ def _family(
     having = next((k for k, token in enumerate(tokens) if token.text in _HAVING), len(tokens))
     found = _named(tokens[:end], names) or _named(tokens[:having], names)[:1]
     if not found:
-        raise InputError(_names_nothing(sentence, tokens, names))
+        raise NotUnderstoodError(_names_nothing(sentence, tokens, names))
     family, where = next((item for item in found if _counts_parts(tokens, item[0], found[-1][1])), found[0])
     for other, behind in found:
         if behind.start == where.stop:
