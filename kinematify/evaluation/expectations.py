@@ -39,8 +39,9 @@ _SIZE = 0.02  # of a size, by which it may be off
 _ANGLE_DEG = 0.1
 _CALLED = {
     "arm": ("arm", "link"), "blade": ("blade", "rotor"), "carriage": ("carriage", "bridge", "ram"),
-    "caster": ("castor", "caster"), "door": ("door", "leaf", "sliding_door"), "globe": ("ball",), "lid": ("lid", "screen"),
-    "needle": ("gauge", "needle"), "tailgate": ("flap",), "casement": ("sash",), "rotor": ("rotor",), "switch": ("rocker", "switch", "lever"), "handle": ("handle", "lever"), "tray": ("tray", "pull_out_shelf"),
+    "casement": ("sash",), "caster": ("castor", "caster"), "door": ("door", "leaf", "sliding_door"),
+    "globe": ("ball",), "handle": ("handle", "lever"), "lid": ("lid", "screen"), "needle": ("gauge", "needle"),
+    "switch": ("rocker", "switch", "lever"), "tailgate": ("flap",),
 }  # fmt: skip
 """How a reader calls what the models call otherwise."""
 _KINDS = {
@@ -271,9 +272,10 @@ def _of_kind(joint: BlueprintJoint, kind: str) -> bool:
 
 
 def _parts(made: Blueprint, noun: str) -> list[Part]:
-    """Parts that a reader calls so: their name, or its last word, without a number."""
+    """Parts that a reader calls so: their name without a number; where there is none, its last word."""
     called = _CALLED.get(noun, (noun,))
-    return [part for part in made.parts if any(_is_last_word(stem, _stem(part.name)) for stem in called)]
+    exact = [part for part in made.parts if _stem(part.name) in called]
+    return exact or [part for part in made.parts if any(_is_last_word(stem, _stem(part.name)) for stem in called)]
 
 
 def _stem(name: str) -> str:

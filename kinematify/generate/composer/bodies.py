@@ -134,8 +134,20 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     }
 
 
+def _car(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A car with bonnet, cabin and boot; it looks along -y."""
+    width, depth, height = size
+    half, sill, rail = 0.5 * width, 0.25 * height, 0.62 * height
+    front, back = 0.3 * depth, 0.78 * depth
+    cabin = box((-0.9 * half, front, rail - 0.01), (0.9 * half, back, height))
+    workshop.body(BODY, box((-half, 0, sill), (half, depth, rail)), cabin)
+    low = Opening(left=-0.32 * depth, right=0.32 * depth, bottom=sill, top=rail, depth=0.3 * width, wall=wall)
+    doorway = Opening(left=-0.2 * depth, right=0.2 * depth, bottom=sill, top=rail, depth=0.4 * width, wall=wall)
+    return {side: _flank(side, size, doorway, low, 0.5 * (front + back)) for side in ("left", "right")}
+
+
 def _flank(name: str, size: Size, doorway: Opening, axles: Opening, middle: float) -> Side:
-    """A side of a truck, its x counted from the middle of its door."""
+    """A side of a truck or a car, its x counted from the middle of its door."""
     width, depth, _ = size
     sign = -1.0 if name == "left" else 1.0
     shift = sign * (0.5 * depth - middle)
@@ -224,7 +236,7 @@ def _frame(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
 
 BODIES = (
     Body(
-        words=("cabinet", "cupboard", "locker", "sideboard", "kiosk"),
+        words=("cabinet", "cupboard", "locker", "sideboard", "kiosk", "shoe cabinet", "display cabinet"),
         size=(0.7, 0.45, 0.9),
         build=_block,
         material="wood",
@@ -234,7 +246,12 @@ BODIES = (
         size=(0.4, 0.22, 0.3),
         build=_block,
     ),
-    Body(words=("cart", "trolley", "tool cart", "utility cart"), size=(0.75, 0.45, 0.7), build=_block),
+    Body(words=("wardrobe", "armoire", "closet"), size=(1.2, 0.6, 2.0), build=_block, material="wood"),
+    Body(words=("tv stand", "tv unit"), size=(1.5, 0.4, 0.5), build=_block, material="wood"),
+    Body(words=("vending machine", "ticket machine"), size=(0.9, 0.8, 1.8), build=_block, material="metal"),
+    Body(words=("printer", "copier"), size=(0.5, 0.45, 0.35), build=_block),
+    Body(words=("mobile robot", "mobile base", "robot base"), size=(0.45, 0.45, 0.25), build=_block),
+    Body(words=("cart", "trolley", "tool cart", "tool trolley", "utility cart"), size=(0.75, 0.45, 0.7), build=_block),
     Body(words=("platform", "dolly", "base plate"), size=(0.8, 0.5, 0.1), build=_block),
     Body(
         words=("crate", "tub", "toolbox", "tool box", "bin", "container", "chest"),
@@ -249,6 +266,7 @@ BODIES = (
         build=_truck,
         material="plastic",
     ),
+    Body(words=("car", "toy car"), size=(0.8, 1.8, 0.6), build=_car),
     Body(words=("drum", "barrel", "tank"), size=(0.5, 0.5, 0.7), build=_drum),
     Body(words=("column", "post", "pedestal", "stand"), size=(0.36, 0.36, 1.0), build=_column),
     Body(words=("control panel", "panel", "board"), size=(0.6, 0.2, 0.45), build=_panel),

@@ -394,7 +394,7 @@ MECHANISMS = (
     ),
     Mechanism(words=("drawer",), sides=("front",), build=_drawer, arranged="stack", least=(0.12, 0.07), needs="room"),
     Mechanism(
-        words=("flap", "tailgate", "drop door"),
+        words=("flap", "tailgate", "drop door", "flap door", "tilting flap"),
         sides=("front", "back"),
         build=_flap,
         arranged="stack",
@@ -403,7 +403,7 @@ MECHANISMS = (
         needs="opening",
     ),
     Mechanism(
-        words=("lid", "hatch", "cover"),
+        words=("lid", "hatch", "cover", "scanner lid"),
         sides=("top",),
         build=_lid,
         arranged="row",
@@ -421,7 +421,7 @@ MECHANISMS = (
         needs="opening",
     ),
     Mechanism(
-        words=("tray", "pull-out shelf", "pull out shelf", "keyboard tray", "pull-out tray"),
+        words=("tray", "paper tray", "pull-out shelf", "pull out shelf", "keyboard tray", "pull-out tray"),
         sides=("front",),
         build=_shelf,
         arranged="stack",
@@ -479,7 +479,7 @@ MECHANISMS = (
         build=_telescope,
     ),
     Mechanism(
-        words=("carrying handle", "carry handle", "bail", "swing handle", "folding handle"),
+        words=("carrying handle", "handle", "carry handle", "bail", "swing handle", "folding handle"),
         sides=("top",),
         build=_bail,
         arranged="over",

@@ -50,6 +50,8 @@ def _fields(doors: int, freezer: str) -> list[tuple[float, float, float, float]]
         return [(0.0, 1.0, 0.0, 1.0)]
     if doors == 2 and freezer == "side":
         return [(0.0, 0.42, 0.0, 1.0), (0.42, 1.0, 0.0, 1.0)]
+    if doors == 2 and freezer == "none":
+        return [(0.0, 0.5, 0.0, 1.0), (0.5, 1.0, 0.0, 1.0)]
     low = 0.34 if freezer == "bottom" else 0.66
     halves = ((0.0, 0.5), (0.5, 1.0))
     upper = halves if doors >= 3 and (freezer != "top" or doors == 4) else ((0.0, 1.0),)
@@ -94,12 +96,13 @@ FAMILY = Family(
         Parameter(
             name="freezer",
             default="top",
-            choices=("top", "bottom", "side"),
-            help="Where the smaller compartment is.",
+            choices=("top", "bottom", "side", "none"),
+            help="Where the smaller compartment is; with none, two doors are a pair.",
             choice_words={
                 "top": ("freezer on top", "freezer above", "top freezer"),
                 "bottom": ("freezer below", "freezer at the bottom", "bottom freezer"),
                 "side": ("side by side", "american"),
+                "none": ("french", "without freezer", "without a freezer", "no freezer"),
             },
         ),
         Parameter(
