@@ -156,7 +156,8 @@ def _built(reading: Reading) -> Blueprint:
     except InputError as error:
         raise InputError(f"{error} The text says {', '.join(map(repr, reading.said.values()))}.") from error
     for parameter in (p for p in reading.family.parameters if p.name in reading.said):
-        in_layout = "layout" in reading.values and CELLS.keys() & set(nouns_of(parameter))  # says it once more
+        # The layout says once more what is counted in it, and how that is arranged.
+        in_layout = "layout" in reading.values and {*CELLS, "arrangement"} & {*nouns_of(parameter), parameter.name}
         if not in_layout and not _matters(reading, parameter, reading.values, made):
             made = _built_so_that_it_matters(reading, parameter)
     return made
