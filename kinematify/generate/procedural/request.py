@@ -102,7 +102,10 @@ def _composed(sentence: str) -> Request:
     """Read a sentence as mechanisms on a body, and see that they can be built."""
     composition = read_composition(sentence)
     compose(composition)
-    told = [f"{item.count} {item.title}{f' on the {item.side}' if item.side else ''}" for item in composition.wanted]
+    told = [
+        f"{item.count} {item.title}{'s' if item.count > 1 else ''}{f' on the {item.side}' if item.side else ''}"
+        for item in composition.wanted
+    ]
     return Request(
         family=composition.title.replace(" ", "_"),
         values={},
