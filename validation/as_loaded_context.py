@@ -12,7 +12,7 @@ from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES, load_file
-from kinematify.simulation.loaded_file import Unloadable, hand
+from kinematify.simulation.loaded_file import PATIENCE, Unloadable, hand
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -27,6 +27,8 @@ _LEAST_SIZE = 0.01
 """Smaller models are looked at as if they had it [m]."""
 _SAME = 1e-6
 """Limits that differ by less are the same, beside their size [rad or m]."""
+_YIELDING = 0.25
+"""A limit that does not give way for so long holds: the load is there after a few steps [s]."""
 _FAR_BEYOND = 5.0
 """Where what presses against a limit is let off, in lengths that a limit may give way."""
 
@@ -221,7 +223,7 @@ class AsLoadedContext:
         """Of a hand [rad/s or m/s]."""
         return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
 
-    def _push(self, travel: Travel, way: tuple[float, float], force: float) -> Push:
+    def _push(self, travel: Travel, way: tuple[float, float], force: float, patience: float = PATIENCE) -> Push:
         joint = self.robot.joint_by_name[travel.joint]
         return hand(
             self.ratios(travel),
@@ -232,6 +234,7 @@ class AsLoadedContext:
             resistance=joint.friction or 0.0,
             damping=joint.damping or 0.0,
             time_step=self.running.time_step,
+            patience=patience,
         )
 
     @cached_property
@@ -248,7 +251,7 @@ class AsLoadedContext:
         effort = self.robot.joint_by_name[travel.joint].effort or np.inf
         inertia = sum(ratio**2 * self.inertias[name] for name, ratio in self.ratios(travel).items())
         force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
-        push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force)
+        push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, _YIELDING)
         values = self._values({travel.joint: end})
         return HandRun(travel=travel, values=values, push=push, pushed=self.running.push(push, values, contacts=False))
 

@@ -16,8 +16,8 @@ _PROPORTIONAL, _INTEGRAL, _MOST_INTEGRAL = 0.3, 0.05, 0.4
 """Of the velocity error that a push takes away in one step: well below what the step can follow."""
 _START_SECONDS = 0.5
 """In which a push at least brings a heavy part up to speed."""
-_STALL_SECONDS = 0.8
-"""Without a hundredth of the way a part is stuck; a push has grown to its full force long before."""
+PATIENCE = 0.8
+"""Of a push, which has grown to its full force long before [s]."""
 
 
 class Unloadable(Exception):
@@ -80,6 +80,8 @@ class Push:
     """At most [N or N m]."""
     steps: int
     """At most."""
+    patience: float
+    """After which it is stuck where it goes on by less than a hundredth of its way [s]."""
 
     @property
     def joint(self) -> str:
@@ -169,6 +171,7 @@ def hand(
     resistance: float,
     damping: float,
     time_step: float,
+    patience: float = PATIENCE,
 ) -> Push:
     """Return the push of a hand.
 
@@ -181,6 +184,7 @@ def hand(
         resistance: Declared friction [N or N m].
         damping: Declared [N s/m or N m s/rad].
         time_step: Of the engine [s].
+        patience: See `Push`.
     """
     inertia_of = {name: max(inertias[name], 1e-9) for name in ratios}
     inertia = sum(ratio**2 * inertia_of[name] for name, ratio in ratios.items())
@@ -198,6 +202,7 @@ def hand(
         integral=float(np.clip(whole, _INTEGRAL * inertia / time_step, _MOST_INTEGRAL * inertia / time_step)),
         force=force,
         steps=int((2.0 + 2.0 * length / speed) / time_step),
+        patience=patience,
     )
 
 
@@ -219,7 +224,7 @@ class Progress:
         self.farthest = max(self.farthest, gone) if np.isfinite(gone) else self.farthest
         if self.farthest > self._marked + 0.01 * abs(way):
             self._marked, self._since = self.farthest, step
-        return self.farthest < abs(way) and (step - self._since) * self.time_step < _STALL_SECONDS
+        return self.farthest < abs(way) and (step - self._since) * self.time_step < self.push.patience
 
     @property
     def value(self) -> float:

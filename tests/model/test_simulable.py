@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -15,6 +15,8 @@ from kinematify.generate.procedural.request import from_category
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline.generate import true_model
+from kinematify.robot.joint_type import JointType
+from tests.places import ROOT
 from tests.plain_mujoco import hand, stuck_joints, wanted
 
 if TYPE_CHECKING:
@@ -30,6 +32,22 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     config = load_config()
     model = simulable_model(true_model(from_category(request.param, {}).build(seed=1), config), config)
     return model, write_model(model.robot, tmp_path_factory.mktemp(request.param))
+
+
+def test_the_plain_code_of_the_readme_loads_what_is_written(written: tuple[SimulableModel, Path]) -> None:
+    made, urdf = written
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    lines = [line for line in page.splitlines() if line.startswith(("model = mujoco.", "body = pybullet."))]
+    assert len(lines) == 2
+    names: dict[str, Any] = {"mujoco": mujoco, "pybullet": pybullet}
+    client = pybullet.connect(pybullet.DIRECT)
+    try:
+        exec("\n".join(lines).replace("out/example/model.urdf", str(urdf)), names)
+        moving = [joint for joint in made.robot.joints if joint.kind is not JointType.FIXED]
+        infos = [pybullet.getJointInfo(names["body"], k) for k in range(pybullet.getNumJoints(names["body"]))]
+        assert names["model"].njnt == sum(info[2] != pybullet.JOINT_FIXED for info in infos) == len(moving) > 0
+    finally:
+        pybullet.disconnect(client)
 
 
 def test_every_joint_moves_in_plain_mujoco(written: tuple[SimulableModel, Path]) -> None:
