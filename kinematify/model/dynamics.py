@@ -1,8 +1,7 @@
 """Friction, damping and weight that a hand can cope with: nothing moves by itself, and everything moves when pushed.
 
 What hangs on the base by one or two joints is opened by hand: doors, drawers, lids, knobs. Longer chains are machines
-with motors: their friction holds what hangs on them, as a worm gear or a valve does, and where an engine has no
-friction their damping lets it sink slowly.
+with motors: their friction holds what hangs on them, as a worm gear or a valve does.
 """
 
 from __future__ import annotations
@@ -25,8 +24,6 @@ _AT_LIMIT = 1e-6
 """A limit that is nearer to rest [rad or m] takes the weight."""
 _NEAR_REST = 0.1
 """What stands on its head would fall [rad]: the weight is looked at so far to both sides of rest."""
-_QUICKEST = 0.02
-"""Damping stops nothing in less time [s]: engines that apply it as a force of the last step would swing."""
 _VALUES = 33
 """Values of a joint at which its weight is looked at."""
 
@@ -139,8 +136,8 @@ class _Motor:
     def of(cls, load: JointLoad, config: DynamicsConfig) -> _Motor:
         pace = load.travel / config.opening_time
         friction = _rubbing(load, config)
-        sinking = max(load.inertia / config.settling_time, load.largest / max(pace, 1e-9))
-        damping = min(sinking, load.inertia / _QUICKEST)
+        # More would make chains swing in engines that apply damping as a force of the last step.
+        damping = load.inertia / config.settling_time
         lifting = load.largest + load.inertia * pace / config.opening_time
         effort = (lifting + friction + damping * pace) / config.hand_share
         return cls(friction=friction, damping=damping, lifting=lifting, effort=effort)
