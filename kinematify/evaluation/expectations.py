@@ -89,7 +89,7 @@ def _family(made: Blueprint, closed: Blueprint, wanted: str) -> list[str]:
 def _object(made: Blueprint, closed: Blueprint, wanted: list[str]) -> list[str]:
     family = FAMILIES.get(made.family)
     kind = made.family.replace("_", " ")
-    names = family.words if family else next(body.words for body in BODIES if body.words[0] == kind)
+    names = family.words if family else next(body.words for body in BODIES if kind in body.words)
     called = any(f" {name}".endswith(f" {word}") for name in names for word in wanted)
     return [] if called else [f"built is a {made.family}"]
 
