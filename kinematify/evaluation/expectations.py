@@ -41,7 +41,8 @@ _CALLED = {
     "arm": ("arm", "link"), "blade": ("blade", "rotor"), "carriage": ("carriage", "bridge", "ram"),
     "casement": ("sash",), "caster": ("castor", "caster"), "door": ("door", "leaf", "sliding_door"),
     "globe": ("ball",), "handle": ("handle", "lever"), "lid": ("lid", "screen"), "needle": ("gauge", "needle"),
-    "switch": ("rocker", "switch", "lever"), "tailgate": ("flap",),
+    "flap": ("flap", "flap_door", "tilting_flap"),
+    "switch": ("rocker", "switch", "lever"), "tailgate": ("flap", "tailgate"),
 }  # fmt: skip
 """How a reader calls what the models call otherwise."""
 _KINDS = {
