@@ -174,8 +174,8 @@ def test_the_categories_and_their_parameters_are_listed(capsys):
         (["--category", "cabinet", "--set", "drawer=2"], "Did you mean drawers"),
         (["--category", "cabinet", "--set", "drawers=500"], "from 0 to 12"),
         (["--category", "cabinet", "--set", "drawers"], "KEY=VALUE"),
-        (["--text", "a cabinet", "--category", "cabinet"], "either --text or --category"),
-        ([], "either --text or --category"),
+        (["--text", "a cabinet", "--category", "cabinet"], "either --text, --category or --blueprint"),
+        ([], "either --text, --category or --blueprint"),
     ],
 )
 def test_bad_requests_end_with_status_two_and_a_reason(arguments, reason, tmp_path, capsys):

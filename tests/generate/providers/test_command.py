@@ -170,7 +170,7 @@ def test_prompts_that_make_no_sense_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--image", "x.png"], "Say who makes parts"),
+        (["--image", "x.png"], "Say who looks at the image"),
         (["--text", "a box", "--budget", "3"], "belong to --source"),
         (["--source", "command", "--text", "a box"], "needs --command"),
         (["--source", "rodin", "--text", "a box", "--command", "x {out}"], "--source command"),
