@@ -1,0 +1,127 @@
+"""Collision pieces of meshes as people have them: open, flat, inverted, crossing themselves, tiny, one in another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+from trimesh.creation import box
+
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.formats.fix import fix_urdf
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from kinematify.formats.fix import Fix
+
+LIMIT = 0.2
+WALLS = {  # a case that is open in front: extents and middle of each board
+    "bottom": ((0.4, 0.5, 0.02), (0.0, 0.0, 0.01)),
+    "top": ((0.4, 0.5, 0.02), (0.0, 0.0, 0.29)),
+    "left": ((0.02, 0.5, 0.26), (-0.19, 0.0, 0.15)),
+    "right": ((0.02, 0.5, 0.26), (0.19, 0.0, 0.15)),
+    "back": ((0.36, 0.02, 0.26), (0.0, 0.24, 0.15)),
+}
+
+
+def board(extents: tuple[float, ...], middle: tuple[float, ...]) -> trimesh.Trimesh:
+    mesh = box(extents)
+    mesh.apply_translation(middle)
+    return mesh
+
+
+def drawer() -> trimesh.Trimesh:
+    return board((0.34, 0.44, 0.2), (0.0, -0.02, 0.15))
+
+
+def opened() -> trimesh.Trimesh:
+    mesh = drawer()
+    mesh.update_faces(mesh.face_normals[:, 2] < 0.5)
+    return mesh
+
+
+def inverted() -> trimesh.Trimesh:
+    mesh = drawer()
+    mesh.invert()
+    return mesh
+
+
+def crossing() -> trimesh.Trimesh:
+    return trimesh.util.concatenate([drawer(), board((0.3, 0.3, 0.22), (0.0, 0.0, 0.15))])
+
+
+def sheet() -> trimesh.Trimesh:
+    corners = [(-0.15, -0.2, 0.15), (0.15, -0.2, 0.15), (0.15, 0.2, 0.15), (-0.15, 0.2, 0.15)]
+    return trimesh.Trimesh(corners, [(0, 1, 2), (0, 2, 3)], process=False)
+
+
+def tiny() -> trimesh.Trimesh:
+    return board((1e-3, 1e-3, 1e-3), (0.0, -0.1, 0.15))
+
+
+def write(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> Path:
+    """A case, with more boards, and what slides out of it, towards -y; written whatever it looks like."""
+    case = trimesh.util.concatenate([*(board(*sizes) for sizes in WALLS.values()), *boards])
+    shapes = {}
+    for name, mesh in (("case", case), ("slider", moving)):
+        mesh.export(folder / f"{name}.stl")
+        shapes[name] = "".join(
+            f'<{kind}><geometry><mesh filename="{name}.stl"/></geometry></{kind}>' for kind in ("visual", "collision")
+        )
+    path = folder / "model.urdf"
+    path.write_text(
+        f'<robot name="rough"><link name="case">{shapes["case"]}</link><link name="slider">{shapes["slider"]}</link>'
+        '<joint name="slide" type="prismatic"><parent link="case"/><child link="slider"/><axis xyz="0 1 0"/>'
+        f'<limit lower="{-LIMIT}" upper="0" effort="50" velocity="1"/></joint></robot>',
+        encoding="utf-8",
+    )
+    return path
+
+
+def mended(folder: Path, moving: trimesh.Trimesh, *boards: trimesh.Trimesh) -> Fix:
+    (folder / "out").mkdir()
+    return fix_urdf(write(folder, moving, *boards), folder / "out" / "fixed.urdf", load_config(), load_settings())
+
+
+def reached(urdf: Path) -> tuple[float, float]:
+    """How deep anything is in the other at rest, and how far 30 N pull the slider out, in plain MuJoCo [m]."""
+    model = mujoco.MjModel.from_xml_path(str(urdf))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    deep = -min((contact.dist for contact in data.contact), default=0.0)
+    for _ in range(3000):
+        data.qfrc_applied[0] = -30.0
+        mujoco.mj_step(model, data)
+    return float(deep), float(data.qpos[0])
+
+
+@pytest.mark.parametrize("build", [drawer, opened, inverted, crossing, sheet, tiny])
+def test_rough_parts_collide_and_slide_in_plain_mujoco(build: Callable[[], trimesh.Trimesh], tmp_path: Path) -> None:
+    fixed = mended(tmp_path, build())
+    model = mujoco.MjModel.from_xml_path(str(fixed.path))
+    assert (np.bincount(model.geom_bodyid, minlength=model.nbody) > 0).all(), "no link without collision geometry"
+    deep, value = reached(fixed.path)
+    assert deep < 1e-3
+    assert value < -0.95 * LIMIT
+
+
+def test_what_has_to_pass_through_another_is_told_and_left(tmp_path: Path) -> None:
+    front = board((0.36, 0.02, 0.26), (0.0, -0.3, 0.15))
+    fixed = mended(tmp_path, drawer(), front)
+    (told,) = (sentence for sentence in fixed.left if "case" in sentence and "slider" in sentence)
+    assert "mm" in told
+    model = mujoco.MjModel.from_xml_path(str(fixed.path))
+    assert (np.bincount(model.geom_bodyid, minlength=model.nbody) > 0).all()
+
+
+def test_what_stands_inside_of_another_keeps_its_pieces(tmp_path: Path) -> None:
+    fixed = mended(tmp_path, board((0.1, 0.1, 0.01), (0.0, 0.0, 0.01)))  # in the middle of the bottom
+    model = mujoco.MjModel.from_xml_path(str(fixed.path))
+    assert (np.bincount(model.geom_bodyid, minlength=model.nbody) > 0).all()
+    assert fixed.changes
