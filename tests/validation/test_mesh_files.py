@@ -176,6 +176,17 @@ def test_one_mesh_in_another_unit_names_its_link(factor: float, cupboard: Path) 
     assert [(f.link, f.blame, f.severity) for f in slips] == [("door", Blame.ASSET, Severity.ERROR)]
 
 
+@pytest.mark.parametrize(("button", "told"), [(0.03, []), (0.006, ["door"])])
+def test_a_button_of_a_lorry_is_in_the_same_unit(button: float, told: list[str], cupboard: Path) -> None:
+    trimesh.creation.box((6.0, 2.0, 2.0)).export(cupboard.parent / "body.obj")
+    trimesh.creation.box((button, button, button)).export(cupboard.parent / "door.stl")
+    bed = '<link name="bed"><visual><geometry><mesh filename="body.obj"/></geometry></visual></link>'
+    joint = '<joint name="bolted" type="fixed"><parent link="body"/><child link="bed"/></joint>'
+    change(cupboard, "</robot>", f"{bed}{joint}</robot>")
+    _, results = check_model(cupboard)
+    assert [f.link for f in bad(results) if f.check == "KV157" and f.joint is None] == told
+
+
 def test_an_origin_in_millimetres_names_its_joint(cupboard: Path) -> None:
     change(cupboard, 'xyz="0.4 0 0"', 'xyz="400 0 0"')
     _, results = check_model(cupboard)

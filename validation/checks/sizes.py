@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from kinematify.validation.asset.mesh_look import MeshLook
     from kinematify.validation.check import OpenCheck
 
+_MILLIMETRES = 1000.0
+"""Factor of the usual slip."""
+
 
 @check(
     "KV157",
@@ -25,7 +28,8 @@ if TYPE_CHECKING:
 )
 def unit_slips(result: OpenCheck, look: MeshLook) -> None:
     """No link is more than `oversize` times as large as the largest other one, none with a mesh file `undersize` times
-    smaller; no link stands further from its parent than `apart` times the sizes of both (blamed on the joint).
+    smaller, unless 1000 times its size is beyond `large` (a button of a lorry); no link stands further from its parent
+    than `apart` times the sizes of both (blamed on the joint).
 
     Why it matters: A mesh in millimetres beside others in metres is the most frequent mistake of exporters; so are
     origins that were not converted.
@@ -40,7 +44,7 @@ def unit_slips(result: OpenCheck, look: MeshLook) -> None:
         too_small = extent.has_file and 0.0 < extent.diagonal * settings.undersize < others
         if too_large and (extent.diagonal > settings.large or others >= settings.tiny):
             _tell_out_of_proportion(result, extent, others, settings.oversize)
-        elif too_small and others <= settings.large:
+        elif too_small and others <= settings.large and extent.diagonal * _MILLIMETRES <= settings.large:
             _tell_out_of_proportion(result, extent, others, 1.0 / settings.undersize)
     if max((extent.diagonal for extent in extents.values()), default=0.0) < settings.tiny:
         return  # all meshes are in another unit, which the size of the model tells; no origin is to blame
