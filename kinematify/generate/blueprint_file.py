@@ -24,6 +24,7 @@ import difflib
 import json
 import math
 import re
+from abc import abstractmethod
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
@@ -85,9 +86,9 @@ class _Placed(_Described):
         """The primitive where it stands."""
         return self.made().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
 
+    @abstractmethod
     def made(self) -> Manifold:
         """The primitive about the origin."""
-        raise NotImplementedError
 
 
 class _Round(_Placed):
