@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _UNLIMITED_TURN = np.pi
 _NO_LIMIT = 10.0
 """Limits of plus and minus this are how files say that there is none [rad]."""
+_ROUNDED = 1e-3
+"""Share by which limits of three digits, such as 9.42, miss whole half turns."""
 _WIDEST_TURN = 4.0 * np.pi
 """Wider ranges [rad] repeat the same poses."""
 _WIDEST_SLIDE = 100.0
@@ -183,7 +185,7 @@ class Joint:
         if self.upper in (_NO_LIMIT, np.inf):
             return True
         half_turns = self.upper / np.pi
-        return bool(2.5 < half_turns < 8.5 and abs(half_turns - round(half_turns)) < 1e-4 * half_turns)
+        return bool(2.5 < half_turns < 8.5 and abs(half_turns - round(half_turns)) < _ROUNDED * half_turns)
 
     def motion(self, value: float) -> FloatArray:
         """Return the transform of the child in the joint frame, shape (4, 4), at `value` [rad or m]."""

@@ -316,7 +316,8 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint that has limits is pressed against both by as_loaded.force or as_loaded.torque,
     by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press, the others
     held, without contacts and gravity. It gives way by no more than as_loaded.still of its range (at least
-    as_loaded.still_angle or as_loaded.still_length). A limit that gives way and holds then is a warning.
+    as_loaded.still_angle or as_loaded.still_length). A limit that gives way and holds then is a warning, and so are
+    equal limits: files write 0 and 0 where no range is meant.
 
     Why it matters: A range that an engine does not keep is none: MuJoCo takes limits that are equal for no limits.
 
@@ -333,7 +334,7 @@ def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
                 f"{' at least' if through else ''}.",
                 f"Give {travel.joint} limits that {context.title} keeps (the lower one less than the upper one), or a "
                 "part of plausible mass and inertia; a joint that does not move is a fixed one.",
-                severity=None if through else Severity.WARNING,
+                severity=None if through and travel.lower < travel.upper else Severity.WARNING,
                 joint=travel.joint,
                 q={travel.joint: stop},
                 value=stop,
