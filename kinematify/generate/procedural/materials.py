@@ -8,8 +8,8 @@ RGB = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Material:
-    """A material as a rule of thumb knows it."""
+class Substance:
+    """A material as a rule of thumb knows its mass and colour."""
 
     density: float
     """[kg/m^3]."""
@@ -19,25 +19,25 @@ class Material:
 
 
 MATERIALS = {
-    "wood": Material(density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "timber", "mdf")),
-    "oak": Material(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken")),
-    "pine": Material(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",)),
-    "walnut": Material(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",)),
-    "steel": Material(density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless")),
-    "metal": Material(
+    "wood": Substance(density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "timber", "mdf")),
+    "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken")),
+    "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",)),
+    "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",)),
+    "steel": Substance(density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless")),
+    "metal": Substance(
         density=2700.0,
         color=(0.70, 0.72, 0.75),
         words=("metal", "metallic", "aluminium", "aluminum"),
     ),
-    "brass": Material(density=8500.0, color=(0.78, 0.62, 0.26), words=("brass",)),
-    "copper": Material(density=8960.0, color=(0.72, 0.45, 0.30), words=("copper",)),
-    "chrome": Material(density=7850.0, color=(0.82, 0.84, 0.86), words=("chrome", "chromed")),
-    "plastic": Material(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon")),
-    "glass": Material(density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent")),
-    "mirror": Material(density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored")),
-    "rubber": Material(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",)),
-    "ceramic": Material(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain")),
-    "cardboard": Material(density=700.0, color=(0.76, 0.62, 0.45), words=("cardboard", "paper")),
+    "brass": Substance(density=8500.0, color=(0.78, 0.62, 0.26), words=("brass",)),
+    "copper": Substance(density=8960.0, color=(0.72, 0.45, 0.30), words=("copper",)),
+    "chrome": Substance(density=7850.0, color=(0.82, 0.84, 0.86), words=("chrome", "chromed")),
+    "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon")),
+    "glass": Substance(density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent")),
+    "mirror": Substance(density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored")),
+    "rubber": Substance(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",)),
+    "ceramic": Substance(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain")),
+    "cardboard": Substance(density=700.0, color=(0.76, 0.62, 0.45), words=("cardboard", "paper")),
 }
 """Keyed by name."""
 

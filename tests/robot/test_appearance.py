@@ -1,0 +1,69 @@
+"""Materials of meshes: joined, cut apart, averaged."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.robot.appearance import MAX_MATERIALS, Appearance, Material, Texture, joined, painted, plain, surfaces
+
+RED, BLUE = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
+SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def _chequered() -> Appearance:
+    """A square with a picture of two columns, red at the left and blue at the right."""
+    pixels = np.zeros((2, 2, 4), dtype=np.uint8)
+    pixels[:, 0], pixels[:, 1] = (255, 0, 0, 255), (0, 0, 255, 255)
+    return Appearance(
+        materials=(Material(color=(1.0, 1.0, 1.0, 1.0), texture=Texture(name="halves", pixels=pixels)),),
+        material_of_face=np.zeros(2, dtype=np.int64),
+        uv=SQUARE[HALVES][:, :, :2],
+    )
+
+
+def test_a_texture_is_seen_at_its_place() -> None:
+    appearance = _chequered()
+    near_left, near_right = np.array([[0.1, 0.2, 0.7]]), np.array([[0.1, 0.8, 0.1]])
+    assert appearance.colors_at(np.array([1]), near_left)[0] == pytest.approx(RED)
+    assert appearance.colors_at(np.array([0]), near_right)[0] == pytest.approx(BLUE)
+
+
+def test_the_mean_colour_is_weighted_by_area() -> None:
+    appearance = Appearance(materials=(Material(color=RED), Material(color=BLUE)), material_of_face=np.array([0, 1]))
+    vertices = np.array([[0.0, 0, 0], [3, 0, 0], [0, 1, 0], [1, 0, 0]])
+    assert appearance.mean_color(vertices, np.array([[0, 1, 2], [0, 3, 2]])) == pytest.approx((0.75, 0.0, 0.25, 1.0))
+
+
+def test_surfaces_double_vertices_only_at_seams_of_the_texture() -> None:
+    (surface,) = surfaces(SQUARE, HALVES, _chequered())
+    assert len(surface.vertices) == 4
+    assert surface.uv is not None
+    assert np.allclose(surface.uv, surface.vertices[:, :2])
+    torn = Appearance(
+        materials=_chequered().materials,
+        material_of_face=np.zeros(2, dtype=np.int64),
+        uv=np.stack([SQUARE[HALVES[0]][:, :2], SQUARE[HALVES[1]][:, :2] + 0.25]),
+    )
+    assert len(surfaces(SQUARE, HALVES, torn)[0].vertices) == 6
+
+
+def test_what_is_joined_keeps_its_colours_and_shares_equal_ones() -> None:
+    both = joined([plain(RED, 2), None, plain(RED, 1), plain(BLUE, 1)], [2, 1, 1, 1])
+    assert both is not None
+    seen = [both.materials[k].color for k in both.material_of_face]
+    assert seen == [RED, RED, Material().color, RED, BLUE]
+    assert len(both.materials) == 3
+    assert joined([None, None], [1, 2]) is None
+
+
+def test_many_colours_become_few_that_are_near() -> None:
+    random = np.random.default_rng(3)
+    smooth = np.column_stack([np.linspace(0.0, 1.0, 5000), np.full(5000, 0.4), np.full(5000, 0.2), np.ones(5000)])
+    appearance = painted(smooth[random.permutation(5000)])
+    assert len(appearance.materials) <= MAX_MATERIALS
+    seen = np.array([appearance.materials[k].color for k in painted(smooth).material_of_face])
+    assert np.abs(seen - smooth).max() < 0.02
+    few = painted(smooth[:: 5000 // 40])
+    assert np.array([few.materials[k].color for k in few.material_of_face]) == pytest.approx(smooth[:: 5000 // 40])
