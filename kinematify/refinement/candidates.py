@@ -1,7 +1,7 @@
 """Every near-best joint of a tree edge as a joint of its own: with opening direction, limits and evidence.
 
 The inference keeps its candidates as lines with scores; to be simulated, a candidate needs the range that it would
-have been given had it been chosen.
+have been given had it been chosen. A joint that is none of them is scored as the inference would have scored it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointEstimate
+from kinematify.joints.choice.decide import weigh_joints
+from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.limits import find_range
+from kinematify.joints.hypotheses.line import Line
+from kinematify.joints.measure.measurements import SLIDE, TURN
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.robot.joint_type import JointType
@@ -44,6 +48,7 @@ class CandidateJoints:
         self._cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
         self._frames: dict[tuple[int, ...], dict[int, BoxFrame]] = {}
         self._scenes: dict[tuple[tuple[int, ...], int], JointScene] = {}
+        self._scores: dict[tuple[object, ...], float] = {}
 
     def realise(self, tree: KinematicTree, joint: JointEstimate, candidate: JointCandidate) -> JointEstimate:
         """The joint that a candidate of an edge would be.
@@ -75,12 +80,52 @@ class CandidateJoints:
         """All that is known of one tree edge before a joint is proposed."""
         key = (tree.parents, edge[1])
         if key not in self._scenes:
-            if tree.parents not in self._frames:
-                self._frames[tree.parents] = part_frames(self._cache, tree, self._config)
-            bearing = self._bearings.get((min(edge), max(edge)))
-            frames = self._frames[tree.parents]
+            frames, bearing = self._frames_of(tree), self._bearings.get((min(edge), max(edge)))
             self._scenes[key] = joint_scene(self._cache, tree, frames, edge, bearing, config=self._config)
         return self._scenes[key]
+
+    def _frames_of(self, tree: KinematicTree) -> Mapping[int, BoxFrame]:
+        if tree.parents not in self._frames:
+            self._frames[tree.parents] = part_frames(self._cache, tree, self._config)
+        return self._frames[tree.parents]
+
+    def score(self, tree: KinematicTree, joint: JointEstimate) -> float:
+        """Score of a joint below that of the best candidate of its edge [log odds]; 0 for the best and for fixed ones.
+
+        Args:
+            tree: The tree that the edge belongs to.
+            joint: One of its candidates, or another one, which is measured beside them.
+        """
+        best = max((candidate.score for candidate in joint.alternatives), default=0.0)
+        known = next((candidate.score - best for candidate in joint.alternatives if is_same(joint, candidate)), None)
+        if known is not None:
+            return known
+        if joint.kind is JointType.FIXED or not joint.alternatives or self._config.method != "geometry":
+            return 0.0
+        key = (tree.parents, joint.child, joint.kind.turns, joint.axis.tobytes(), joint.pivot.tobytes())
+        if key not in self._scores:
+            self._scores[key] = self._measured(tree, joint)
+        return self._scores[key]
+
+    def _measured(self, tree: KinematicTree, joint: JointEstimate) -> float:
+        """Score of a joint that was not proposed, beside all that were."""
+        edge = joint.parent, joint.child
+        weighed = weigh_joints(
+            self._cache,
+            tree,
+            self._frames_of(tree),
+            edge,
+            self._bearings.get((min(edge), max(edge))),
+            config=self._config,
+            given=[Line(axis=joint.axis, point=joint.pivot)],
+        )
+        judged = judge(weighed, lead=self._config.confidence.cues_lead)
+        hypotheses = judged.hypotheses
+        apart = 1.0 - np.abs(hypotheses.axes @ joint.axis)
+        if joint.kind.turns:
+            apart += np.linalg.norm(np.cross(hypotheses.pivots - joint.pivot, joint.axis), axis=1) / judged.size
+        apart[hypotheses.kinds != (TURN if joint.kind.turns else SLIDE)] = np.inf
+        return float(judged.scores[int(np.argmin(apart))] - judged.scores.max())
 
 
 def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
@@ -93,9 +138,3 @@ def is_same(joint: JointEstimate, candidate: JointCandidate) -> bool:
         return True
     apart = float(np.linalg.norm(np.cross(candidate.pivot - joint.pivot, joint.axis)))
     return apart < 1e-9 + 1e-6 * float(np.linalg.norm(candidate.pivot))
-
-
-def score_of(joint: JointEstimate) -> float:
-    """Score of the chosen joint below that of the best candidate of its edge [log odds]; 0 where it is none of them."""
-    best = max((candidate.score for candidate in joint.alternatives), default=0.0)
-    return next((candidate.score - best for candidate in joint.alternatives if is_same(joint, candidate)), 0.0)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.refinement.candidates import is_same, score_of
+from kinematify.refinement.candidates import is_same
 from kinematify.refinement.history import PlanChange
 from kinematify.refinement.words import described, ranged
 from kinematify.robot.joint_type import JointType
@@ -62,16 +62,23 @@ class Chooser:
     """Choices that would have hidden a failure, with the reason."""
 
     def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[PlanChange]]:
-        """Take the blamed decisions about joints again, one part after the other.
+        """Take decisions about joints again, one part after the other, those that most speaks against first.
+
+        Doubted are the joints that failures blame, and those that score less than a candidate by more than the lead.
 
         Args:
             plan: What was simulated.
             feedback: What its failures blame.
         """
         changes: list[PlanChange] = []
-        doubted = sorted({item.child for item in feedback.lines} | {item.child for item in feedback.types})
-        doubted.sort(key=feedback.against)
-        for child in reversed(doubted):
+        names = plan.assembly.names
+        blamed = {item.child for item in feedback.lines} | {item.child for item in feedback.types}
+        odds = {
+            names[joint.child]: feedback.against(names[joint.child]) - self.candidates.score(plan.tree, joint)
+            for joint in plan.joints
+        }
+        doubted = [child for child in odds if child in blamed or odds[child] > self.config.lead_elsewhere]
+        for child in sorted(doubted, key=lambda child: (-odds[child], child)):
             plan, change = self._again(plan, child, feedback.against(child))
             changes += [change] if change is not None else []
         moved = {change.part for change in changes}
@@ -90,7 +97,7 @@ class Chooser:
             against: What the simulation has against it, if that is known already.
         """
         best = max((candidate.score for candidate in joint.alternatives), default=0.0)
-        own = score_of(joint)
+        own = self.candidates.score(plan.tree, joint)
         found = [self.trial(plan, joint, own) if against is None else _known(joint, own, against)]
         for candidate in self._near_best(joint, best):
             if not self.in_time():

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.config.validation import load_settings
 from kinematify.contact.seams import find_seams
 from kinematify.geometry.surface import part_surfaces
-from kinematify.refinement.candidates import CandidateJoints, score_of
+from kinematify.refinement.candidates import CandidateJoints
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.contacts import audit_contacts, rebuilt
 from kinematify.refinement.history import History, PlanChange, Round
@@ -140,6 +140,7 @@ class _Loop:
         self.started = time.perf_counter()
         self.memory = EdgeMemory()
         self.done: list[_Done] = []
+        self.candidates: dict[SearchedContacts, CandidateJoints] = {}
         self.ended = "all rounds were used"
         self.simulated = 0
         self.mended = 0
@@ -230,7 +231,7 @@ class _Loop:
                 motion_errors=motion_errors,
                 failed=tuple(_failed(verdict)),
                 blamed=tuple(_blamed(feedback)),
-                score=_score(plan, feedback),
+                score=self._score(plan, contacts, feedback),
                 seconds=time.perf_counter() - start,
                 refused=tuple(refused),
             ),
@@ -252,12 +253,27 @@ class _Loop:
             plan, changes = self._repaired(done)
         if changes:
             return plan, done.contacts, changes, []
-        candidates = CandidateJoints(plan.assembly, done.contacts.graph, done.contacts.bearings, plan.config)
+        candidates = self._candidates_of(done.contacts)
         chooser = Chooser(candidates=candidates, simulator=self.simulator, config=self.config, in_time=self.in_time)
         plan, changes = chooser.choose_again(plan, done.feedback)
         plan, votes = vote(plan, done.contacts.graph, chooser)
         self.simulated += chooser.simulated
         return plan, done.contacts, [*changes, *votes], chooser.refused
+
+    def _candidates_of(self, contacts: SearchedContacts) -> CandidateJoints:
+        """The joints that the edges of a contact graph may have."""
+        if contacts not in self.candidates:
+            self.candidates[contacts] = CandidateJoints(
+                self.given.assembly, contacts.graph, contacts.bearings, self.given.config
+            )
+        return self.candidates[contacts]
+
+    def _score(self, plan: Plan, contacts: SearchedContacts, feedback: Feedback) -> float:
+        """Evidence for the chosen joints, less what speaks against them [log odds]."""
+        candidates = self._candidates_of(contacts)
+        scores = [candidates.score(plan.tree, joint) + joint.evidence.get(TWINS, 0.0) for joint in plan.joints]
+        against = [feedback.against(plan.assembly.names[joint.child]) for joint in plan.joints]
+        return sum(scores) - sum(against) - sum(signal.weight for signal in feedback.edges)
 
     def _rebuilt(self, done: _Done) -> tuple[Plan, SearchedContacts, list[PlanChange]] | None:
         """Parts that were one, and contacts that the graph has wrong; None where both are right."""
@@ -331,10 +347,3 @@ def _blamed(feedback: Feedback) -> list[str]:
     types = [f"{signal.child}: type" for signal in feedback.types]
     ranges = [f"{signal.child}: range" for signal in feedback.ranges]
     return list(dict.fromkeys([*edges, *lines, *types, *ranges]))
-
-
-def _score(plan: Plan, feedback: Feedback) -> float:
-    """Evidence for the chosen joints, less what speaks against them [log odds]."""
-    scores = [score_of(joint) + joint.evidence.get(TWINS, 0.0) for joint in plan.joints]
-    against = [feedback.against(plan.assembly.names[joint.child]) for joint in plan.joints]
-    return sum(scores) - sum(against) - sum(signal.weight for signal in feedback.edges)

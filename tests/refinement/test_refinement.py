@@ -91,6 +91,17 @@ def test_a_drawer_along_the_wrong_axis_finds_the_right_one_again() -> None:
     assert (change.part, change.what) == ("drawer", "axis")
 
 
+def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_replaced() -> None:
+    """It is no candidate, and no failure blames its line."""
+    right = joint_above(inferred("edge_door"), "door")
+    tilted = right.axis + np.array([0.0, 0.6, 0.0])
+    refinement = refine(with_joint(inferred("edge_door"), "door", axis=tilted, upper=0.1), seconds=60.0)
+    assert not {"door: axis", "door: type"} & set(refinement.history.rounds[0].blamed)
+    assert refinement.history.rounds[0].score < -load_config().refine.lead_elsewhere
+    found = joint_above(refinement.inference, "door")
+    assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
+
+
 @pytest.mark.parametrize("lead", [50.0, 1.5])
 def test_evidence_of_shape_can_outweigh_the_simulation(lead: float) -> None:
     """Blocked both ways weighs 2.5; what lets another direction lead by 1.0 only does not overrule the geometry."""

@@ -1,0 +1,86 @@
+"""Planted wrong joints: each is wrong in its own way alone, and refinement is measured on them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from kinematify.assembly.erase import erase
+from kinematify.cli.app import run
+from kinematify.config import load_config
+from kinematify.evaluation.planted import (
+    AXIS,
+    FAULTS,
+    PARENT,
+    PIVOT,
+    SECOND,
+    SIGN,
+    TYPE,
+    Mechanism,
+    planted_faults,
+    true_mechanism,
+)
+from kinematify.evaluation.study import load_study_report
+from kinematify.pipeline import infer, write_inference
+from kinematify.robot.read import read_robot
+from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CONFIG = load_config()
+
+
+def written(folder: Path) -> Path:
+    write_inference(infer(BUILDERS["edge_door"]().assembly, config=CONFIG), folder, preview=False)
+    return folder / "model.urdf"
+
+
+@pytest.fixture(scope="module")
+def door(tmp_path_factory: pytest.TempPathFactory) -> Mechanism:
+    urdf = written(tmp_path_factory.mktemp("planted") / "door")
+    found = true_mechanism(erase(read_robot(urdf, geometry="shown")), CONFIG)
+    assert found is not None
+    return found
+
+
+def test_the_true_mechanism_is_right_and_holds_the_truth_among_its_candidates(door: Mechanism) -> None:
+    assert not door.wrong(door.inference)
+    (joint,) = door.inference.joints
+    assert any(item.source == "truth" for item in joint.alternatives)
+
+
+def test_each_fault_is_wrong_in_its_own_way(door: Mechanism) -> None:
+    (right,) = door.inference.joints
+    planted = {item.fault: item for item in planted_faults(door, 0)}
+    assert set(planted) == set(FAULTS) - {PARENT}, "two parts leave no other parent"
+    wrong = {fault: item.inference.joints[0] for fault, item in planted.items()}
+    assert wrong[AXIS].axis @ right.axis == pytest.approx(0.0, abs=1e-9)
+    assert wrong[PIVOT].axis @ right.axis == pytest.approx(1.0)
+    assert np.linalg.norm(np.cross(wrong[PIVOT].pivot - right.pivot, right.axis)) > 0.1
+    assert wrong[TYPE].kind.turns != right.kind.turns
+    assert wrong[SIGN].axis @ right.axis == pytest.approx(-1.0)
+    assert all(door.wrong(item.inference) == {item.part} for item in planted.values())
+    assert wrong[SECOND].alternatives[0].score == pytest.approx(right.alternatives[0].score), "believed as the best was"
+
+
+def test_the_same_seed_plants_the_same(door: Mechanism) -> None:
+    one, same = ([item.inference.joints[0].pivot.tolist() for item in planted_faults(door, 7)] for _ in range(2))
+    assert one == same
+
+
+def test_bench_counts_what_refinement_finds_and_repairs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path / "models" / "door")
+    words = ["bench", "refine", "--data", "models", "--objects", "*", "--faults", f"{PIVOT},{SIGN}", "--jobs", "1"]
+    assert run([*words, "-o", "out"]) == 0
+    capsys.readouterr()
+    records = load_study_report(tmp_path / "out", "refine").records
+    assert [record["fault"] for record in records] == ["nothing", PIVOT, SIGN]
+    assert all(record["repaired"] and not record["harmed"] for record in records)
+    assert [record["found"] for record in records] == [False, True, True]
+    assert "| pivot | 1 | 1 (100%) | 1 (100%) |" in (tmp_path / "out" / "refine.md").read_text()
