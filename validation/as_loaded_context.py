@@ -12,7 +12,7 @@ from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES, load_file
-from kinematify.simulation.loaded_file import PATIENCE, Unloadable, hand
+from kinematify.simulation.loaded_file import Unloadable, hand
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -208,7 +208,9 @@ class AsLoadedContext:
         return {travel.joint: 1.0, **followers}
 
     def _by_hand(self, travel: Travel, end: float) -> HandRun:
-        push = self._push(travel, (travel.rest, end), self.strength(travel))
+        joint = self.robot.joint_by_name[travel.joint]
+        resistance = {"resistance": joint.friction or 0.0, "damping": joint.damping or 0.0}
+        push = self._push(travel, (travel.rest, end), self.strength(travel), **resistance)
         pushed = self.running.push(push, self.values, contacts=True)
         if self.arrives(travel, end, pushed.farthest):
             return HandRun(travel=travel, values=self.values, push=push, pushed=pushed)
@@ -223,18 +225,15 @@ class AsLoadedContext:
         """Of a hand [rad/s or m/s]."""
         return self.settings.turning_speed if travel.turns else self.settings.sliding_speed
 
-    def _push(self, travel: Travel, way: tuple[float, float], force: float, patience: float = PATIENCE) -> Push:
-        joint = self.robot.joint_by_name[travel.joint]
+    def _push(self, travel: Travel, way: tuple[float, float], force: float, **more: float) -> Push:
         return hand(
             self.ratios(travel),
             way,
             inertias=self.inertias,
             force=force,
             speed=self.speed(travel),
-            resistance=joint.friction or 0.0,
-            damping=joint.damping or 0.0,
             time_step=self.running.time_step,
-            patience=patience,
+            **more,
         )
 
     @cached_property
@@ -251,7 +250,7 @@ class AsLoadedContext:
         effort = self.robot.joint_by_name[travel.joint].effort or np.inf
         inertia = sum(ratio**2 * self.inertias[name] for name, ratio in self.ratios(travel).items())
         force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
-        push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, _YIELDING)
+        push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, patience=_YIELDING)
         values = self._values({travel.joint: end})
         return HandRun(travel=travel, values=values, push=push, pushed=self.running.push(push, values, contacts=False))
 

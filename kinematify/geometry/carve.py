@@ -44,7 +44,7 @@ _MOST_STEPS = 128
 _MOST_PARTS = 6
 """Pieces that one obstacle may leave of one piece: a box has six sides."""
 _LEAST_PART = 0.02
-"""A part of a piece that is smaller than this share of it, and of its link, is dropped."""
+"""A part of a piece that is smaller than this share of it, and of its link, is dropped, unless nothing else is left."""
 _FILLING = 1e-3
 """What the volume of a piece counts beside the distance of its surface."""
 _PIECE_COST = 3e-4
@@ -248,7 +248,7 @@ class _Clearing:
     ) -> None:
         """Keep the pieces of all bodies, which are cut in place, and volumes and extents of bodies."""
         self._alive, self._volumes, self._extents, self._thinnest = alive, volumes, extents, thinnest
-        self._free_range = cache(free_range)
+        self._free_range, self._clearance = cache(free_range), clearance
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
         self._resting = [item for body, group in enumerate(alive) if body not in sweep.moved for item in group]
         self._path = _Path(sweep, self._moving, clearance)
@@ -263,30 +263,22 @@ class _Clearing:
             if one in self._rest_of or other in self._rest_of:
                 pairs += [(a, b) for a in self._rest_of.get(one, [one]) for b in self._rest_of.get(other, [other])]
                 continue
-            steps = self._meets(one, other)
+            steps = self._meets(one, other, self._clearance)
             if len(steps) and not self._separated(one, other, steps):
                 jams.append((one.body, other.body))
         return jams
 
-    def _meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
-        """Steps in which two pieces meet although their bodies are free to move there."""
-        steps = self._path.meets(moving, resting)
+    def _meets(self, moving: _Polytope, resting: _Polytope, clearance: float) -> IntArray:
+        """Steps in which two pieces come nearer than the clearance although their bodies are free to move there."""
+        steps = self._path.meets(moving, resting, clearance)
         return self._path.within(steps, *self._free_range(moving.body, resting.body)) if len(steps) else steps
 
     def _separated(self, moving: _Polytope, resting: _Polytope, steps: IntArray) -> bool:
         """Cut the piece that loses less of its body; False if either body would have nothing left."""
-        options = []
-        for piece, obstacle in ((moving, resting), (resting, moving)):
-            parts = self._around(piece, obstacle, steps, backwards=piece is moving)
-            # Of what is left: a body that has lost much already is spared.
-            left = sum(item.piece.volume for item in self._alive[piece.body])
-            lost = _FILLING * (piece.piece.volume - sum(part.piece.volume for part in parts)) / left
-            lost += piece.stray(parts) / self._extents[piece.body]
-            emptied = not parts and len(self._alive[piece.body]) == 1
-            options.append((np.inf if emptied else lost + _PIECE_COST * (len(parts) - 1), piece, parts))
-        cost, piece, parts = min(options, key=lambda item: item[0])
-        if not np.isfinite(cost):
+        best = self._cheapest(moving, resting, steps) or self._remnant(moving, resting, steps)
+        if best is None:
             return False
+        piece, parts = best
         if parts != [piece]:
             self._rest_of[piece] = parts
             group = self._alive[piece.body]
@@ -294,13 +286,50 @@ class _Clearing:
             group[place : place + 1] = parts
         return True
 
-    def _around(self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, *, backwards: bool) -> list[_Polytope]:
-        """Convex parts of a piece that are clear of the obstacle in all steps; the piece itself where it is clear."""
-        least = _LEAST_PART * min(piece.piece.volume, self._volumes[piece.body])
+    def _cheapest(
+        self, moving: _Polytope, resting: _Polytope, steps: IntArray
+    ) -> tuple[_Polytope, list[_Polytope]] | None:
+        """The piece that loses less of its body, and its parts; None if either body would have nothing left."""
+        options = []
+        for piece, obstacle in ((moving, resting), (resting, moving)):
+            parts = self._around(piece, obstacle, steps, backwards=piece is moving)
+            if not parts and len(self._alive[piece.body]) == 1:
+                continue
+            # Of what is left: a body that has lost much already is spared.
+            left = sum(item.piece.volume for item in self._alive[piece.body])
+            lost = _FILLING * (piece.piece.volume - sum(part.piece.volume for part in parts)) / left
+            lost += piece.stray(parts) / self._extents[piece.body]
+            options.append((lost + _PIECE_COST * (len(parts) - 1), piece, parts))
+        return min(options, key=lambda item: item[0])[1:] if options else None
+
+    def _remnant(
+        self, moving: _Polytope, resting: _Polytope, steps: IntArray
+    ) -> tuple[_Polytope, list[_Polytope]] | None:
+        """The smaller of two last pieces that has something left without clearance, however little, and what is left.
+
+        It is the head of a pen's button.
+        """
+        for piece, obstacle in sorted(
+            ((moving, resting), (resting, moving)), key=lambda pair: float(pair[0].piece.volume)
+        ):
+            parts = self._around(piece, obstacle, steps, backwards=piece is moving, remnant=True)
+            if parts:
+                return piece, parts
+        return None
+
+    def _around(
+        self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, *, backwards: bool, remnant: bool = False
+    ) -> list[_Polytope]:
+        """Convex parts of a piece that are clear of the obstacle in all steps; the piece itself where it is clear.
+
+        A remnant keeps no clearance and small parts.
+        """
+        least = 0.0 if remnant else _LEAST_PART * min(piece.piece.volume, self._volumes[piece.body])
+        clearance = 0.0 if remnant else self._clearance
         found: list[_Polytope] = []
         whole = piece
         while len(found) < _MOST_PARTS:
-            normal, offset = self._path.best_plane(whole, obstacle, steps, backwards=backwards)
+            normal, offset = self._path.best_plane(whole, obstacle, steps, clearance, backwards=backwards)
             kept = whole.clipped(normal, offset, self._thinnest)
             if kept is None or kept.piece.volume < least:
                 break
@@ -308,7 +337,7 @@ class _Clearing:
             beyond = whole.clipped(-normal, -offset, self._thinnest)
             if kept is whole or beyond is None or beyond.piece.volume < least:
                 break
-            steps = self._meets(*((beyond, obstacle) if backwards else (obstacle, beyond)))
+            steps = self._meets(*((beyond, obstacle) if backwards else (obstacle, beyond)), clearance)
             if not len(steps):
                 found.append(beyond)
                 break
@@ -358,22 +387,22 @@ class _Path:
         begun = _BEGUN * (end - start)
         return np.asarray(steps[((end - begun >= lower) & (start + begun <= upper)) | (start == end)])
 
-    def meets(self, moving: _Polytope, resting: _Polytope) -> IntArray:
+    def meets(self, moving: _Polytope, resting: _Polytope, clearance: float) -> IntArray:
         """Steps in which no plane keeps two pieces apart by the clearance."""
         apart = np.maximum(
             self._beyond(resting, moving, backwards=False) - self._rise(moving),
             self._beyond(moving, resting, backwards=True) - self._rise(resting),
         )
-        return np.flatnonzero(apart < self._clearance)
+        return np.flatnonzero(apart < clearance)
 
     def best_plane(
-        self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, *, backwards: bool
+        self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, clearance: float, *, backwards: bool
     ) -> tuple[FloatArray, float]:
         """Unit normal (3,) and offset of the plane that has the swept obstacle below it and most of a piece above."""
         swept = self._track(obstacle, backwards=backwards)[np.union1d(steps, steps + 1)].reshape(-1, 3)
         along = self._normals(obstacle, steps, backwards=backwards)
         normals = np.concatenate([-piece.planes[0], self._across, along])
-        offsets = _support(normals, swept) + (1.0 + _ROUNDING) * self._clearance + self._rise(obstacle)
+        offsets = _support(normals, swept) + (1.0 + _ROUNDING) * clearance + self._rise(obstacle)
         kept = (piece.samples @ normals.T > offsets).mean(axis=0)
         if len(piece.marks):
             kept += (piece.marks @ normals.T > offsets).mean(axis=0)

@@ -168,9 +168,9 @@ def hand(
     inertias: Mapping[str, float],
     force: float,
     speed: float,
-    resistance: float,
-    damping: float,
     time_step: float,
+    resistance: float = 0.0,
+    damping: float = 0.0,
     patience: float = PATIENCE,
 ) -> Push:
     """Return the push of a hand.
@@ -181,9 +181,9 @@ def hand(
         inertias: From `RunningFile.inertias`, by joint.
         force: Of the hand [N or N m]; more is given where a heavy part would take long to start.
         speed: At least [rad/s or m/s]; long ways are gone faster.
-        resistance: Declared friction [N or N m].
-        damping: Declared [N s/m or N m s/rad].
         time_step: Of the engine [s].
+        resistance: Declared friction that is overcome besides [N or N m].
+        damping: The same of declared damping [N s/m or N m s/rad].
         patience: See `Push`.
     """
     inertia_of = {name: max(inertias[name], 1e-9) for name in ratios}

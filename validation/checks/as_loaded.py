@@ -314,8 +314,8 @@ def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
 )
 def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint that has limits is pressed against both by as_loaded.force or as_loaded.torque,
-    by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press, the others
-    held, without contacts and gravity. It gives way by no more than as_loaded.still of its range (at least
+    by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press: nothing
+    moves there that friction and damping would hold back. The others are held, without contacts and gravity. It gives way by no more than as_loaded.still of its range (at least
     as_loaded.still_angle or as_loaded.still_length). A limit that gives way and holds then is a warning, and so are
     equal limits: files write 0 and 0 where no range is meant.
 
