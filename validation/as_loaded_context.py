@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from kinematify.config.validation import AsLoadedSettings
+    from kinematify.geometry.sweep import Sweeper
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Joint, Robot
     from kinematify.simulation.loaded_file import LoadedFile, Overlap, Push, Pushed, ReleaseRun, RestRun, RunningFile
@@ -42,6 +43,10 @@ class HandRun:
     """Where every joint starts [rad or m]."""
     push: Push
     pushed: Pushed
+    end: float
+    """Value that it has to get to [rad or m]."""
+    free: bool = True
+    """Whether exact geometry leaves any way free to that side."""
     without_contacts: float | None = None
     """Where it gets where nothing touches [rad or m], if it was tried."""
 
@@ -207,15 +212,40 @@ class AsLoadedContext:
         followers = {name: ratio for name, ratio in moved.items() if ratio and name not in (travel.joint, *self.lost)}
         return {travel.joint: 1.0, **followers}
 
+    @cached_property
+    def _surfaces(self) -> Sweeper:
+        """What is visible in motion; it takes long, so that only joints that fall short are looked at."""
+        from kinematify.geometry.overlap import Overlap
+        from kinematify.geometry.rest import Allowance
+        from kinematify.geometry.scene import read_scene, visible_shapes
+        from kinematify.geometry.sweep import Sweeper
+
+        robot = read_robot(self.request.urdf, package_dirs=self.request.package_dirs)
+        scene = read_scene(robot, self.request.settings.geometry, visible_shapes)
+        overlap = Overlap(scene)
+        return Sweeper(scene, overlap, Allowance(scene, overlap))
+
+    def _seen_end(self, travel: Travel, end: float) -> float:
+        """Value up to which what is visible does not block the way to an end [rad or m]."""
+        leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
+        seen = self._surfaces.free_end(leader, np.sign(end - travel.rest))
+        return min(seen, end, key=lambda value: abs(value - travel.rest))
+
     def _by_hand(self, travel: Travel, end: float) -> HandRun:
         joint = self.robot.joint_by_name[travel.joint]
         resistance = {"resistance": joint.friction or 0.0, "damping": joint.damping or 0.0}
         push = self._push(travel, (travel.rest, end), self.strength(travel), **resistance)
         pushed = self.running.push(push, self.values, contacts=True)
-        if self.arrives(travel, end, pushed.farthest):
-            return HandRun(travel=travel, values=self.values, push=push, pushed=pushed)
-        free = self.running.push(push, self.values, contacts=False).farthest
-        return HandRun(travel=travel, values=self.values, push=push, pushed=pushed, without_contacts=free)
+        run = HandRun(
+            travel=travel, values=self.values, push=push, pushed=pushed, end=end, free=self.free(travel) is not None
+        )
+        if self.arrives(run, pushed.farthest):
+            return run
+        seen = self._seen_end(travel, end)
+        run = replace(run, end=seen) if abs(seen - travel.rest) > self._nothing(travel) else replace(run, free=False)
+        if self.arrives(run, pushed.farthest):
+            return run
+        return replace(run, without_contacts=self.running.push(push, self.values, contacts=False).farthest)
 
     def strength(self, travel: Travel) -> float:
         """Force of a hand [N or N m]."""
@@ -252,7 +282,8 @@ class AsLoadedContext:
         force = min(self.strength(travel), effort, inertia * self.speed(travel) / self.settings.press)
         push = self._push(travel, (end, end + outwards * _FAR_BEYOND * self.still(travel)), force, patience=_YIELDING)
         values = self._values({travel.joint: end})
-        return HandRun(travel=travel, values=values, push=push, pushed=self.running.push(push, values, contacts=False))
+        pushed = self.running.push(push, values, contacts=False)
+        return HandRun(travel=travel, values=values, push=push, pushed=pushed, end=end)
 
     @cached_property
     def speeds(self) -> dict[str, float]:
@@ -275,6 +306,9 @@ class AsLoadedContext:
         masses = [link.inertial.mass for link in self.robot.links if link.inertial is not None]
         return GRAVITY * float(sum(masses)) * self.size
 
-    def arrives(self, travel: Travel, end: float, farthest: float) -> bool:
-        """Whether a push got so far that the joint counts as moving to that end [rad or m]."""
-        return abs(farthest - travel.rest) >= self.settings.reach * abs(end - travel.rest)
+    def arrives(self, run: HandRun, farthest: float) -> bool:
+        """Whether a push got so far that the joint counts as moving to its end [rad or m]."""
+        travel, way = run.travel, abs(run.end - run.travel.rest)
+        gone, stopped = abs(farthest - travel.rest), run.end not in (travel.lower, travel.upper)
+        touching = self.settings.touch_angle if travel.turns else self.settings.touch_length
+        return gone >= self.settings.reach * way or (stopped and gone >= max(way - touching, 0.5 * way))

@@ -419,6 +419,10 @@ class AsLoadedSettings(StageConfig):
     """The same of slides [m/s]."""
     reach: float
     """Share of what exact geometry leaves free that a pushed joint has to reach."""
+    touch_angle: float
+    """How much of a way that another body ends may be missing [rad]."""
+    touch_length: float
+    """The same of slides [m]."""
     press: float
     """In which what presses a joint against its limit would bring it up to the hand's speed, at least [s]."""
     release_seconds: float

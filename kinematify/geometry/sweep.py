@@ -106,6 +106,13 @@ class Sweeper:
         values = self._to(leader, travel.rest, travel.upper if sign > 0 else travel.lower, sign)
         return self._within(leader, pair, values, relative(self._scene.poses(self.rows(leader, values)), pair))
 
+    def free_end(self, leader: int, sign: float) -> float:
+        """Value on the way to the declared end of one side up to which no pair meets [rad or m]."""
+        travel = self._scene.travels[leader]
+        met = [self.meeting(leader, pair, sign) for pair in self._scene.affected[leader]]
+        ends = [meeting.first for meeting in met if meeting is not None]
+        return min([*ends, max(travel.upper, travel.rest)]) if sign > 0 else max([*ends, min(travel.lower, travel.rest)])
+
     def rows(self, leader: int, values: FloatArray) -> FloatArray:
         """Rows of leaders with one joint at `values` (n,) and the others at rest, shape (n, leaders)."""
         rows = np.tile(self._scene.mechanism.rest, (len(values), 1))

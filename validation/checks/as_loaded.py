@@ -234,15 +234,16 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
 def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint is pushed from rest to both ends by as_loaded.force or as_loaded.torque on top
     of declared friction and damping, its followers with it, the others held, gravity off. It has to reach
-    as_loaded.reach of what exact geometry leaves free of its range, of the whole range where that is not known. What
-    does not get there without contacts either, or has no free way at all (KV31x), is a note; what gets over half of
-    its way a warning. PyBullet is asked with `URDF_USE_SELF_COLLISION`: without it links pass through each other.
+    as_loaded.reach of what exact geometry, colliding and visible, leaves free of its range, of the whole range where
+    that is not known. Where another body ends the way, not a limit, as_loaded.touch_angle or as_loaded.touch_length
+    may be missing, half of the way at most: engines let bodies touch before they meet. What does not get there
+    without contacts either, or has no free way at all (KV31x), is a note; what gets over half of its way a warning. PyBullet is asked with `URDF_USE_SELF_COLLISION`: without it links pass through each other.
 
     Why it matters: A drawer that jams in the simulator is of no use, whatever its surfaces would allow.
 
     Remedy: Write convex pieces as collision geometry of the links that are named, clear of each other along the motion.
     """
-    short = [run for run in context.hands if not context.arrives(run.travel, run.push.target, run.pushed.farthest)]
+    short = [run for run in context.hands if not context.arrives(run, run.pushed.farthest)]
     jammed = [run for run in short if _free_without_contacts(context, run)]
     right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in jammed}
     right -= {travel.joint for travel in context.travels if context.left_alone.complaint or _leaves(context, travel)}
@@ -254,8 +255,7 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
 
 def _free_without_contacts(context: AsLoadedContext, run: HandRun) -> bool:
     """Whether a push that fell short gets to the end where nothing touches."""
-    alone = run.without_contacts
-    return alone is not None and context.arrives(run.travel, run.push.target, alone)
+    return run.without_contacts is not None and context.arrives(run, run.without_contacts)
 
 
 def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, jammed: bool) -> None:
@@ -263,7 +263,7 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
     overlap = context.between(travel, run.pushed.overlaps)
     unit = "N m" if travel.turns else "N"
     said = (
-        f"Pushed with up to {push.force:.3g} {unit} from {travel.rest:.4g} towards {push.target:.4g} {travel.unit} in "
+        f"Pushed with up to {push.force:.3g} {unit} from {travel.rest:.4g} towards {run.end:.4g} {travel.unit} in "
         f"{context.title}, gravity off and the others held, joint {travel.joint} gets to {stop:.4g} {travel.unit}"
     )
     result.find(
@@ -273,20 +273,20 @@ def _find_short(result: OpenCheck, context: AsLoadedContext, run: HandRun, *, ja
         else f"Check damping, friction, mass and limits of {travel.joint}.",
         joint=travel.joint,
         pair=overlap.links if overlap is not None and jammed else None,
-        severity=_severity(context, run) if jammed else Severity.NOTE,
+        severity=_severity(run) if jammed else Severity.NOTE,
         q={travel.joint: stop},
         value=stop,
-        limit=push.target,
+        limit=run.end,
         unit=travel.unit,
         reproduction=context.running.lines_of_push(push, run.values, run.pushed.steps, contacts=True),
     )
 
 
-def _severity(context: AsLoadedContext, run: HandRun) -> Severity | None:
+def _severity(run: HandRun) -> Severity | None:
     """How bad it is that contacts keep a joint from its end: over half of the way it works, and it is a warning."""
-    if context.free(run.travel) is None:
+    if not run.free:
         return Severity.NOTE
-    way = abs(run.push.target - run.travel.rest)
+    way = abs(run.end - run.travel.rest)
     return Severity.WARNING if abs(run.pushed.farthest - run.travel.rest) > 0.5 * way else None
 
 
