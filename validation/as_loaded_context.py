@@ -215,15 +215,11 @@ class AsLoadedContext:
     @cached_property
     def _surfaces(self) -> Sweeper:
         """What is visible in motion; it takes long, so that only joints that fall short are looked at."""
-        from kinematify.geometry.overlap import Overlap
-        from kinematify.geometry.rest import Allowance
-        from kinematify.geometry.scene import read_scene, visible_shapes
-        from kinematify.geometry.sweep import Sweeper
+        from kinematify.geometry.scene import read_scene, visible_shapes  # noqa: PLC0415 - for what falls short only
+        from kinematify.geometry.sweep import Sweeper  # noqa: PLC0415
 
         robot = read_robot(self.request.urdf, package_dirs=self.request.package_dirs)
-        scene = read_scene(robot, self.request.settings.geometry, visible_shapes)
-        overlap = Overlap(scene)
-        return Sweeper(scene, overlap, Allowance(scene, overlap))
+        return Sweeper.of(read_scene(robot, self.request.settings.geometry, visible_shapes))
 
     def _seen_end(self, travel: Travel, end: float) -> float:
         """Value up to which what is visible does not block the way to an end [rad or m]."""

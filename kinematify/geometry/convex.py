@@ -7,6 +7,7 @@ from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial import QhullError, cKDTree
 
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.robot.vectors import crossed, lengths_of
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
 
 _CLOSED = 1e-6
 """Sum of the area vectors of a closed surface, fraction of its area."""
+_BESIDE = 3e-4
+"""Distance of two corners that are one, fraction of a piece's size."""
+_CORNER = 1e-6
+"""Least eigenvalue of the sum of n n^T over the unit normals n around a corner: 0 on edges and faces."""
 _GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 _KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])
 
@@ -63,6 +68,28 @@ def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> Co
     if len(vertices) > directions:
         vertices, faces = convex_hull(thickened(outermost(vertices, directions), thickness))
     return ConvexPiece(vertices=vertices, faces=faces)
+
+
+def plain_piece(piece: ConvexPiece) -> ConvexPiece:
+    """Return the hull of a piece's corners: points on edges and faces, and corners beside another one, make slivers.
+
+    It lies within the piece.
+    """
+    vertices = piece.vertices
+    near = cKDTree(vertices).query_pairs(_BESIDE * float(np.linalg.norm(piece.high - piece.low)), output_type="ndarray")
+    a, b, c = (vertices[piece.faces[:, k]] for k in range(3))
+    normals = crossed(b - a, c - a)
+    normals /= np.maximum(lengths_of(normals), 1e-300)[:, None]
+    spread = np.zeros((len(vertices), 3, 3))
+    for k in range(3):
+        np.add.at(spread, piece.faces[:, k], normals[:, :, None] * normals[:, None, :])
+    corner = np.linalg.eigvalsh(spread)[:, 0] > _CORNER
+    corner[near[:, 1]] = False
+    try:
+        kept, faces = convex_hull(vertices[corner])
+    except (QhullError, ValueError):  # too thin to lose any
+        return piece
+    return ConvexPiece(vertices=kept, faces=faces)
 
 
 def outermost(points: FloatArray, directions: int) -> FloatArray:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.rest import Allowance
 from kinematify.geometry.scene import box_corners, relative
 from kinematify.robot.vectors import lengths_of
 
@@ -15,8 +17,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.geometry.overlap import Overlap
-    from kinematify.geometry.rest import Allowance
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Travel
@@ -89,6 +89,12 @@ class Sweeper:
         """Keep what is shared by all joints."""
         self._scene, self._overlap, self._allowance = scene, overlap, allowance
 
+    @classmethod
+    def of(cls, scene: Scene) -> Sweeper:
+        """Return one that shares nothing."""
+        overlap = Overlap(scene)
+        return cls(scene, overlap, Allowance(scene, overlap))
+
     def sweep(self, leader: int) -> JointSweep:
         """Move one joint to both sides."""
         travel = self._scene.travels[leader]
@@ -110,8 +116,9 @@ class Sweeper:
         """Value on the way to the declared end of one side up to which no pair meets [rad or m]."""
         travel = self._scene.travels[leader]
         met = [self.meeting(leader, pair, sign) for pair in self._scene.affected[leader]]
-        ends = [meeting.first for meeting in met if meeting is not None]
-        return min([*ends, max(travel.upper, travel.rest)]) if sign > 0 else max([*ends, min(travel.lower, travel.rest)])
+        declared = max(travel.upper, travel.rest) if sign > 0 else min(travel.lower, travel.rest)
+        ends = [declared, *(meeting.first for meeting in met if meeting is not None)]
+        return min(ends, key=lambda end: sign * end)
 
     def rows(self, leader: int, values: FloatArray) -> FloatArray:
         """Rows of leaders with one joint at `values` (n,) and the others at rest, shape (n, leaders)."""

@@ -20,8 +20,6 @@ from kinematify.geometry.carve import Sweep, carved
 from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume, surface_points
 from kinematify.geometry.fewer import fewer_pieces
 from kinematify.geometry.hull import convex_hull
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
 from kinematify.geometry.scene import read_scene
 from kinematify.geometry.sweep import Sweeper
 from kinematify.model.collision_pieces import decomposed, shapes_of
@@ -177,8 +175,7 @@ class _ExactSweeps:
         self._robot, self._joints = robot, _moving(robot)
         self._scene = read_scene(robot, settings)
         self._forced = forced_share * self._scene.size
-        overlap = Overlap(self._scene)
-        self._sweeper = Sweeper(self._scene, overlap, Allowance(self._scene, overlap))
+        self._sweeper = Sweeper.of(self._scene)
         self._body_of = {name: index for index, body in enumerate(self._scene.bodies) for name in body.links}
         self._leader_of = {travel.joint: index for index, travel in enumerate(self._scene.travels)}
         self._asked: dict[tuple[int, int, int], tuple[float, float]] = {}

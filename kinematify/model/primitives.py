@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.geometry.convex import plain_piece
 from kinematify.robot.robot import LinkMesh, Shape
 from kinematify.robot.transforms import rotation_from_x
 from kinematify.robot.vectors import crossed, lengths_of
@@ -48,7 +49,8 @@ def fitted_shape(piece: ConvexPiece, most_beyond: float) -> tuple[Shape, float]:
     for shape, beyond in (_cylinder(piece, mesh), _sphere(piece, mesh)):
         if shape is not None and beyond <= most_beyond:
             return shape, beyond
-    return Shape(mesh=mesh), 0.0
+    plain = plain_piece(piece)
+    return Shape(mesh=LinkMesh(vertices=plain.vertices, faces=plain.faces)), 0.0
 
 
 def _pose(rotation: FloatArray, place: FloatArray) -> FloatArray:

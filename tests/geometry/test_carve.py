@@ -135,6 +135,18 @@ def test_a_body_inside_another_one_keeps_a_piece() -> None:
     assert all(result.pieces)
 
 
+def test_of_a_button_in_a_barrel_the_head_is_left() -> None:
+    """Neither has anything left that keeps the clearance; both would stand in each other."""
+    barrel, button = rod(0.0155, 0.3), rod(0.012, 0.3)
+    inserted = ConvexPiece(vertices=button.vertices + np.array([0.0, 0.0, 0.004]), faces=button.faces)
+    sweep = slide(1, (0.0, 0.0, -1.0), 0.002)
+    result = freed([[barrel], [inserted]], sweep)
+    assert result.jams == ()
+    assert result.lost[0] == 0.0
+    assert result.pieces[1][0].high[2] - result.pieces[1][0].low[2] == pytest.approx(0.002)
+    assert nearest(result, sweep) > -1e-6
+
+
 def test_a_thin_wall_beside_a_thick_filler_stays() -> None:
     """The wall is 2 % of the volume that the filler has, and all that there is of its side."""
     drawer = [box((-0.2, 0.0, 0.0), (0.2, 0.4, 0.05)), box((0.19, 0.0, 0.05), (0.2, 0.4, 0.15))]

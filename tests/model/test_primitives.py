@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.geometry.convex import convex_piece
+from kinematify.geometry.convex import ConvexPiece, convex_piece
+from kinematify.geometry.hull import convex_hull
 from kinematify.model.primitives import fitted_shape
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from kinematify.geometry.convex import ConvexPiece
     from kinematify.robot.arrays import FloatArray
 
 R = rotation_about(np.array([0.0, 0.6, 0.8]), 0.7)
@@ -65,6 +65,16 @@ ROUND = prism(0.1, 0.3, 48)
 @pytest.mark.parametrize("points", [prism(0.1, 0.3, 6), prism(0.1, 0.3, 48, top=0.9), ROUND[ROUND[:, 0] > -0.02]])
 def test_what_is_not_round_stays_a_mesh(points: FloatArray) -> None:
     assert fitted_shape(placed(points), 0.01)[0].kind == "mesh"
+
+
+def test_slivers_are_not_written() -> None:
+    wedge = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 0.5 + 0.5 * x)])
+    more = [[0.5, 0.0, 0.0], [0.25, 1.0, 0.0], [1.0, 1.0, 1.0 - 2e-5], [0.5, 0.3, 0.75]]
+    vertices, faces = convex_hull(np.concatenate([wedge, more]))
+    shape, _ = fitted_shape(ConvexPiece(vertices=vertices, faces=faces), 1e-4)
+    assert shape.kind == "mesh"
+    assert len(shape.mesh.vertices) == 8
+    assert np.linalg.norm(shape.mesh.vertices[:, None] - wedge, axis=2).min(axis=1).max() < 1e-4
 
 
 def test_a_cube_is_a_box_and_not_round() -> None:

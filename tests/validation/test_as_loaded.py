@@ -131,8 +131,10 @@ def test_what_follows_a_joint_is_pushed_with_it(tmp_path: Path, engine: str) -> 
 
 @each_engine
 def test_a_joint_jams_where_its_follower_does(tmp_path: Path, engine: str) -> None:
-    post = Part(name="post", parent="body", boxes=(Box(size=(0.02, 0.2, 0.4), at=(0.35, -0.155, 0.0)),))
-    result = told(Model(parts=(*cabinet().with_part("drawer", extra=FOLLOWS).parts, post)), tmp_path, engine)
+    post = Part(name="post", parent="body", boxes=(Box(size=(0.02, 0.2, 0.4), at=(0.85, -0.155, 0.0)),))
+    model = Model(parts=(*cabinet().with_part("drawer", extra=FOLLOWS).parts, post))
+    unseen = Box(size=(0.02, 0.2, 0.4), at=(0.35, -0.155, 0.0))
+    result = told(collision(model, "post", unseen), tmp_path, engine)
     (finding,) = result.results["KV804"].findings
     assert finding.joint == "door_joint"
     assert "drawer" in (finding.pair or ()), "MuJoCo takes the post for a piece of the body"
@@ -217,6 +219,22 @@ def test_a_joint_moves_as_far_as_exact_geometry_leaves_free(tmp_path: Path) -> N
     request = replace(request_of(model, tmp_path), free_travel=free)
     result = tell(partial(as_loaded.run, engine="mujoco"), request)
     assert result.results["KV804"].status is Status.PASS
+
+
+@pytest.mark.parametrize(("nearer", "told_of"), [(0.0, False), (0.003, False), (0.02, True)])
+def test_what_is_visible_ends_the_way_too_and_engines_may_touch_a_little_before(
+    tmp_path: Path, nearer: float, told_of: bool
+) -> None:
+    (body, *others) = cabinet().parts
+    seen, in_the_way = (replace(WALL, at=(0.245 - less, 0.0, 0.0)) for less in (0.0, nearer))
+    walled = replace(body, boxes=(*body.boxes, seen), collision=(*body.boxes, in_the_way))
+    found = told(Model(parts=(walled, *others)), tmp_path, "mujoco").results["KV804"].findings
+    assert ("drawer_joint" in {item.joint for item in found}) == told_of
+
+
+def test_friction_does_not_press_a_limit_open(tmp_path: Path) -> None:
+    stiff = cabinet().with_part("door", extra='<dynamics friction="300"/>')
+    assert told(stiff, tmp_path, "mujoco").results["KV805"].status is Status.PASS
 
 
 def jam(engine: str) -> CheckResult:

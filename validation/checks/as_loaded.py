@@ -237,7 +237,8 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     as_loaded.reach of what exact geometry, colliding and visible, leaves free of its range, of the whole range where
     that is not known. Where another body ends the way, not a limit, as_loaded.touch_angle or as_loaded.touch_length
     may be missing, half of the way at most: engines let bodies touch before they meet. What does not get there
-    without contacts either, or has no free way at all (KV31x), is a note; what gets over half of its way a warning. PyBullet is asked with `URDF_USE_SELF_COLLISION`: without it links pass through each other.
+    without contacts either, or has no free way at all (KV31x), is a note; what gets over half of its way a warning.
+    PyBullet is asked with `URDF_USE_SELF_COLLISION`: without it links pass through each other.
 
     Why it matters: A drawer that jams in the simulator is of no use, whatever its surfaces would allow.
 
@@ -315,9 +316,9 @@ def _cause(overlap: Overlap | None, *, jammed: bool) -> str:
 def holds_limits(result: OpenCheck, context: AsLoadedContext) -> None:
     """In the untouched file each joint that has limits is pressed against both by as_loaded.force or as_loaded.torque,
     by its effort if that is less, and by no more than brings it up to the hand's speed in as_loaded.press: nothing
-    moves there that friction and damping would hold back. The others are held, without contacts and gravity. It gives way by no more than as_loaded.still of its range (at least
-    as_loaded.still_angle or as_loaded.still_length). A limit that gives way and holds then is a warning, and so are
-    equal limits: files write 0 and 0 where no range is meant.
+    moves there that friction and damping would hold back. The others are held, without contacts and gravity. It gives
+    way by no more than as_loaded.still of its range (at least as_loaded.still_angle or as_loaded.still_length). A limit
+    that gives way and holds then is a warning, and so are equal limits: files write 0 and 0 where no range is meant.
 
     Why it matters: A range that an engine does not keep is none: MuJoCo takes limits that are equal for no limits.
 

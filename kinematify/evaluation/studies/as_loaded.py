@@ -1,11 +1,12 @@
 """Do files work in engines as they are?
 
 Objects of the benchmark are inferred from their parts alone and written; generated ones are written with the joints
-that they were built with; models of others are taken as they are, and after `kinematify fix`. Each file is judged by
-the checks KV8xx of `kinematify validate`: it is loaded with the engine's own defaults, left alone under gravity, and
-each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an engine in which
-no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is asked with
-`URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of
+that they were built with, and inferred: of these `joints right` has those whose tree, types and axes (within 5 deg and
+2 % of the diagonal) are as built; models of others are taken as they are, and after `kinematify fix`. Each file is
+judged by the checks KV8xx of `kinematify validate`: it is loaded with the engine's own defaults, left alone under
+gravity, and each joint is pushed by a hand over what exact geometry leaves free of its range. A model works in an
+engine in which no check complains; `blocked` counts the joints of which less is free than is declared. PyBullet is
+asked with `URDF_USE_SELF_COLLISION`; without that flag, its default, links pass through each other. The plain code of
 complaints about models of others is run as it stands in the report; `shown` counts those where it shows what is said.
 """
 
@@ -30,6 +31,7 @@ from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.study import Options, Study, among, explained
+from kinematify.evaluation.truth import score_blueprint
 from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.procedural.families import FAMILIES
@@ -51,11 +53,15 @@ if TYPE_CHECKING:
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.pipeline import Inference
     from kinematify.validation.finding import CheckResult, Finding
 
 _SHOWN = 0.1
 """How far what the code of a finding prints may be from what the finding says, as a fraction of it."""
+_RIGHT_DEG, _RIGHT_LINE = 5.0, 0.02
+"""How far the axis of an inferred joint may be from the true one: angle, and distance as a fraction of the diagonal."""
 _FREE_TRAVEL = "KV310"
 """Its stage measures how far every joint is free."""
 
@@ -69,6 +75,7 @@ class AsLoadedOptions(Options):
     families: Annotated[tuple[str, ...], among(FAMILIES)] = Field(
         (), description="Only these families, separated by commas."
     )
+    inferred: int = Field(0, ge=0, description="Objects per family of the generator that are inferred.")
     composed: int = Field(0, ge=0, description="Objects composed of mechanisms on bodies.")
     engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
         ("mujoco", "pybullet"), description="Engines, separated by commas."
@@ -102,6 +109,9 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
     for seed in range(options.seeds):
         for family in options.families or FAMILIES:
             cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
+    for seed in range(options.inferred):
+        for family in options.families or FAMILIES:
+            cases[f"{family} {seed} inferred"] = case(made="inferred", family=family, seed=seed)
     cases |= {f"composed {seed}": case(made="exact", seed=seed) for seed in range(options.composed)}
     return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
         "versions": package_versions(ENGINES[engine].package for engine in options.engines)
@@ -119,9 +129,13 @@ def tried_as_loaded(case: Case) -> Record:
             blueprint = build(FAMILIES[case.family], {}, seed=case.seed, name=name)
         else:
             blueprint = compose(draw_composition(case.seed), seed=case.seed, name=name)
-        model = true_model(blueprint, config)
-        facts = {"set": f"{'generated' if case.family else 'composed'}, exact", "object": f"{kind} {case.seed}"}
-        return {**facts, **_written(model, config, case.engines)}
+        facts = {"set": f"{'generated' if case.family else 'composed'}, {case.made}", "object": f"{kind} {case.seed}"}
+        if case.made == "exact":
+            return {**facts, **_written(true_model(blueprint, config), config, case.engines)}
+        inference = infer(blueprint.assembly, config=config)
+        right = "right" if _joints_right(blueprint, inference) else "wrong"
+        facts["set"] += f", joints {right}"
+        return {**facts, **_written(inference.model, config, case.engines)}
     facts = {"set": f"{case.item.urdf.parents[1].name}, {case.made}", "object": case.item.name}
     if case.made == "inferred":
         model = infer(shown_parts(erased_item(case.item, CONDITIONS[0])), config=config).model
@@ -135,6 +149,14 @@ def tried_as_loaded(case: Case) -> Record:
         )
         seconds = time.process_time() - start
         return {**facts, "seconds": seconds, **_judged(fixed.path, case.engines, case.item.package_dirs, run_code=True)}
+
+
+def _joints_right(blueprint: Blueprint, inference: Inference) -> bool:
+    score, diagonal = score_blueprint(blueprint, inference), blueprint.assembly.diagonal
+    return score.parent_errors == 0 and all(
+        joint.type_right and joint.angle_deg <= _RIGHT_DEG and (joint.line_m or 0.0) <= _RIGHT_LINE * diagonal
+        for joint in score.joints
+    )
 
 
 def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> Record:
