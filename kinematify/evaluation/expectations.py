@@ -31,6 +31,7 @@ SETS = {
     "other_words": "in other words, written before they were tried",
     "stranger": "what a stranger asked for, and what is meant to be composed",
     "new": "new ones, written before the parser was looked at",
+    "fresh": "sixty more, committed before they were tried",
     "senseless": "senseless ones",
 }
 """Name of each list -> what it is."""
