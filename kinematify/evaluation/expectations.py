@@ -40,7 +40,7 @@ _SIZE = 0.02  # of a size, by which it may be off
 _ANGLE_DEG = 0.1
 _CALLED = {
     "arm": ("arm", "link"), "blade": ("blade", "rotor"), "carriage": ("carriage", "bridge", "ram"),
-    "casement": ("sash",), "caster": ("castor", "caster"), "door": ("door", "leaf", "sliding_door"),
+    "casement": ("sash",), "caster": ("castor", "caster", "swivel_wheel"), "door": ("door", "leaf", "sliding_door"),
     "globe": ("ball",), "handle": ("handle", "lever"), "lid": ("lid", "screen"), "needle": ("gauge", "needle"),
     "flap": ("flap", "flap_door", "tilting_flap"),
     "switch": ("rocker", "switch", "lever"), "tailgate": ("flap", "tailgate"),

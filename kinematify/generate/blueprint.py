@@ -52,6 +52,23 @@ class BlueprintJoint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class BlueprintLoop:
+    """A pin that two parts share besides the joints of the tree; world frame. It closes a chain of joints."""
+
+    one: str
+    other: str
+    axis: FloatArray
+    """Unit direction, shape (3,). Read-only."""
+    pivot: FloatArray
+    """A point on the pin [m], shape (3,). Read-only."""
+
+    def __post_init__(self) -> None:
+        axis = np.asarray(self.axis, dtype=np.float64)
+        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
+        object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Blueprint:
     """An articulated object; the first part is the base link."""
 
@@ -61,6 +78,8 @@ class Blueprint:
     """With colour and density."""
     joints: tuple[BlueprintJoint, ...]
     """One per part but the first, parents before children."""
+    loops: tuple[BlueprintLoop, ...] = ()
+    """What closes the chains that the tree leaves open; followers among the joints keep them closed."""
     parameters: Mapping[str, Any] = field(default_factory=dict)
     """What it was built with, defaults and drawn values included."""
 
@@ -106,7 +125,12 @@ class Blueprint:
                 )
             )
         parts = tuple(_placed(part, T_new_old[part.name]) for part in self.parts)
-        return replace(self, parts=parts, joints=tuple(joints))
+        loops = tuple(
+            replace(loop, axis=T[:3, :3] @ loop.axis, pivot=T[:3, :3] @ loop.pivot + T[:3, 3])
+            for loop in self.loops
+            for T in (T_new_old[loop.one],)
+        )
+        return replace(self, parts=parts, joints=tuple(joints), loops=loops)
 
     def scaled(self, factor: float) -> Blueprint:
         """Return the object larger or smaller in all directions, about the origin of the world frame."""
@@ -122,7 +146,8 @@ class Blueprint:
             )
 
         parts = tuple(replace(part, vertices=factor * part.vertices) for part in self.parts)
-        return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints))
+        loops = tuple(replace(loop, pivot=factor * loop.pivot) for loop in self.loops)
+        return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints), loops=loops)
 
     def repeated(self, count: int, pitch: float) -> Blueprint:
         """Return several of it along x, their base links one part.
@@ -152,7 +177,11 @@ class Blueprint:
             )
             for k, step in steps for joint in self.joints
         ]  # fmt: skip
-        return replace(self, parts=(whole, *parts), joints=tuple(joints))
+        loops = [
+            replace(loop, one=name(loop.one, k), other=name(loop.other, k), pivot=loop.pivot + step)
+            for k, step in steps for loop in self.loops
+        ]  # fmt: skip
+        return replace(self, parts=(whole, *parts), joints=tuple(joints), loops=tuple(loops))
 
 
 def _placed(part: Part, transform: FloatArray) -> Part:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -50,6 +51,12 @@ def ends_of(joint):
         ("a crate with a carrying handle", {JointType.REVOLUTE: 1}),
         ("a column with a folding arm and a crank", {JointType.REVOLUTE: 2, JointType.CONTINUOUS: 1}),
         ("a platform with four wheels and a telescopic mast", {JointType.CONTINUOUS: 4, JointType.PRISMATIC: 1}),
+        ("a toolbox with two cantilever trays and a handle", {JointType.REVOLUTE: 7}),
+        ("a scissor lift on four wheels", {JointType.REVOLUTE: 3, JointType.CONTINUOUS: 4}),
+        ("a cabinet with a gripper, three hooks and two pedals", {JointType.PRISMATIC: 2, JointType.REVOLUTE: 5}),
+        ("a folding table", {JointType.REVOLUTE: 4}),
+        ("a truck", {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 3}),
+        ("a fridge of 180 cm with a sliding door on the right and three drawers", {JointType.PRISMATIC: 4}),
     ],
 )
 def test_what_is_asked_for_is_built_and_moves_freely(sentence, counts):
@@ -61,6 +68,41 @@ def test_what_is_asked_for_is_built_and_moves_freely(sentence, counts):
     for joint in blueprint.joints:
         for value in ends_of(joint):
             assert not overlaps(blueprint.moved({joint.child: value})), (joint.child, value)
+
+
+def test_bars_of_a_closed_chain_stay_on_their_pin():
+    blueprint = from_text("a toolbox with two cantilever trays").build()
+    assert len(blueprint.loops) == 2
+    # A loop is carried along by the first of its parts: seen from the other one it must be at the same place.
+    turned = replace(blueprint, loops=tuple(replace(item, one=item.other, other=item.one) for item in blueprint.loops))
+    for share in (0.3, 0.7, 1.0):
+        values = {joint.child: share * joint.upper for joint in blueprint.joints if joint.mimic is None}
+        pairs = zip(blueprint.moved(values).loops, turned.moved(values).loops, strict=True)
+        for from_one, from_other in pairs:
+            assert np.linalg.norm(from_one.pivot - blueprint.loops[0].pivot) > 1e-3
+            np.testing.assert_allclose(from_one.pivot, from_other.pivot, atol=1e-12)
+
+
+def test_a_lifted_platform_stays_level_above_its_base():
+    blueprint = from_text("a scissor lift").build()
+    up = blueprint.moved({"lifting_platform_1_arm_1": blueprint.joint_above["lifting_platform_1_arm_1"].upper})
+    before, after = (made.parts[-1].vertices for made in (blueprint, up))
+    rise = after - before
+    np.testing.assert_allclose(rise, np.broadcast_to([0.0, 0.0, rise[0, 2]], rise.shape), atol=1e-9)
+    assert rise[0, 2] > 0.3
+
+
+def test_a_sliding_door_covers_the_half_that_is_said():
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        blueprint = from_text(f"a cabinet with a sliding door on the {side}").build()
+        assert sign * blueprint.parts[1].bounds.mean(axis=0)[0] > 0.1
+        assert sign * blueprint.joints[0].axis[0] < 0.0, "it slides to the other half"
+
+
+def test_what_a_body_stands_on_may_come_last():
+    assert from_text("a turntable on a red table").build().family == "table"
+    with pytest.raises(InputError, match="turntable"):
+        from_text("a turntable and a red table")
 
 
 def test_one_caster_is_one_beside_two_wheels():
@@ -118,7 +160,7 @@ def test_sides_looks_and_openness_are_as_said():
 @pytest.mark.parametrize(
     ("sentence", "words"),
     [
-        ("a toolbox with two cantilever trays", "cantilever"),
+        ("a toolbox with two cantilever stairs", "cantilever"),
         ("three carts with a wheel", "3 cart"),
         ("a cart with two crocodiles", "crocodiles"),
         ("a cart with a drawer and no drawer", "drawer"),
@@ -146,6 +188,9 @@ def test_what_is_not_understood_is_named(sentence, words):
         ("a cart with two wheels on the left", "both sides"),
         ("a chest with three lids and a carrying handle", "one lid"),
         ("a control panel with two drawers", "needs room behind it"),
+        ("a cabinet with two cantilever trays", "needs an open top"),
+        ("a toolbox with two cantilever trays and a lid", "needs the top for itself"),
+        ("a table with a folding leg", "stands high without it"),
         ("a frame with a caster", "no place for a caster"),
         ("a column with an arm and a turntable on top", "turntable"),
         ("a cart, 20 cm tall, with nine drawers", "no room for 9 drawers"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.generate.composer.side import side_of
@@ -10,7 +10,7 @@ from kinematify.generate.procedural.pieces.fronts import Opening
 from kinematify.generate.procedural.solids import box, cylinder
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from kinematify.generate.composer.side import Side
     from kinematify.generate.procedural.workshop import Workshop
@@ -32,6 +32,10 @@ class Body:
     build: Callable[[Workshop, Size, float], dict[str, Side]]
     """Adds the base link of a size with walls of a thickness [m] and returns its sides by name."""
     material: str = "steel"
+    always: Mapping[str, int] = field(default_factory=dict)
+    """First word of a mechanism without which it would not be called so -> how many, if nothing else is said."""
+    usual: Mapping[str, int] = field(default_factory=dict)
+    """The same of what it has if nothing at all is asked for."""
 
 
 def _area(width: float, bottom: float, top: float, depth: float, wall: float) -> Opening:
@@ -87,6 +91,17 @@ def _table(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         "left": _beside("left", size, apron, wall),
         "right": _beside("right", size, apron, wall),
         "bottom": side_of("bottom", (0, depth, 0), _area(width, 0.0, depth, height, 0.5 * leg - 0.02), hollow=False),
+    }
+
+
+def _top(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A board at its height, which stands on what is folded out below it."""
+    width, depth, height = size
+    thick = max(wall, 0.025)
+    workshop.body(BODY, box((-0.5 * width, 0, height - thick), (0.5 * width, depth, height)))
+    return {
+        "top": side_of("top", (0, 0, height), _area(width, 0.0, depth, thick, 0.5 * thick), hollow=False),
+        "bottom": side_of("bottom", (0, depth, height - thick), _area(width, 0.0, depth, thick, 0.02), hollow=False),
     }
 
 
@@ -242,16 +257,20 @@ BODIES = (
         material="wood",
     ),
     Body(
-        words=("control box", "console", "housing"),
+        words=("control box", "console", "housing", "machine housing", "lab box", "instrument box"),
         size=(0.4, 0.22, 0.3),
         build=_block,
     ),
     Body(words=("wardrobe", "armoire", "closet"), size=(1.2, 0.6, 2.0), build=_block, material="wood"),
-    Body(words=("tv stand", "tv unit"), size=(1.5, 0.4, 0.5), build=_block, material="wood"),
+    Body(words=("tv stand", "tv unit", "tv bench"), size=(1.5, 0.4, 0.5), build=_block, material="wood"),
     Body(words=("vending machine", "ticket machine"), size=(0.9, 0.8, 1.8), build=_block, material="metal"),
     Body(words=("printer", "copier"), size=(0.5, 0.45, 0.35), build=_block),
     Body(words=("mobile robot", "mobile base", "robot base"), size=(0.45, 0.45, 0.25), build=_block),
-    Body(words=("cart", "trolley", "tool cart", "tool trolley", "utility cart"), size=(0.75, 0.45, 0.7), build=_block),
+    Body(
+        words=("cart", "trolley", "tool cart", "tool trolley", "utility cart", "serving cart"),
+        size=(0.75, 0.45, 0.7),
+        build=_block,
+    ),
     Body(words=("platform", "dolly", "base plate"), size=(0.8, 0.5, 0.1), build=_block),
     Body(
         words=("crate", "tub", "toolbox", "tool box", "bin", "container", "chest"),
@@ -261,12 +280,35 @@ BODIES = (
     ),
     Body(words=("table", "desk", "workbench", "counter"), size=(1.2, 0.6, 0.75), build=_table, material="wood"),
     Body(
-        words=("pickup truck", "pickup", "truck", "lorry"),
+        words=("folding table", "camping table", "trestle table", "table top"),
+        size=(1.5, 0.7, 0.72),
+        build=_top,
+        material="wood",
+        always={"leg": 4},
+    ),
+    Body(
+        words=("scissor lift", "lift table", "scissor table", "scissor lift platform", "lifting table"),
+        size=(0.9, 0.5, 0.15),
+        build=_block,
+        always={"lifting platform": 1},
+    ),
+    Body(
+        words=("refrigerator", "fridge"),
+        size=(0.6, 0.6, 1.8),
+        build=_block,
+        material="metal",
+    ),
+    Body(words=("filing cabinet", "file cabinet"), size=(0.45, 0.6, 1.1), build=_block),
+    Body(words=("dresser", "drawer unit"), size=(0.9, 0.45, 0.9), build=_block, material="wood"),
+    Body(
+        words=("pickup truck", "pickup", "truck", "lorry", "toy truck"),
         size=(1.8, 4.6, 1.75),
         build=_truck,
         material="plastic",
+        always={"wheel": 4},
+        usual={"door": 2, "flap": 1},
     ),
-    Body(words=("car", "toy car"), size=(0.8, 1.8, 0.6), build=_car),
+    Body(words=("car", "toy car"), size=(0.8, 1.8, 0.6), build=_car, always={"wheel": 4}),
     Body(words=("drum", "barrel", "tank"), size=(0.5, 0.5, 0.7), build=_drum),
     Body(words=("column", "post", "pedestal", "stand"), size=(0.36, 0.36, 1.0), build=_column),
     Body(words=("control panel", "panel", "board"), size=(0.6, 0.2, 0.45), build=_panel),

@@ -11,7 +11,8 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES, Body, Size
-from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism, Place
+from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
+from kinematify.generate.composer.place import Place
 from kinematify.generate.composer.side import SideWorkshop, columns, rows
 from kinematify.generate.procedural.pieces.fronts import Fitting
 from kinematify.generate.procedural.workshop import Workshop
@@ -30,7 +31,13 @@ _LARGEST = 8.0  # of a body that grows with what is placed on it [m]
 _GROWTH = 1.15  # at a time
 _TURNING = 6.4  # room across two casters that face each other, in radii of their wheels
 _COVERING = ("row", "stack", "over", "alone")
-_NEEDS = {"room": "room behind it", "opening": "an opening to close"}
+_NEEDS = {
+    "room": "room behind it",
+    "opening": "an opening to close",
+    "mouth": "an open top",
+    "height": "a body that stands high without it",
+}
+_LOW = 0.2  # [m] below it nothing folds under a body
 _MOST_KINDS = 4  # of mechanisms on an object that is drawn
 _ANOTHER = 1_000_003  # the next seed where nothing that was drawn fits
 
@@ -106,6 +113,7 @@ def compose(
             hollow=side.hollow,
             fitting=fitting,
             side=name_of_side,
+            half=item.side if item.mechanism.halves else "",
             index=here[name_of_side, word],
         )
         here[name_of_side, word] += 1
@@ -175,9 +183,12 @@ def draw_composition(seed: int) -> Composition:
     """Draw a body with one to four kinds of mechanism that it can carry."""
     rng = np.random.default_rng(seed)
     body = BODIES[int(rng.integers(len(BODIES)))]
-    wanted: list[Wanted] = []
+    always = [kind for kind in MECHANISMS if kind.words[0] in body.always]
+    wanted = [Wanted(mechanism=kind, count=body.always[kind.words[0]]) for kind in always]
     for k in rng.permutation(len(MECHANISMS))[: int(rng.integers(2, 9))]:
         asked = Wanted(mechanism=MECHANISMS[int(k)], count=int(rng.choice([1, 2, 2, 3, 4])))
+        if asked.mechanism in always:
+            continue
         try:
             _laid_out(Composition(body=body, wanted=(*wanted, asked)), None)
         except InputError:
@@ -211,7 +222,7 @@ def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list
             for side in ("left", "right"):
                 found[side].append(replace(wanted, count=wanted.count // 2))
         else:
-            found[wanted.side or _freest(usual, found, kind)].append(wanted)
+            found[usual[0] if _says_half(wanted) else wanted.side or _freest(usual, found, kind)].append(wanted)
     for side, items in found.items():
         _refuse_crowded(side, items)
     return {side: items for side, items in found.items() if items}
@@ -230,9 +241,13 @@ def _usual_sides(wanted: Wanted, sides: dict[str, Side], body: str) -> list[str]
         raise InputError(f"{wanted.count} {what}s are asked for; a {body} takes {kind.most}.")
     if wanted.side and kind.arranged == "axles":
         raise InputError(f"{what.capitalize()}s go on both sides of a {body}, not on the {wanted.side} alone.")
-    if wanted.side and wanted.side not in usual:
+    if wanted.side and wanted.side not in usual and not _says_half(wanted):
         raise InputError(f"A {what} goes on the {' or '.join(usual)} of a {body}, not on the {wanted.side}.")
     return usual
+
+
+def _says_half(wanted: Wanted) -> bool:
+    return wanted.mechanism.halves and wanted.side in ("left", "right")
 
 
 def _refuse_crowded(side: str, items: Sequence[Wanted]) -> None:
@@ -240,15 +255,22 @@ def _refuse_crowded(side: str, items: Sequence[Wanted]) -> None:
     over = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "over"), None)
     if over and lids > 1:
         raise InputError(f"A {over} goes on one lid, but there are {lids}. Ask for one lid.")
-    alone = next((item.mechanism.words[0] for item in items if item.mechanism.arranged == "alone"), None)
-    if alone and len(items) > 1:
-        others = ", ".join(item.mechanism.words[0] for item in items if item.mechanism.words[0] != alone)
-        raise InputError(f"A {alone} needs the {side} for itself, but there are also: {others}. Leave one out.")
+    alone = next((item.mechanism for item in items if item.mechanism.arranged in ("alone", "apart")), None)
+    crowd = [item.mechanism for item in items if item.mechanism is not alone]
+    if alone and any(alone.arranged == "alone" or other.arranged != "over" for other in crowd):
+        others = ", ".join(other.words[0] for other in crowd)
+        raise InputError(
+            f"A {alone.words[0]} needs the {side} for itself, but there are also: {others}. Leave one out."
+        )
 
 
 def _fits(kind: Mechanism, side: Side) -> bool:
     if kind.arranged == "axles":
         return side.axles is not None
+    if kind.needs == "height":
+        return bool(side.T_world_side[2, 3] > _LOW)
+    if kind.needs == "mouth":
+        return side.is_open
     if kind.needs:
         return side.hollow or (side.is_open and kind.needs == "opening")
     return not side.is_open or kind.arranged == "over"
@@ -266,7 +288,7 @@ def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanis
 def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wanted, Opening]]:
     """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
     placed = []
-    bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid")])
+    bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid", "foot")])
     for band, strip in zip(bands, rows(side.area, [weight for weight, _ in bands]) if bands else [], strict=True):
         for item, cell in _divided(band[1], strip):
             needed = item.mechanism.least
@@ -284,7 +306,9 @@ def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wan
             if cells[0].width < item.mechanism.least[0]:
                 raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1})
             placed += [(item, cell) for cell in cells]
-        elif item.mechanism.arranged in ("edge", "over", "alone"):
+        elif item.mechanism.arranged in ("edge", "over", "alone", "apart"):
+            if side.area.width < item.mechanism.least[0] or side.area.height < item.mechanism.least[1]:
+                raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1 if name == "top" else 2})
             placed += [(item, side.area)] * item.count
     return placed
 
@@ -295,7 +319,7 @@ def _told(mechanism: Mechanism, wanted: Sequence[Wanted], side: str) -> str:
 
 
 def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
-    """Strips of a side from the top, with their weights: controls, then what stands side by side, then stacks."""
+    """Strips of a side from the top, with their weights: controls, what stands in a row, stacks, what is trodden."""
     controls = [item for item in wanted if item.mechanism.arranged == "grid"]
     standing = [item for item in wanted if item.mechanism.arranged == "row"]
     stacked = [item for item in wanted if item.mechanism.arranged == "stack"]
@@ -305,6 +329,8 @@ def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
     if standing:
         found.append((3.0, standing))
     found += [(item.mechanism.weight, [replace(item, count=1)]) for item in stacked for _ in range(item.count)]
+    if trodden := [item for item in wanted if item.mechanism.arranged == "foot"]:
+        found.append((trodden[0].mechanism.weight, trodden))
     return found
 
 

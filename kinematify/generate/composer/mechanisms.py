@@ -12,83 +12,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.composer.bodies import BODY
-from kinematify.generate.composer.side import SideWorkshop
-from kinematify.generate.procedural.pieces.bearings import fork
-from kinematify.generate.procedural.pieces.bearings import room as fork_room
+from kinematify.generate.composer.linkages import (
+    add_cantilever_tray,
+    add_gripper,
+    add_hook,
+    add_leg,
+    add_pedal,
+    add_scissor_lift,
+    stick,
+)
+from kinematify.generate.composer.place import HANGING, OUTWARD, UPSIDE_DOWN, Place
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
-from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, add_flap, room
+from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, ring, rod, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from manifold3d import Manifold
-
     from kinematify.robot.arrays import FloatArray
-
-_OUT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-"""Turns what is built to stand on z = 0 so that it stands on the side."""
-_INTO = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-"""Turns what is built to hang from z = 0 so that it hangs from the side."""
-_UPSIDE_DOWN = np.diag([-1.0, 1.0, -1.0])
-"""Turns a side about its normal."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Place:
-    """Where one mechanism goes."""
-
-    workshop: SideWorkshop
-    """In the frame of the side."""
-    name: str
-    """Of the body that moves; further ones add to it."""
-    parent: str = BODY
-    """Body that carries it."""
-    area: Opening
-    hollow: bool
-    """A room may be cut behind it."""
-    fitting: Fitting
-    side: str
-    """Name of the side."""
-    index: int
-    """Among those of its kind on the side, from 0."""
-
-    @property
-    def middle(self) -> tuple[float, float, float]:
-        """Of the area, on the surface [m]."""
-        return 0.5 * (self.area.left + self.area.right), 0.0, 0.5 * (self.area.bottom + self.area.top)
-
-    @property
-    def radius(self) -> float:
-        """Of the largest circle in the area [m]."""
-        return 0.5 * min(self.area.width, self.area.height)
-
-    @property
-    def clearance(self) -> float:
-        """[m]."""
-        return self.fitting.clearance
-
-    def hollowed(self) -> None:
-        """Cut the room behind the area, where there may be one."""
-        if self.hollow:
-            self.workshop.cut(BODY, room(self.area))
-
-    def on_shaft(
-        self,
-        *solids: Manifold,
-        shaft: float,
-        limits: tuple[float, float] | None = None,
-        material: str | None = None,
-    ) -> None:
-        """Add what turns clockwise about the normal through the middle, on a shaft in a bore of the body."""
-        x, _, z = self.middle
-        # Behind a side that may be hollow, only its wall is sure to be there.
-        deep, out = (min(0.02, self.area.wall) if self.hollow else 0.8 * self.area.depth), self.clearance + 1e-3
-        self.workshop.cut(BODY, bore(shaft, self.clearance, (x, deep, z), (x, -0.01, z)))
-        end = deep - max(self.clearance, 1e-3)
-        self.workshop.body(self.name, cylinder(shaft, (x, end, z), (x, -out, z)), *solids, material=material)
-        self.workshop.turns(self.name, BODY, (0, 1, 0), self.middle, limits, rest=self.fitting.rest)
 
 
 def _door(place: Place) -> None:
@@ -114,33 +56,35 @@ def _lid(place: Place) -> None:
     place.hollowed()
     area = place.area
     about = replace(area, left=-area.right, right=-area.left, bottom=-area.top, top=-area.bottom)
-    turned = place.workshop.turned(_UPSIDE_DOWN, (0, 0, 0))
+    turned = place.workshop.turned(UPSIDE_DOWN, (0, 0, 0))
     add_flap(turned, place.name, BODY, about, place.fitting, hinge="edge")
 
 
 def _shutter(place: Place) -> None:
-    """A panel between two rails covers the left half of its area and slides to the right."""
+    """A panel between two rails covers the left half of its area, or the right one if so said, and slides aside."""
     area, gap, workshop = place.area, place.clearance, place.workshop
     thick, rail = min(area.wall, 0.02), min(0.012, 0.1 * area.height)
     middle = 0.5 * (area.left + area.right)
+    way, side = (-1.0, area.right) if place.half == "right" else (1.0, area.left)
+    low, high = sorted((side, middle))
     if place.hollow:
-        place.workshop.cut(BODY, room(replace(area, right=middle, bottom=area.bottom + rail, top=area.top - rail)))
+        behind = replace(area, left=low, right=high, bottom=area.bottom + rail, top=area.top - rail)
+        place.workshop.cut(BODY, room(behind))
     front = -2.0 * gap - thick
     for edge, sign in ((area.bottom, 1.0), (area.top, -1.0)):
         inner, lip = edge + sign * 0.5 * rail, edge + sign * rail
         for start, end, level in ((front - 0.006, 1e-3, inner), (front - 0.006, front, lip)):
-            low, high = sorted((edge, level))
-            workshop.add(BODY, box((area.left, start, low), (area.right, end, high)))
+            under, over = sorted((edge, level))
+            workshop.add(BODY, box((area.left, start, under), (area.right, end, over)))
     bottom, top = area.bottom + 0.5 * rail + gap, area.top - 0.5 * rail - gap
-    panel = box((area.left, -gap - thick, bottom), (middle, -gap, top))
-    x, z = middle - min(0.05, 0.2 * area.width), place.middle[2]
+    panel = box((low, -gap - thick, bottom), (high, -gap, top))
+    x, z = middle - way * min(0.05, 0.2 * area.width), place.middle[2]
     grip = box((x - 0.008, front - 0.03, z - 0.06), (x + 0.008, -gap - 1e-3, z + 0.06))
     if area.height < 0.25:
         grip = cylinder(0.15 * area.height, (x, -gap - 1e-3, z), (x, front - 0.02, z))
     workshop.body(place.name, panel, grip)
-    workshop.slides(
-        place.name, BODY, (1, 0, 0), place.middle, (0.0, 0.95 * (area.right - middle)), rest=place.fitting.rest
-    )
+    travel = 0.95 * 0.5 * area.width
+    workshop.slides(place.name, BODY, (way, 0, 0), place.middle, (0.0, travel), rest=place.fitting.rest)
 
 
 def _shelf(place: Place) -> None:
@@ -180,35 +124,18 @@ def _button(place: Place) -> None:
 def _lever(place: Place) -> None:
     """A stick on a pin between two cheeks, which swings up and down."""
     width = min(0.05, 0.8 * place.radius, 0.2 * place.area.height)
-    _stick(place, BODY, place.workshop.turned(_OUT, place.middle), width, long=3.0 * width, end=place.name)
-
-
-def _stick(
-    place: Place, parent: str, frame: SideWorkshop, width: float, *, long: float, end: str, knob: bool = True
-) -> float:
-    """Add a fork at the origin of a frame and a stick that stands up in it; returns the height of the pin."""
-    radius = 0.22 * width
-    gap = min(place.clearance, 0.15 * radius)
-    level = fork_room(radius, gap) + 0.5 * radius
-    forked, tongue = fork(width, radius, gap, level + 1e-3)
-    frame.add(parent, forked.translate((0, 0, level)))
-    end_of_stick = (0, 0, level + long)
-    solids = [tongue.translate((0, 0, level)), cylinder(0.6 * radius, (0, 0, 2.0 * level), end_of_stick)]
-    if knob:
-        solids.append(ball(1.2 * radius, end_of_stick))
-    frame.body(end, *solids)
-    frame.turns(end, parent, (1, 0, 0), (0, 0, level), (-0.8, 0.8))
-    return level + long
+    stick(BODY, place.workshop.turned(OUTWARD, place.middle), place.name, width, place.clearance, long=3.0 * width)
 
 
 def _arm(place: Place) -> None:
     """Two links, one on the other, that swing about level pins."""
     width = min(0.08, 0.9 * place.radius)
-    frame = place.workshop.turned(_OUT, place.middle)
-    lower, upper = f"{place.name}_lower", f"{place.name}_upper"
-    height = _stick(place, BODY, frame, width, long=6.0 * width, end=lower, knob=False)
-    above = place.workshop.turned(_OUT, (place.middle[0], -height, place.middle[2]))
-    _stick(place, lower, above, 0.8 * width, long=5.0 * width, end=upper)
+    frame = place.workshop.turned(OUTWARD, place.middle)
+    lower, upper = f"{place.name}_link_1", f"{place.name}_link_2"
+    # The upper link's fork stands where the lower one ends.
+    height = stick(BODY, frame, lower, width, place.clearance, long=6.0 * width, head=ball(0.1 * width, (0, 0, 0)))
+    above = place.workshop.turned(OUTWARD, (place.middle[0], -height, place.middle[2]))
+    stick(lower, above, upper, 0.8 * width, place.clearance, long=5.0 * width)
 
 
 def _crank(place: Place) -> None:
@@ -289,7 +216,7 @@ def _wheel(place: Place) -> None:
 def _caster(place: Place) -> None:
     """A fork on a stem, and a wheel in the fork; both turn without end."""
     wheel = min(place.radius, 0.05)
-    frame = place.workshop.turned(_INTO, place.middle)
+    frame = place.workshop.turned(HANGING, place.middle)
     gap = min(place.clearance, 0.0015)
     top = 2.0 * wheel + 0.02
     axle = np.array([0.0, -0.4 * wheel, wheel])
@@ -354,7 +281,7 @@ def _angles(count: int) -> list[float]:
 def _at(place: Place, out: float) -> FloatArray:
     """From where something lies in z = 0 to where it lies before the middle of a place, (3, 4)."""
     x, _, z = place.middle
-    return np.column_stack([_OUT, (x, -out, z)])
+    return np.column_stack([OUTWARD, (x, -out, z)])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -367,18 +294,21 @@ class Mechanism:
     """Where it may go, the usual one first."""
     build: Callable[[Place], None]
     arranged: str = "grid"
-    """``row`` beside each other over the full height, ``stack`` one below the other, ``grid``, ``corners`` below the
-    body, ``axles`` along its lower edges, ``over`` a side or its lid, ``alone`` on a side, or
-    ``edge``, which takes no room."""
+    """``row`` beside each other over the full height, ``stack`` one below the other, ``grid``, ``foot`` beside each
+    other below all that, ``corners`` below the body, ``axles`` along its lower edges, ``over`` a side or its lid,
+    ``alone`` on a side, ``apart`` on a side with at most what is over it, or ``edge``, which takes no room."""
     weight: float = 1.0
     """Share of a side's height beside the others."""
     least: tuple[float, float] = (0.04, 0.04)
     """Width and height that one needs [m]."""
     needs: str = ""
-    """``room`` to run in, which must be cut behind it, or at least an ``opening`` that it closes."""
+    """``room`` to run in, which must be cut behind it, or at least an ``opening`` that it closes; an open ``mouth``, or
+    ``height`` above the floor."""
     most: int = 60
     """On one body."""
     moves: bool = True
+    halves: bool = False
+    """On the left or the right is said of the half of a side that it covers."""
 
 
 _CONTROLS = ("front", "top", "right", "left", "back")
@@ -419,6 +349,7 @@ MECHANISMS = (
         weight=3.0,
         least=(0.2, 0.12),
         needs="opening",
+        halves=True,
     ),
     Mechanism(
         words=("tray", "paper tray", "pull-out shelf", "pull out shelf", "keyboard tray", "pull-out tray"),
@@ -484,6 +415,40 @@ MECHANISMS = (
         build=_bail,
         arranged="over",
         most=1,
+    ),
+    Mechanism(
+        words=("cantilever tray", "cantilever compartment"),
+        sides=("top",),
+        build=add_cantilever_tray,
+        arranged="apart",
+        least=(0.25, 0.2),
+        needs="mouth",
+        most=2,
+    ),
+    Mechanism(
+        words=("lifting platform", "scissor lift", "scissor mechanism"),
+        sides=("top",),
+        build=add_scissor_lift,
+        arranged="alone",
+        most=1,
+    ),
+    Mechanism(words=("gripper", "parallel gripper"), sides=("front", "top"), build=add_gripper, least=(0.16, 0.1)),
+    Mechanism(words=("hook", "coat hook", "folding hook"), sides=("front", "right", "left", "back"), build=add_hook),
+    Mechanism(
+        words=("pedal", "foot pedal"),
+        sides=("front",),
+        build=add_pedal,
+        arranged="foot",
+        weight=0.5,
+        least=(0.08, 0.08),
+    ),
+    Mechanism(
+        words=("leg", "folding leg", "fold out leg", "fold-out leg"),
+        sides=("bottom",),
+        build=add_leg,
+        arranged="corners",
+        needs="height",
+        most=4,
     ),
     Mechanism(words=("arm", "folding arm"), sides=("top",), build=_arm, arranged="alone", most=1),
     Mechanism(

@@ -29,7 +29,7 @@ _MOVING = ("opening", "movable", "moving", "working")
 _OPENNESS = {("half", "open"): 0.5, ("open",): 1.0, ("closed",): 0.0}
 _AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
 _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
-_LENGTH = ("number", "unit", "dimension")
+_BARE = 2  # words of a length: number and unit
 _SHORTEST, _LONGEST = 0.05, 20.0  # [m]
 
 
@@ -69,16 +69,35 @@ def read_composition(sentence: str) -> Composition:
     for mechanism in reader.excluded:
         if any(wanted.mechanism is mechanism for wanted in reader.wanted):
             raise InputError(f"The text asks for a {mechanism.words[0]} and for none. Say one of both.")
+    if reader.bare is not None:
+        longest = max(range(len(reader.size)), key=reader.body.size.__getitem__)
+        if reader.size[longest] is not None:
+            raise InputError(f"The text gives the longest side of the {reader.body.words[0]} twice. Say it once.")
+        reader.size[longest] = reader.bare
     width, depth, height = reader.size
     return Composition(
         body=reader.body,
         said=reader.said,
-        wanted=tuple(reader.wanted),
+        wanted=(*reader.wanted, *_taken_for_granted(reader)),
         size=(width, depth, height),
         material=reader.of_body.material,
         color=reader.of_body.color,
         rest=reader.rest,
     )
+
+
+def _taken_for_granted(reader: _Reader) -> list[Wanted]:
+    """What the body has without being asked for."""
+    body = reader.body
+    if body is None:
+        return []
+    named = [*reader.excluded, *(item.mechanism for item in reader.wanted)]
+    granted = {**body.always, **({} if reader.wanted else body.usual)}
+    return [
+        Wanted(mechanism=kind, count=granted[kind.words[0]])
+        for kind in MECHANISMS
+        if kind.words[0] in granted and kind not in named
+    ]
 
 
 def told(composition: Composition) -> str:
@@ -111,6 +130,8 @@ class _Reader:
         self.wanted: list[Wanted] = []
         self.excluded: list[Mechanism] = []
         self.size: list[float | None] = [None, None, None]
+        self.bare: float | None = None
+        """A length of the body of which is not said what it is [m]."""
         self.rest = 0.0
         self.left: list[str] = []
         """Words that were not understood, as they were written."""
@@ -142,10 +163,7 @@ class _Reader:
     def _length(self, k: int) -> int:
         """`60 cm wide`."""
         number, texts = self._tokens[k].number, self._texts(k)
-        if number is None or len(texts) < len(_LENGTH) or texts[1] not in UNITS:
-            return 0
-        name = next((name for name, words in DIMENSIONS.items() if texts[2] in words), "")
-        if name not in _AXES:
+        if number is None or len(texts) < _BARE or texts[1] not in UNITS:
             return 0
         if self.wanted and self._tokens[k - 1].text != ",":
             return 0  # it would be the length of a mechanism
@@ -154,18 +172,25 @@ class _Reader:
             raise InputError(
                 f"A body {' '.join(texts[:3])} cannot be built; its lengths are from {_SHORTEST:g} m to {_LONGEST:g} m."
             )
-        self.size[_AXES[name]] = metres
-        return len(_LENGTH)
+        said = texts[_BARE] if len(texts) > _BARE else ""
+        name = next((name for name, words in DIMENSIONS.items() if said in words), "")
+        if name in _AXES:
+            self.size[_AXES[name]] = metres
+            return _BARE + 1
+        if name or self.bare is not None or self.wanted:
+            return 0
+        self.bare = metres
+        return _BARE
 
     def _mechanism(self, k: int) -> int:
-        """`drawers on the left side`."""
+        """`drawers on the left side`; `a turntable on a table`, whose body comes behind it."""
         named = _longest(self._texts(k), _mechanisms())
-        if named is None:
+        if named is None or (self.body is None and named[0] in _bodies() and not self._stands_on(k + len(named[0]))):
             return 0
         words, mechanism = named
         look, end = self._described_so_far(), k + len(words)
         again = look.count is None and any(item.mechanism is mechanism for item in self.wanted)
-        if self.body is None or again:
+        if (self.body is None and not self._stands_on(end)) or again:
             self.left.append(" ".join(words))  # a part of something else, or one that was named before
             return len(words)
         if look.count == 0:
@@ -185,6 +210,15 @@ class _Reader:
             )
         )
         return len(words) + taken
+
+    def _stands_on(self, k: int) -> bool:
+        """Whether a body is named from word k on, and no other noun before it: `on a red table`."""
+        if self._texts(k)[:1] != ("on",):
+            return False
+        behind = (self._tokens[i].text for i in range(k + 1, len(self._tokens)))
+        described = (*STOP_WORDS, *(word for phrase in (*COLOR_WORDS, *_MATERIAL_WORDS) for word in phrase.split()))
+        left = [word for word in behind if word not in described]
+        return _longest(tuple(left[:5]), _bodies()) is not None
 
     def _named_body(self, k: int) -> int:
         """`cart`, once."""

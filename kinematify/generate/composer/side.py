@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from kinematify.generate.procedural.solids import Point
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Mimic
 
 FACING = {
     "front": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
@@ -123,9 +124,12 @@ class SideWorkshop(Workshop):
         limits: tuple[float, float] | None = None,
         *,
         rest: float = 0.0,
+        follows: Mimic | None = None,
     ) -> None:
         """See `Workshop.turns`."""
-        self._whole.turns(child, parent, self._place[:, :3] @ axis, self._point(pivot), limits, rest=rest)
+        self._whole.turns(
+            child, parent, self._place[:, :3] @ axis, self._point(pivot), limits, rest=rest, follows=follows
+        )
 
     def slides(
         self,
@@ -139,6 +143,14 @@ class SideWorkshop(Workshop):
     ) -> None:
         """See `Workshop.slides`."""
         self._whole.slides(child, parent, self._place[:, :3] @ axis, self._point(pivot), limits, rest=rest)
+
+    def closes(self, one: str, other: str, axis: Point, pivot: Point) -> None:
+        """See `Workshop.closes`."""
+        self._whole.closes(one, other, self._place[:, :3] @ axis, self._point(pivot))
+
+    def above_floor(self, point: Point) -> float:
+        """Height of a point in the object [m]."""
+        return float(self._point(point)[2])
 
     def _placed(self, solids: Sequence[Manifold]) -> list[Manifold]:
         return [solid.transform(self._place) for solid in solids]

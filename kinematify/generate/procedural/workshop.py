@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
-from kinematify.generate.blueprint import Blueprint, BlueprintJoint
+from kinematify.generate.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import MATERIALS, color_of
 from kinematify.generate.procedural.solids import union
 from kinematify.generate.procedural.styles import styled
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point
+    from kinematify.robot.robot import Mimic
 
 
 _MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
@@ -49,6 +50,7 @@ class Workshop:
         self._looks: dict[str, tuple[str, RGB]] = {}
         self._joints: list[BlueprintJoint] = []
         self._rest: dict[str, float] = {}
+        self._loops: list[BlueprintLoop] = []
 
     def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | None = None) -> str:
         """Add a rigid part made of solids that overlap or touch; returns its name."""
@@ -81,6 +83,7 @@ class Workshop:
         limits: tuple[float, float] | None = None,
         *,
         rest: float = 0.0,
+        follows: Mimic | None = None,
     ) -> None:
         """Hang a body on another one by a hinge, or by a bearing that turns without end.
 
@@ -91,6 +94,7 @@ class Workshop:
             pivot: A point on the axis [m].
             limits: [rad]; none for a continuous joint.
             rest: Share of the way from zero to the upper limit at which it is shown, in [0, 1].
+            follows: The body whose joint leads, and how many times as far this one goes.
         """
         kind = JointType.CONTINUOUS if limits is None else JointType.REVOLUTE
         lower, upper = limits or (-math.inf, math.inf)
@@ -103,6 +107,7 @@ class Workshop:
                 pivot=np.asarray(pivot),
                 lower=lower,
                 upper=upper,
+                mimic=follows,
             ),
             rest,
         )
@@ -131,9 +136,13 @@ class Workshop:
             rest,
         )
 
+    def closes(self, one: str, other: str, axis: Point, pivot: Point) -> None:
+        """Say that two bodies share a pin besides the joints of the tree, along `axis` through `pivot` [m]."""
+        self._loops.append(BlueprintLoop(one=one, other=other, axis=np.asarray(axis), pivot=np.asarray(pivot)))
+
     def _join(self, joint: BlueprintJoint, rest: float) -> None:
         self._joints.append(joint)
-        if math.isfinite(joint.upper):
+        if math.isfinite(joint.upper) and joint.mimic is None:
             self._rest[joint.child] = rest * joint.upper
 
     def open_by(self, far: Mapping[JointType, float], *, title: str) -> None:
@@ -173,6 +182,7 @@ class Workshop:
             family=self._family,
             parts=tuple(self._made(body) for body in self._solids),
             joints=tuple(self._joints),
+            loops=tuple(self._loops),
             parameters=parameters,
         )
         return built.moved(self._rest)
