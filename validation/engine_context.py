@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config.validation import EngineSettings
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Robot
     from kinematify.simulation.configurations import Configurations
@@ -237,10 +237,19 @@ class EngineContext:
         result: NDArray[np.bool_] = moved[first] != moved[second]
         return result
 
+    def links_on_the_way(self, driven: Driven, index: int) -> tuple[str, str]:
+        """Names of the two links of a pair of `drives.sweep` that get deepest into each other on the way of a joint."""
+        rows, _ = self._towards(driven)
+        return self.drives.sweep.pair(index, self.mechanism.links, (*driven.rows, *rows.tolist()))
+
     def excess_towards(self, driven: Driven) -> tuple[FloatArray, FloatArray]:
         """Excess of each pair between rest and the end by kinematics alone (pairs, n), and the joint's values (n,)."""
-        travel, count = self.travel(driven), self.settings.sweep_samples
-        values = np.linspace(travel.lower, travel.upper, count)
+        rows, values = self._towards(driven)
+        return self.drives.sweep.excess[:, rows], values
+
+    def _towards(self, driven: Driven) -> tuple[IntArray, FloatArray]:
+        """Rows of `sweep` between rest and the end of a joint, and its values there, (n,) each."""
+        travel, rows = self.travel(driven), sweep_rows(driven.drive.leader, self.settings.sweep_samples)
+        values = np.linspace(travel.lower, travel.upper, self.settings.sweep_samples)
         side = values >= travel.rest if driven.drive.end == travel.upper else values <= travel.rest
-        rows = sweep_rows(driven.drive.leader, count)
-        return self.drives.sweep.excess[:, rows][:, side], values[side]
+        return np.arange(rows.start, rows.stop)[side], values[side]

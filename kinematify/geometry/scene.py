@@ -212,10 +212,24 @@ def read_scene(
     model: Robot,
     settings: GeometrySettings,
     shapes_of: Callable[[Link], tuple[Shape, ...]] = judged_shapes,
+    *,
+    by_link: bool = False,
 ) -> Scene:
-    """Gather the geometry of the bodies; nothing is measured yet."""
-    parts = [(index, group, _shapes(model, group, shapes_of)) for index, group in enumerate(rigid_groups(model))]
-    solid = [(index, group, shapes) for index, group, shapes in parts if any(len(faces) for _, faces in shapes)]
+    """Gather the geometry of the bodies; nothing is measured yet.
+
+    Args:
+        model: The robot with its meshes.
+        settings: How solids are made.
+        shapes_of: Which shapes of a link count.
+        by_link: Links that fixed joints hold together are bodies of their own, in the frame of the link nearest the
+            root.
+    """
+    parts = [
+        (index, links, _shapes(model, links, shapes_of))
+        for index, group in enumerate(rigid_groups(model))
+        for links in _apart(placed_links(model, group), by_link=by_link)
+    ]
+    solid = [(index, links, shapes) for index, links, shapes in parts if any(len(faces) for _, faces in shapes)]
     corners = [vertices for _, _, shapes in solid for vertices, _ in shapes]
     largest = max(
         (float(np.linalg.norm(np.ptp(vertices, axis=0))) for vertices in corners if len(vertices)), default=1.0
@@ -226,13 +240,13 @@ def read_scene(
         mechanism=Mechanism(robot=model),
         bodies=tuple(
             Body(
-                name=next(name for name in group.links if model.link_by_name[name].has_geometry),
-                links=group.links,
+                name=next(name for name in links if model.link_by_name[name].has_geometry),
+                links=tuple(links),
                 group=index,
                 solid=_solid(shapes, unit, settings),
                 shapes=tuple(vertices[np.unique(faces)] for vertices, faces in shapes if len(faces)),
             )
-            for index, group, shapes in solid
+            for index, links, shapes in solid
         ),
         settings=settings,
         unit=unit,
@@ -249,13 +263,17 @@ def placed_links(model: Robot, group: RigidGroup) -> dict[str, FloatArray]:
     return placed
 
 
+def _apart(placed: dict[str, FloatArray], *, by_link: bool) -> list[dict[str, FloatArray]]:
+    return [{name: T} for name, T in placed.items()] if by_link else [placed]
+
+
 def _shapes(
-    model: Robot, group: RigidGroup, shapes_of: Callable[[Link], tuple[Shape, ...]]
+    model: Robot, placed: Mapping[str, FloatArray], shapes_of: Callable[[Link], tuple[Shape, ...]]
 ) -> list[tuple[FloatArray, IntArray]]:
-    """Vertices (V, 3) and faces (F, 3) of every shape of a group, in the frame of its top link."""
+    """Vertices (V, 3) and faces (F, 3) of every shape of some links, each link at its pose."""
     return [
         (transformed(shape.mesh.vertices, T), shape.mesh.faces)
-        for name, T in placed_links(model, group).items()
+        for name, T in placed.items()
         for shape in shapes_of(model.link_by_name[name])
     ]
 

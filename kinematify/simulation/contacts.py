@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Mechanism
     from kinematify.simulation.prepared import Prepared
@@ -54,8 +56,10 @@ class Touching:
 
     bodies: IntArray
     """Shape (p, 2)."""
-    links: IntArray
-    """The two links that get deepest into each other, by which the pair is named, shape (p, 2)."""
+    contacts: Contacts
+    """Of the links of these bodies."""
+    pair_of: IntArray
+    """Index of the pair of bodies of each contact, shape (c,)."""
     depth: FloatArray
     """[m], 0 where they are apart, shape (p, rows)."""
     tolerance: float
@@ -84,9 +88,18 @@ class Touching:
         """Indices of the pairs that get deeper than allowed somewhere in the sweep."""
         return np.flatnonzero((self.excess > 0.0).any(axis=1))
 
-    def pair(self, index: int, names: tuple[str, ...]) -> tuple[str, str]:
-        """Return the names of a pair's links."""
-        first, second = self.links[index].tolist()
+    def pair(self, index: int, names: tuple[str, ...], rows: Sequence[int] = ()) -> tuple[str, str]:
+        """Return the names of the two links of a pair of bodies that get deepest into each other.
+
+        Args:
+            index: Of the pair.
+            names: Of all links.
+            rows: Where to look; everywhere if empty, or if the pair is apart in all of them.
+        """
+        of_pair = self.pair_of == index
+        there = of_pair & np.isin(self.contacts.row, rows)
+        chosen = np.flatnonzero(there if there.any() else of_pair)
+        first, second = self.contacts.links[chosen[np.argmax(self.contacts.depth[chosen])]].tolist()
         return names[first], names[second]
 
 
@@ -97,16 +110,16 @@ def touching(contacts: Contacts, mechanism: Mechanism, prepared: Prepared, *, ro
     index = index.reshape(-1)
     depth = np.zeros((len(pairs), rows))
     np.maximum.at(depth, (index, contacts.row), contacts.depth)
-    named = np.zeros((len(pairs), 2), dtype=np.int64)
+    deepest_links = np.zeros((len(pairs), 2), dtype=np.int64)
     order = np.argsort(contacts.depth)
-    named[index[order]] = contacts.links[order]  # the deepest comes last and stays
+    deepest_links[index[order]] = contacts.links[order]  # the deepest comes last and stays
     # Bodies between which there are several joints in one place overlap as those do that one joint connects.
     joined = np.array([(a, b) in mechanism.neighbours for a, b in pairs.tolist()], dtype=bool)
     near = joined | (depth[:, 0] > tolerance)
-    names = [(mechanism.links[a], mechanism.links[b]) for a, b in named.tolist()]
+    names = [(mechanism.links[a], mechanism.links[b]) for a, b in deepest_links.tolist()]
     errors = np.array([stand_in_error(prepared, pair) for pair in names])
     slack = np.where(near, errors, 0.0)
-    return Touching(bodies=pairs, links=named, depth=depth, tolerance=tolerance, slack=slack)
+    return Touching(bodies=pairs, contacts=contacts, pair_of=index, depth=depth, tolerance=tolerance, slack=slack)
 
 
 def stand_in_error(prepared: Prepared, pair: tuple[str, str]) -> float:

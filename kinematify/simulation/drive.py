@@ -39,6 +39,8 @@ class Driven:
     """How much deeper than allowed each pair of `DriveSession.sweep` gets on the way [m], shape (pairs,)."""
     at_end: FloatArray
     """The same where the joint stands at last, shape (pairs,)."""
+    rows: tuple[int, ...]
+    """Rows of `DriveSession.sweep` on its way."""
     looks: FloatArray
     """What is drawn of the way: command, value [rad or m], force [N m or N] and depth beyond what is allowed [m] at
     each look, shape (4, LOOKS)."""
@@ -124,7 +126,7 @@ def drive_all(
     sweep = touching(together, mechanism, prepared, rows=rows + len(looks), tolerance=sweep.tolerance)
     return DriveSession(
         driven=tuple(
-            _driven(mechanism, record, sweep, sweep.excess[:, rows + k * LOOKS : rows + (k + 1) * LOOKS], model.silent)
+            _driven(mechanism, record, sweep, range(rows + k * LOOKS, rows + (k + 1) * LOOKS), model.silent)
             for k, record in enumerate(records)
         ),
         sweep=sweep,
@@ -159,7 +161,7 @@ def _both(sweep: Contacts, looked: Contacts, rows: int) -> Contacts:
 
 
 def _driven(
-    mechanism: Mechanism, record: _Record, sweep: Touching, excess: FloatArray, silent: Iterable[tuple[int, int]]
+    mechanism: Mechanism, record: _Record, sweep: Touching, rows: range, silent: Iterable[tuple[int, int]]
 ) -> Driven:
     """Put the contacts to a drive, which ends where a pair that does not act gets too deep.
 
@@ -167,9 +169,10 @@ def _driven(
         mechanism: The tree.
         record: The drive.
         sweep: Pairs of bodies.
-        excess: Of each at each look [m], shape (pairs, LOOKS).
+        rows: Of the sweep, its looks.
         silent: Pairs of links that do not act.
     """
+    excess = sweep.excess[:, rows.start : rows.stop]
     reached, looks = record.reached, np.vstack([record.way, excess.max(axis=0, initial=0.0)])
     pressed = np.array([(a, b) in record.pressed for a, b in sweep.bodies.tolist()], dtype=bool)
     at_end = np.where(pressed, np.maximum(excess[:, -1], 0.0), excess[:, -1])
@@ -188,5 +191,6 @@ def _driven(
         beyond=record.beyond,
         excess=excess.max(axis=1),
         at_end=at_end,
+        rows=tuple(rows[: excess.shape[1]]),
         looks=looks,
     )

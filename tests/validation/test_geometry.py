@@ -156,6 +156,22 @@ def test_a_part_driven_into_a_stranger_is_told(tmp_path: Path) -> None:
     assert "from 0.2 m on" in finding.message
 
 
+def with_back(model: Model) -> Model:
+    """A cabinet whose back is a link of its own, fixed to the body."""
+    body = model.parts[0]
+    back = Part(name="back", parent="body", boxes=body.boxes[-1:])
+    return Model(parts=(replace(body, boxes=body.boxes[:-1]), back, *model.parts[1:]))
+
+
+def test_of_links_that_are_fixed_together_the_one_at_the_place_is_named(tmp_path: Path) -> None:
+    inwards = with_back(cabinet()).with_part("drawer", axis=(-1.0, 0.0, 0.0))
+    (finding,) = found(inwards, tmp_path)["KV310"]
+    assert finding.pair == ("back", "drawer")
+    assert "back and drawer" in finding.message
+    off = with_back(cabinet()).with_part("door", at=(0.4, 0.32, 0.0))
+    assert only(found(off, tmp_path), "KV303").pair == ("body", "door")
+
+
 def test_what_another_joint_can_clear_is_a_note(tmp_path: Path) -> None:
     slider = block("slider", -0.3, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.3))
     gate = block("gate", 0.0, limits=(0.0, 0.2))

@@ -104,6 +104,20 @@ def test_drawer_that_opens_inwards_is_an_error_of_its_joint(tmp_path: Path) -> N
     assert max(map(abs, curve.force)) > 0.0
 
 
+def test_stop_names_the_link_that_is_met_on_this_way(tmp_path: Path) -> None:
+    cube = (Box(size=(0.1, 0.1, 0.1)),)
+    walls = [
+        Part(name="front", parent="base", boxes=(Box(size=(0.1, 1.0, 0.1)),), at=(0.3, 0.0, 0.2)),
+        Part(name="side", parent="base", boxes=(Box(size=(1.0, 0.3, 0.1)),), at=(0.0, 0.4, 0.2)),
+    ]
+    base = Part(name="base", boxes=(Box(size=(1.0, 1.0, 0.1)),), mass=20.0)
+    sled = Part(name="sled", parent="base", kind="prismatic", boxes=cube, at=(0.0, 0.0, 0.1), limits=(0.0, 0.3))
+    box = Part(name="box", parent="sled", kind="prismatic", boxes=cube, at=(0.0, 0.0, 0.1), limits=(0.0, 0.3),
+               axis=(0.0, 1.0, 0.0))  # fmt: skip
+    findings = told(Model(parts=(base, *walls, sled, box)), tmp_path).results["KV405"].findings
+    assert {f.joint: f.pair for f in findings} == {"sled_joint": ("front", "box"), "box_joint": ("side", "box")}
+
+
 def test_stop_at_a_part_that_can_move_itself_is_a_note(tmp_path: Path) -> None:
     post = Part(
         name="post",

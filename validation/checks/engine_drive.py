@@ -159,7 +159,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
             **facts,  # type: ignore[arg-type]
         )
         return
-    first, second = pair = context.drives.sweep.pair(index, context.mechanism.links)
+    first, second = pair = context.links_on_the_way(driven, index)
     excess, values = context.excess_towards(driven)
     deepest = int(np.argmax(excess[index]))
     beyond = excess[index, deepest] > stand_in_error(context.prepared, pair)
@@ -250,7 +250,7 @@ def _find_lag(result: OpenCheck, context: EngineContext, driven: Driven) -> None
 
 
 def _find_penetration(result: OpenCheck, context: EngineContext, pair: int, excess: float, driven: Driven) -> None:
-    first, second = names = context.drives.sweep.pair(pair, context.mechanism.links)
+    first, second = names = context.links_on_the_way(driven, pair)
     travel = context.travel(driven)
     result.find(
         f"While {travel.joint} is driven to {driven.drive.end:.4g} {travel.unit}, {first} and {second} get "

@@ -194,7 +194,7 @@ def _find_overlaps(result: OpenCheck, context: EngineContext) -> None:
 
 
 def _find_overlap(result: OpenCheck, context: EngineContext, index: int) -> None:
-    first, second = pair = context.sweep.pair(index, context.mechanism.links)
+    first, second = pair = context.sweep.pair(index, context.mechanism.links, [0])
     depth = float(context.sweep.at_rest[index])
     real = depth > stand_in_error(context.prepared, pair)
     result.find(

@@ -227,7 +227,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
         if grown <= limit:
             continue
         connection = scene.connection_of[pair]
-        parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
+        parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: value})
         what = "turns away from its hinge" if motion.sweep.travel.turns else "leaves its guide"
         result.find(
             f"{child} gets {length(grown)} farther away from {parent} than at rest at {_value(motion, value)} of "
@@ -235,7 +235,7 @@ def lost_contact(result: OpenCheck, motion: JointMotion) -> None:
             "Align <axis> and <origin> with the hinge or guide, check the type, or reduce the limits.",
             severity=Severity.ERROR if grown > scene.settings.far * scene.size else Severity.WARNING,
             joint=motion.joint,
-            pair=in_document_order(scene, pair),
+            pair=in_document_order(scene.model, parent, child),
             q=configuration(scene, {motion.sweep.leader: value}),
             value=grown,
             limit=limit,
@@ -270,14 +270,14 @@ def out_of_guide(result: OpenCheck, motion: JointMotion) -> None:
             # What stands on its parent, as a lid does, has no guide, and may be lifted off.
             if guide <= scene.settings.hover * scene.size or way <= scene.settings.guide * guide:
                 continue
-            child, parent = scene.bodies[connection.child].name, scene.bodies[connection.parent].name
+            parent, child = motion.look.parent_and_child(connection, {motion.sweep.leader: side.declared})
             result.find(
                 f"{motion.joint} slides {child} by {length(way)}, but only {length(guide)} of it stand beside "
                 f"{parent} along the axis: at the end of its range it has left it.",
                 f'Write {"upper" if side.sign > 0 else "lower"}="{travel.rest + side.sign * 0.8 * guide:.4g}" '
                 "(four fifths of its guide), or correct <axis>.",
                 joint=motion.joint,
-                pair=in_document_order(scene, pair),
+                pair=in_document_order(scene.model, parent, child),
                 q=configuration(scene, {motion.sweep.leader: side.declared}),
                 value=way,
                 limit=scene.settings.guide * guide,
@@ -291,7 +291,7 @@ def _value(motion: JointMotion, value: float) -> str:
 
 def _words(motion: JointMotion, meeting: Meeting) -> str:
     """What meets, how deep and where."""
-    first, second = in_document_order(motion.scene, meeting.pair)
+    first, second = motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at})
     deep = "go through each other by" if meeting.passed else "get into each other by"
     return f"{first} and {second} {deep} {length(meeting.depth)} at {_value(motion, meeting.at)}"
 
@@ -315,7 +315,7 @@ def _meet(
         severity=severity or (Severity.ERROR if wrong else Severity.WARNING),
         blame=Blame.PHYSICS if unseen else None,
         joint=motion.joint,
-        pair=in_document_order(motion.scene, meeting.pair),
+        pair=motion.look.links_at(meeting.pair, {motion.sweep.leader: meeting.at}),
         q=configuration(motion.scene, {motion.sweep.leader: meeting.at}),
         value=meeting.depth,
         limit=motion.look.allowance.tolerance(meeting.pair),

@@ -66,7 +66,7 @@ def neighbours_overlap(result: OpenCheck, look: GeometryLook) -> None:
 
 
 def _how(look: GeometryLook, rest: AtRest) -> str:
-    first, second = in_document_order(look.scene, rest.pair)
+    first, second = look.links_at(rest.pair, {})
     if rest.contained:
         return f"One of {first} and {second} is inside the other one, {length(rest.depth)} deep,"
     return f"{first} and {second} overlap by {length(rest.depth)}"
@@ -87,7 +87,7 @@ def _overlap(
         blame=Blame.PHYSICS if unseen else None,
         severity=Severity.ERROR if wrong else Severity.WARNING,
         joint=joint,
-        pair=in_document_order(look.scene, rest.pair),
+        pair=look.links_at(rest.pair, {}),
         q=configuration(look.scene, {}),
         value=rest.depth,
         limit=limit,
@@ -117,13 +117,13 @@ def hovering(result: OpenCheck, look: GeometryLook) -> None:
         seen = allowance if look.visible is None else look.visible.allowance
         if allowance.hovers(connection.pair, limit) and seen.hovers(connection.pair, limit):
             gap = seen.gap(connection.pair)
-            parent, child = scene.bodies[connection.parent].name, scene.bodies[connection.child].name
+            parent, child = look.parent_and_child(connection, {})
             result.find(
                 f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "
                 "hangs it: nothing is seen to carry it.",
                 "Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
                 joint=connection.joints[-1],
-                pair=in_document_order(scene, connection.pair),
+                pair=in_document_order(scene.model, parent, child),
                 q=configuration(scene, {}),
                 value=gap,
                 limit=limit,
@@ -182,7 +182,7 @@ def tolerated(result: OpenCheck, look: GeometryLook) -> None:
 
 
 def _tolerated(look: GeometryLook, pair: Pair) -> str:
-    first, second = in_document_order(look.scene, pair)
+    first, second = in_document_order(look.scene.model, *look.scene.name(pair))
     return f"{first} - {second} ({length(look.allowance.at_rest(pair) + look.allowance.tolerance(pair))})"
 
 

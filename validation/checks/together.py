@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.validation.check import FeedbackRow, Shared, check
 from kinematify.validation.checks.follow import AT_REST
 from kinematify.validation.finding import Blame, Severity, not_finished
-from kinematify.validation.geometry.words import configuration, in_document_order, joint_value, length
+from kinematify.validation.geometry.words import configuration, joint_value, length
 
 if TYPE_CHECKING:
     from kinematify.validation.check import OpenCheck
@@ -40,7 +40,8 @@ def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
     found, result.measured["pairs_left_out"] = look.pairs_of_joints
     ranked = sorted(found, key=lambda item: -item.share)
     for item in ranked[: scene.settings.listed]:
-        first, second = in_document_order(scene, item.pair)
+        standing = dict(zip(item.leaders, item.values, strict=True))
+        first, second = look.links_at(item.pair, standing)
         travels = [scene.travels[leader] for leader in item.leaders]
         where = " and ".join(
             f"{travel.joint} at {joint_value(value, turns=travel.turns)}"
@@ -52,7 +53,7 @@ def in_each_others_way(result: OpenCheck, look: GeometryLook) -> None:
             "Nothing to do; a planner must keep them apart.",
             joint=travels[0].joint,
             pair=(first, second),
-            q=configuration(scene, dict(zip(item.leaders, item.values, strict=True))),
+            q=configuration(scene, standing),
             value=item.share,
         )
     if len(ranked) > scene.settings.listed:
@@ -85,8 +86,9 @@ def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
         return
     share = meeting.mean(axis=0)
     column = int(share.argmax())
-    first, second = in_document_order(look.scene, look.scene.pairs[column])
     row = int(meeting[:, column].argmax())
+    standing = dict(enumerate(look.random.rows[row].tolist()))
+    first, second = look.links_at(look.scene.pairs[column], standing)
     none = bool(hit.all())
     result.find(
         f"{(~hit).sum()} of {hit.size} quasi-random configurations are free of self-collision; most often, in "
@@ -96,7 +98,7 @@ def free_configurations(result: OpenCheck, look: GeometryLook) -> None:
         else "Nothing to do; planners must check self-collision.",
         severity=Severity.WARNING if none else Severity.NOTE,
         pair=(first, second),
-        q=configuration(look.scene, dict(enumerate(look.random.rows[row].tolist()))),
+        q=configuration(look.scene, standing),
         value=float((~hit).mean()),
     )
 
@@ -135,7 +137,7 @@ def hulls_block(result: OpenCheck, look: GeometryLook) -> None:
         if found is None:
             continue
         joint = sweep.travel.joint
-        first, second = in_document_order(look.scene, found.pair)
+        first, second = look.links_at(found.pair, {sweep.leader: found.at})
         result.find(
             f"The surfaces of {first} and {second} stay clear, but their convex hulls, which engines collide, "
             f"are {length(found.depth)} deep in each other at {joint_value(found.at, turns=sweep.travel.turns)} of "

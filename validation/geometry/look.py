@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.overlap import Overlap, boxes_meet
 from kinematify.geometry.rest import Allowance, Reason
 from kinematify.geometry.scene import read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
@@ -23,7 +23,7 @@ from kinematify.validation.geometry.words import in_document_order
 from kinematify.validation.summary import PairSummary, PairTable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from kinematify.geometry.scene import Connection, Pair, Scene
     from kinematify.geometry.sweep import JointSweep, Meeting, Side
@@ -105,6 +105,46 @@ class GeometryLook:
         """Pairs whose contact in motion does not count, with the reason."""
         return allowed_pairs(self.scene, self.allowance, self.random)
 
+    def links_at(self, pair: Pair, values: Mapping[int, float]) -> tuple[str, str]:
+        """Of two bodies the links that are deepest in each other, or else nearest, in the order of the document.
+
+        Args:
+            pair: The bodies.
+            values: Leaders that are not at rest [rad or m].
+        """
+        row = self.scene.mechanism.rest.copy()
+        row[list(values)] = list(values.values())
+        T = relative(self.scene.poses(row[None]), pair)
+        firsts, seconds = (self._links_of(body) for body in pair)
+        if len(firsts) * len(seconds) == 1:
+            return in_document_order(self.scene.model, *self.scene.name(pair))
+        overlap, bodies = self._overlap_of_links, self._links_apart.bodies
+        links = [(first, second) for first in firsts for second in seconds]
+        near = [two for two in links if boxes_meet(*overlap.solids(two), T)[0]]
+        depth, best = max(((float(overlap.depth(two, T)[0]), two) for two in near), default=(0.0, links[0]))
+        if depth == 0.0:
+            best = min(links, key=lambda two: overlap.gap(two, T[0]))
+        return in_document_order(self.scene.model, *(bodies[link].name for link in best))
+
+    def parent_and_child(self, connection: Connection, values: Mapping[int, float]) -> tuple[str, str]:
+        """The same of two neighbours, the parent first."""
+        first, second = self.links_at(connection.pair, values)
+        return (first, second) if first in self.scene.bodies[connection.parent].links else (second, first)
+
+    def _links_of(self, body: int) -> list[int]:
+        """Links with geometry of a body, as bodies of `_links_apart`."""
+        group = self.scene.bodies[body].group
+        return [link for link, apart in enumerate(self._links_apart.bodies) if apart.group == group]
+
+    @cached_property
+    def _links_apart(self) -> Scene:
+        """Every link in the frame of its body, for the names of places."""
+        return read_scene(self.scene.model, self.scene.settings, by_link=True)
+
+    @cached_property
+    def _overlap_of_links(self) -> Overlap:
+        return Overlap(self._links_apart)
+
     @cached_property
     def hulls(self) -> HullView:
         """The bodies as engines see them that collide convex hulls."""
@@ -126,7 +166,7 @@ class GeometryLook:
             bodies=tuple(body.name for body in self.scene.bodies),
             pairs=tuple(
                 PairSummary(
-                    pair=in_document_order(self.scene, pair),
+                    pair=in_document_order(self.scene.model, *self.scene.name(pair)),
                     reason=self.allowed[pair].value if pair in self.allowed else None,
                     at_rest=self.allowance.at_rest(pair),
                     tolerated=self.allowance.at_rest(pair) + self.allowance.tolerance(pair),

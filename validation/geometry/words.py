@@ -9,7 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.geometry.scene import Pair, Scene
+    from kinematify.geometry.scene import Scene
+    from kinematify.robot.robot import Robot
 
 
 UNSEEN = "Only the collision geometry does so; the visible surfaces stay clear."
@@ -34,8 +35,7 @@ def configuration(scene: Scene, values: Mapping[int, float]) -> dict[str, float]
     return dict(zip(scene.mechanism.joints, scene.mechanism.all_values(row[None])[0].tolist(), strict=True))
 
 
-def in_document_order(scene: Scene, pair: Pair) -> tuple[str, str]:
-    """Names of two bodies in the order of the document."""
-    first, second = scene.name(pair)
-    names = [link.name for link in scene.model.links]
+def in_document_order(model: Robot, first: str, second: str) -> tuple[str, str]:
+    """Names of two links in the order of the document."""
+    names = [link.name for link in model.links]
     return (first, second) if names.index(first) < names.index(second) else (second, first)
