@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
@@ -87,6 +88,11 @@ class AsLoadedContext:
             )
         except Unloadable as error:
             return error
+
+    @property
+    def floats(self) -> bool:
+        """Whether the file has a floating or planar joint."""
+        return any(joint.declared_kind in FREE_KINDS for joint in self.robot.joints)
 
     @property
     def _root(self) -> int:

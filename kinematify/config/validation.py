@@ -230,6 +230,8 @@ class GeometrySettings(StageConfig):
     """The same of slides [m]; no finer than a ten thousandth of the model's size."""
     early: float
     """A side of the range that is free over less than this share of the whole range is blocked early."""
+    early_turn: float
+    """More of a turn that is free is not early for a chain that reaches itself, or a joint without stops [deg]."""
     late: float
     """Declared ends this close behind the free travel are not mentioned, fraction of the range."""
     small_range: float

@@ -16,6 +16,7 @@ from kinematify.geometry.rest import overlapping_links
 from kinematify.geometry.scene import read_scene
 from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
+from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Link, Shape
 
@@ -105,7 +106,7 @@ def _notes(model: Robot, inertials: dict[str, PreparedInertial], *, made: bool) 
     if weighed:
         notes.append(f"{len(weighed)} links state no usable mass and weigh what their volume suggests: "
                      f"{', '.join(weighed[:4])}{', ...' if len(weighed) > 4 else ''}.")  # fmt: skip
-    free = [joint.name for joint in model.joints if joint.declared_kind in ("floating", "planar")]
+    free = [joint.name for joint in model.joints if joint.declared_kind in FREE_KINDS]
     if free:
         notes.append(f"Joints that are floating or planar are written as fixed: {', '.join(free)}.")
     return notes

@@ -17,3 +17,7 @@ class JointType(StrEnum):
     def turns(self) -> bool:
         """True for revolute and continuous joints, whose axis has a position."""
         return self in (JointType.REVOLUTE, JointType.CONTINUOUS)
+
+
+FREE_KINDS = ("floating", "planar")
+"""Types of URDF that let a body move freely: they say that a model stands in the world without being fixed to it."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kinematify.errors import DescriptionError
-from kinematify.robot.joint_type import JointType
+from kinematify.robot.joint_type import FREE_KINDS, JointType
 from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
 from kinematify.robot.up_axis import upright_reading
 from kinematify.robot.urdf_geometry import geometry_source
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from kinematify.robot.urdf_geometry import GeometrySource
 
     Geometry = Literal["all", "shown", "none"]
-
-_FREE = ("floating", "planar")
 
 
 def read_robot(path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geometry = "all") -> Robot:
@@ -78,7 +76,7 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
         robot = upright_reading(
             robot, replace(robot, links=_links(element, replace(source, heeds_up_axis=True), geometry))
         )
-    _check_free_joints(robot, [joint for joint in joints if joint.declared_kind in _FREE])
+    _check_free_joints(robot, [joint for joint in joints if joint.declared_kind in FREE_KINDS])
     return robot
 
 
@@ -153,10 +151,10 @@ def _joint(element: _Element) -> Joint:
 
 
 def _kind(element: _Element, declared: str, where: str) -> JointType:
-    if declared in _FREE:
+    if declared in FREE_KINDS:
         return JointType.FIXED
     if declared not in tuple(JointType):
-        known = ", ".join([*JointType, *_FREE])
+        known = ", ".join([*JointType, *FREE_KINDS])
         raise DescriptionError(f"The {where} has the type {declared!r}; URDF knows {known}. Correct it.")
     if declared == JointType.REVOLUTE and element.find("limit") is None:
         return JointType.CONTINUOUS
@@ -164,7 +162,7 @@ def _kind(element: _Element, declared: str, where: str) -> JointType:
 
 
 def _note(joint: Joint) -> str:
-    if joint.declared_kind in _FREE:
+    if joint.declared_kind in FREE_KINDS:
         return f"The {joint.declared_kind} joint {joint.name} above the root body is read as fixed."
     if joint.declared_kind != joint.kind:
         return f"The revolute joint {joint.name} has no limits and is read as continuous."

@@ -13,7 +13,15 @@ from pydrake.multibody.tree import PrismaticJoint, RevoluteJoint
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-from kinematify.simulation.loaded_file import Progress, Pushed, ReleaseRun, RestRun, Unloadable, deepest_first
+from kinematify.simulation.loaded_file import (
+    MovesFreely,
+    Progress,
+    Pushed,
+    ReleaseRun,
+    RestRun,
+    Unloadable,
+    deepest_first,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -90,7 +98,8 @@ class DrakeFile:
         """Load it.
 
         Raises:
-            Unloadable: Drake does not open it, or moves a link in other ways than by turning or sliding.
+            Unloadable: Drake does not open it.
+            MovesFreely: It moves a link in other ways than by turning or sliding.
         """
         self._path, self._root, self._folders = urdf, root, [str(folder) for folder in package_dirs]
         self.time_step = float(MultibodyPlantConfig().time_step)
@@ -100,7 +109,7 @@ class DrakeFile:
         moving = sorted((joint for joint in moving if joint.num_velocities()), key=lambda joint: joint.position_start())
         self.joints: Sequence[str] = tuple(joint.name() for joint in moving)
         if not all(isinstance(joint, RevoluteJoint | PrismaticJoint) for joint in moving):
-            raise Unloadable("it gives links other joints than hinges and slides", self.lines_of_joints())
+            raise MovesFreely(self.lines_of_joints())
         self.limits: Mapping[str, tuple[float, float]] = {
             joint.name(): (float(joint.position_lower_limits()[0]), float(joint.position_upper_limits()[0]))
             for joint in moving

@@ -29,6 +29,14 @@ class Unloadable(Exception):
         self.reproduction = reproduction
 
 
+class MovesFreely(Unloadable):
+    """An engine opens a file and lets a link float, which no hand can push to an end."""
+
+    def __init__(self, reproduction: str) -> None:
+        """Keep plain code that prints the joints."""
+        super().__init__("it gives links other joints than hinges and slides", reproduction)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Overlap:
     """Two links whose collision geometry the engine finds in each other."""

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.simulation.loaded_file import Progress, Pushed, ReleaseRun, RestRun, Unloadable, deepest_first
+from kinematify.simulation.loaded_file import (
+    MovesFreely,
+    Progress,
+    Pushed,
+    ReleaseRun,
+    RestRun,
+    Unloadable,
+    deepest_first,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -74,7 +82,8 @@ class MujocoFile:
         """Load it; MuJoCo knows no packages.
 
         Raises:
-            Unloadable: MuJoCo does not open it, or moves a link in other ways than by turning or sliding.
+            Unloadable: MuJoCo does not open it.
+            MovesFreely: It moves a link in other ways than by turning or sliding.
         """
         del package_dirs
         self._path, self._root = urdf, root
@@ -83,8 +92,7 @@ class MujocoFile:
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(path=str(urdf))) from error
         if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
-            message = "it gives links other joints than hinges and slides"
-            raise Unloadable(message, _OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
+            raise MovesFreely(_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
         self._data = mujoco.MjData(self._model)
         self.joints: Sequence[str] = tuple(self._model.joint(k).name for k in range(self._model.njnt))
         self.time_step = float(self._model.opt.timestep)

@@ -9,7 +9,7 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from kinematify.simulation.loaded_file import Unloadable, deepest_first
+from kinematify.simulation.loaded_file import MovesFreely, Unloadable, deepest_first
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -53,6 +53,7 @@ class PinocchioFile:
 
         Raises:
             Unloadable: Pinocchio does not open it.
+            MovesFreely: It moves a link in other ways than by turning or sliding.
         """
         del root
         folders = [str(folder) for folder in (urdf.parent, *package_dirs)]
@@ -64,6 +65,8 @@ class PinocchioFile:
             )
         except ValueError as error:
             raise Unloadable(str(error), _OPEN.format(**self._facts)) from error
+        if any(joint.nv != 1 for joint in list(self._model.joints)[1:]):
+            raise MovesFreely(self.lines_of_joints())
         self._geometry.addAllCollisionPairs()
         self.joints: Sequence[str] = tuple(self._model.names)[1:]  # the first is the world
 

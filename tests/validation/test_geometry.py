@@ -125,6 +125,17 @@ def test_a_part_in_the_air_is_told_with_its_gap(tmp_path: Path) -> None:
     assert finding.value == pytest.approx(0.1)
 
 
+@pytest.mark.parametrize(("kind", "across", "told_of"), [
+    ("continuous", 0.0, False),  # its axle is not drawn
+    ("continuous", 0.3, True),  # and would not reach the beam
+    ("revolute", 0.0, True),
+])  # fmt: skip
+def test_a_wheel_beside_what_carries_it_is_fine(tmp_path: Path, kind: str, across: float, told_of: bool) -> None:
+    wheel = Part(name="wheel", parent="beam", kind=kind, boxes=(Box(size=(0.2, 0.05, 0.2)),),
+                 at=(0.3, 0.1, across), axis=(0.0, 1.0, 0.0))  # fmt: skip
+    assert ("KV303" in found(beam(wheel), tmp_path)) is told_of
+
+
 def test_what_is_tolerated_is_listed_with_its_reason(tmp_path: Path) -> None:
     model = beam(block("left", 0.0), block("right", 0.098))
     text = " ".join(finding.message for finding in notes(model, tmp_path, "KV304"))
@@ -279,6 +290,17 @@ def test_a_joint_without_limits_is_warned_of_where_it_meets_its_parent(tmp_path:
     model = cabinet().with_part("door", kind="continuous")
     severities = {finding.severity for findings in found(model, tmp_path).values() for finding in findings}
     assert severities == {Severity.WARNING}
+
+
+@pytest.mark.parametrize(("limits", "told_of"), [((-3.14, 3.14), False), ((-3.1, 3.1), True)])
+def test_a_leg_that_reaches_the_body_after_half_a_turn_needs_no_limits(
+    tmp_path: Path, limits: tuple[float, float], told_of: bool
+) -> None:
+    """Half a turn to both sides is how files say that software limits a joint."""
+    leg = Part(name="leg", parent="beam", kind="revolute", boxes=(Box(size=(0.3, 0.1, 0.05), at=(0.15, 0.0, 0.0)),),
+               at=(0.55, 0.0, 0.0), axis=(0.0, 1.0, 0.0), limits=limits)  # fmt: skip
+    assert ("KV312" in found(beam(leg), tmp_path)) is told_of
+    assert any(note.check == "KV312" for note in notes(beam(leg), tmp_path, "KV312")), "it is said all the same"
 
 
 def test_contacts_are_left_for_the_comparison_with_engines(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.simulation.engines import ENGINES
-from kinematify.simulation.loaded_file import Unloadable
+from kinematify.simulation.loaded_file import MovesFreely, Unloadable
 from kinematify.validation.check import OpenCheck, Shared, check
 from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
@@ -30,6 +30,8 @@ _PIECES = (
 
 def not_loaded(context: AsLoadedContext) -> str | None:
     """The engine has the file."""
+    if isinstance(context.loading, MovesFreely) and context.floats:
+        return f"the file lets a link float in {context.title}, where no joint can be pushed alone"
     return f"{context.title} does not open the file (KV801)" if isinstance(context.loading, Unloadable) else None
 
 
@@ -57,6 +59,8 @@ def opens(result: OpenCheck, context: AsLoadedContext) -> None:
     Remedy: Do what the engine's message asks for. MuJoCo resolves no package:// and reads STL, OBJ and MSH only; it
     looks for meshes beside the file unless `<mujoco><compiler strippath="false"/></mujoco>` stands in it.
     """
+    if isinstance(context.loading, MovesFreely) and context.floats:
+        return
     if isinstance(context.loading, Unloadable):
         result.find(
             f"{context.title} does not open the file as it is: {context.loading}.",

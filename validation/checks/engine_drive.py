@@ -72,7 +72,8 @@ def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
 )
 def little_penetration(result: OpenCheck, context: EngineContext) -> None:
     """While a joint is driven to an end that it reaches, no pair of links gets deeper into each other than at rest by
-    more than twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their meshes by.
+    more than twice engines.contact_depth, beyond what convex stand-ins of neighbours can exceed their meshes by. It is
+    a note where KV405 makes it one: where they are no neighbours, or pass each other in every engine.
 
     Why it matters: Parts that pass through each other teach a policy what reality does not allow.
 
@@ -256,6 +257,7 @@ def _find_penetration(result: OpenCheck, context: EngineContext, pair: int, exce
         f"While {travel.joint} is driven to {driven.drive.end:.4g} {travel.unit}, {first} and {second} get "
         f"{(excess + context.drives.sweep.tolerance) * 1e3:.3g} mm deeper into each other than at rest.",
         f"Correct the joint, or the collision geometry of {first} and {second}.",
+        severity=_severity(context, pair, certain=False),
         joint=travel.joint,
         pair=names,
         value=excess + context.drives.sweep.tolerance,

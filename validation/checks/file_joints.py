@@ -6,6 +6,7 @@ import difflib
 import math
 from typing import TYPE_CHECKING
 
+from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
     from kinematify.validation.precheck.urdf import Urdf
 
 _SINGLE = ("revolute", "continuous", "prismatic")
-_FREE = ("floating", "planar")
-_KNOWN = (*_SINGLE, "fixed", *_FREE)
+_KNOWN = (*_SINGLE, "fixed", *FREE_KINDS)
 _ELSEWHERE = {
     "ball": "three continuous joints with massless links between them",
     "spherical": "three continuous joints with massless links between them",
@@ -84,7 +84,7 @@ def free_types(result: OpenCheck, urdf: Urdf) -> None:
     above = {edge.child: edge.parent for edge in urdf.edges}
     solid = {name for name, _ in urdf.shapes()}
     for joint in urdf.joints:
-        if joint.kind not in _FREE:
+        if joint.kind not in FREE_KINDS:
             continue
         seen: set[str] = set()
         link: str | None = joint.parent

@@ -42,7 +42,8 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     """Each joint is moved alone, over its range and beyond. A child that gets deeper into its parent than at rest
     (geometry.tolerance) before geometry.early of the range is through, to both sides, says that axis, place or type is
     wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong it is an
-    error, unless the joint has no limits, or only the collision geometry meets and not what is visible.
+    error, unless the joint has no limits (a whole turn is none), or only the collision geometry meets and not what is
+    visible.
 
     Why it matters: The joint is stuck in every engine, or the part passes through the wall that carries it.
 
@@ -67,9 +68,9 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
                 "sides at once, the axis or its place is wrong, or the type.",
                 "Move the joint's <origin> onto the hinge or guide and align <axis> with it; if the part slides, or "
                 "turns, write that type."
-                if travel.limited
+                if motion.has_stops
                 else "Give the joint the limits that the contacts show; or correct its axis, place or type.",
-                severity=None if travel.limited else Severity.WARNING,  # without limits a file claims no free range
+                severity=None if motion.has_stops else Severity.WARNING,  # without limits a file claims no free range
             )
             return
         if motion.one_sided(sign):
@@ -96,7 +97,8 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
 def into_others(result: OpenCheck, motion: JointMotion) -> None:
     """While each joint moves alone over its range, bodies that are no neighbours do not meet. If another joint can
     clear the way (a door before the drawer behind it), it is a note. So is what arms, legs and fingers do: a chain
-    that folds onto itself, or two limbs that meet, after the joint was free over geometry.early of its range.
+    that folds onto itself, or two limbs that meet, after the joint was free over geometry.early of its range, or
+    over geometry.early_turn; and what a joint without limits does (a whole turn is none).
 
     Why it matters: Parts that always meet hang on the wrong parent, or the range is too wide.
 
@@ -117,8 +119,10 @@ def into_others(result: OpenCheck, motion: JointMotion) -> None:
             motion,
             worst,
             f"{begin}, wherever the other joints stand.{more}",
-            "If one of them carries the other, correct <parent>; otherwise end the range before, or correct the axis.",
-            severity=Severity.WARNING,
+            "If one of them carries the other, correct <parent>; otherwise end the range before, or correct the axis."
+            if motion.has_stops
+            else "Nothing to do where software limits the joint; else give it limits.",
+            severity=Severity.WARNING if motion.has_stops else Severity.NOTE,
         )
     elif worst in folding:
         _meet(
@@ -147,7 +151,7 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
     """
     travel, scene = motion.sweep.travel, motion.scene
     chain = scene.carries(meeting.pair) or len(scene.between(meeting.pair)) > _LIMBS
-    return chain and abs(meeting.first - travel.rest) > scene.settings.early * travel.range
+    return chain and (motion.late(meeting) or abs(meeting.first - travel.rest) > scene.settings.early * travel.range)
 
 
 @check(
@@ -161,9 +165,9 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
 )
 def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
-    range): a warning, above geometry.wrong of depth an error, unless the joint has no limits, or only the collision
-    geometry meets. A rail may go through a solid carriage as it does at rest. A range below geometry.small_range of
-    the free travel is a note.
+    range): a warning, above geometry.wrong of depth an error, unless only the collision geometry meets. Where the
+    joint has no limits (a whole turn is none) it is a warning, and a note after geometry.early_turn. A rail may go
+    through a solid carriage as it does at rest. A range below geometry.small_range of the free travel is a note.
 
     Why it matters: Controllers drive to the declared end; what they meet before it bends, breaks or explodes.
 
@@ -184,9 +188,9 @@ def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
             f"{motion.joint} is declared to go to {_value(motion, side.declared)}, but its child meets its parent at "
             f"{_value(motion, meeting.first)}: {_words(motion, meeting)}.",
             f'Write {end}="{meeting.first:.4g}"; if the part should go farther, its axis or its place is wrong.'
-            if travel.limited
-            else "Give the joint limits, or correct its axis.",
-            severity=None if travel.limited else Severity.WARNING,
+            if motion.has_stops
+            else "Nothing to do where software limits the joint; else give it limits, or correct its axis.",
+            severity=None if motion.has_stops else Severity.NOTE if motion.late(meeting) else Severity.WARNING,
         )
     low, high = motion.sweep.free
     if travel.limited and 0.0 < travel.range < settings.small_range * (high - low):

@@ -105,7 +105,8 @@ def _overlap(
 )
 def hovering(result: OpenCheck, look: GeometryLook) -> None:
     """At rest, a moving part is less than geometry.hover of the model's size away from the body that its joint hangs
-    it on. What is visible counts: collision shapes are often stubs that leave the bearing out.
+    it on. What is visible counts: collision shapes are often stubs that leave the bearing out. Of a wheel or rotor,
+    whose axis runs through what carries it, it is a note: axles are seldom modelled.
 
     Why it matters: A part in the air often has the wrong parent or the wrong origin.
 
@@ -122,6 +123,7 @@ def hovering(result: OpenCheck, look: GeometryLook) -> None:
                 f"{child} is {length(gap)} away from {parent}, on which the joint {connection.joints[-1]} "
                 "hangs it: nothing is seen to carry it.",
                 "Check the joint's <parent> and <origin>; if the bearing is not modelled, accept it.",
+                severity=Severity.NOTE if look.on_an_axle(connection) else None,
                 joint=connection.joints[-1],
                 pair=in_document_order(scene.model, parent, child),
                 q=configuration(scene, {}),

@@ -17,6 +17,7 @@ from kinematify.geometry.rest import Allowance, Reason
 from kinematify.geometry.scene import read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
+from kinematify.robot.joint_type import JointType
 from kinematify.validation.finding import not_finished
 from kinematify.validation.geometry.hulls import HullView
 from kinematify.validation.geometry.words import in_document_order
@@ -26,8 +27,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from kinematify.geometry.scene import Connection, Pair, Scene
+    from kinematify.geometry.solid import Solid
     from kinematify.geometry.sweep import JointSweep, Meeting, Side
     from kinematify.geometry.together import Configurations, JointPair
+    from kinematify.robot.arrays import FloatArray
+
+_NEARLY = 0.01
+"""What ranges of +-3.14 leave out of half a turn [rad]."""
 
 
 class GeometryLook:
@@ -131,6 +137,17 @@ class GeometryLook:
         first, second = self.links_at(connection.pair, values)
         return (first, second) if first in self.scene.bodies[connection.parent].links else (second, first)
 
+    def on_an_axle(self, connection: Connection) -> bool:
+        """Whether a child turns without end about a line that runs through its parent's box too, as wheels do."""
+        joint = self.scene.model.joint_by_name[connection.joints[-1]]
+        if joint.kind is not JointType.CONTINUOUS:
+            return False
+        T = relative(self.scene.at_rest[None], (connection.parent, connection.child))[0]
+        parent, child = (self.scene.bodies[body].solid for body in (connection.parent, connection.child))
+        return _runs_through_box(child, np.zeros(3), joint.axis) and _runs_through_box(
+            parent, T[:3, 3], T[:3, :3] @ joint.axis
+        )
+
     def _links_of(self, body: int) -> list[int]:
         """Links with geometry of a body, as bodies of `_links_apart`."""
         group = self.scene.bodies[body].group
@@ -191,6 +208,13 @@ def allowed_pairs(scene: Scene, allowance: Allowance, random: Configurations | N
     return reasons
 
 
+def _runs_through_box(solid: Solid, point: FloatArray, axis: FloatArray) -> bool:
+    """Whether a line runs through the box of a solid, body frame."""
+    slope = np.where(axis == 0.0, 1e-12, axis)
+    ends = np.sort([(solid.low - point) / slope, (solid.high - point) / slope], axis=0)
+    return bool(ends[0].max() <= ends[1].min())
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class JointMotion:
     """One joint that moves alone, over its range and beyond."""
@@ -207,6 +231,18 @@ class JointMotion:
     def joint(self) -> str:
         """Its name."""
         return self.sweep.travel.joint
+
+    @property
+    def has_stops(self) -> bool:
+        """Whether the file says where it stops: it has limits, and they are not half a turn to both sides."""
+        travel = self.sweep.travel
+        half_turns = travel.turns and max(travel.lower, -travel.upper) < -(np.pi - _NEARLY)
+        return travel.limited and not half_turns
+
+    def late(self, meeting: Meeting) -> bool:
+        """Whether it turns by `geometry.early_turn` before two bodies meet."""
+        travel = self.sweep.travel
+        return travel.turns and abs(meeting.first - travel.rest) > np.radians(self.scene.settings.early_turn)
 
     @cached_property
     def as_seen(self) -> JointMotion:
