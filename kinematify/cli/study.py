@@ -62,7 +62,7 @@ def _option(name: str, info: FieldInfo) -> click.Option:
 
 
 def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
-    from kinematify.evaluation.pool import WORK_FOLDER, Pool
+    from kinematify.batch.pool import WORK_FOLDER, Pool
     from kinematify.evaluation.record import as_json, load_report
     from kinematify.evaluation.study import RECORDS, file_stem, run_study, write_study
 

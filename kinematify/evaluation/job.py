@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Literal
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
+from kinematify.batch.processes import sentence
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import ObjectScore, score_object
 from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
-from kinematify.evaluation.pool import sentence
 from kinematify.evaluation.prediction import NOTHING_PREDICTED, prediction_of
 from kinematify.robot.read import read_robot
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.assembly.erase import ErasedModel
+    from kinematify.batch.engine import TaskFailure
     from kinematify.evaluation.perturb import Perturbed
-    from kinematify.evaluation.pool import TaskFailure
     from kinematify.evaluation.prediction import Prediction
     from kinematify.pipeline import Inference
 

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 from pydantic import TypeAdapter
 
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
 from kinematify.evaluation.job import INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.perturb import CLEAN
-from kinematify.evaluation.pool import WORK_FOLDER, Pool, TaskFailure
 from kinematify.evaluation.record import Header, Report, new_header
 from kinematify.evaluation.sources import NOT_INFERRING, code_version
 from kinematify.evaluation.summary import summaries
@@ -23,7 +24,7 @@ from kinematify.evaluation.summary import summaries
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kinematify.evaluation.pool import Progress
+    from kinematify.batch.pool import Progress
 
 RESULT = TypeAdapter(JobResult)
 RESULTS = TypeAdapter(tuple[JobResult, ...])

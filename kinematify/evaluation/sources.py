@@ -11,12 +11,13 @@ from kinematify import __version__
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 NOT_INFERRING = (
-    "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view", "vision",
+    "batch", "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view",
+    "vision",
     "evaluation/studies", "evaluation/nightly", "evaluation/mutants", "evaluation/corruption",
     *(
         f"evaluation/{name}.py"
         for name in (
-            "calibration", "degrade_tables", "error_pictures", "errors", "paper", "pool", "readme", "record",
+            "calibration", "degrade_tables", "error_pictures", "errors", "paper", "readme", "record",
             "regression", "report", "run", "study", "summary", "tables",
         )
     ),

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
 
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import Pool
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation import studies
-from kinematify.evaluation.pool import Pool, TaskFailure
 from kinematify.evaluation.record import Report, load_report, new_header, write_report
 from kinematify.evaluation.sources import code_version
 

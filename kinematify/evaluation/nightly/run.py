@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import Pool
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
@@ -37,7 +39,6 @@ from kinematify.evaluation.nightly.store import (
     write_night,
 )
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
-from kinematify.evaluation.pool import Pool, TaskFailure
 from kinematify.evaluation.record import replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
 from kinematify.evaluation.sources import code_version
@@ -45,13 +46,13 @@ from kinematify.evaluation.sources import code_version
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from kinematify.batch.pool import Progress
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.nightly.compare import Change
     from kinematify.evaluation.nightly.record import Run
     from kinematify.evaluation.nightly.settings import NightlySettings
     from kinematify.evaluation.nightly.state import State
-    from kinematify.evaluation.pool import Progress
     from kinematify.evaluation.record import Report
 
 _ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are done, on the benchmark

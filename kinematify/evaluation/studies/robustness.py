@@ -20,7 +20,7 @@ from kinematify.evaluation.study import Options, Study, explained
 from kinematify.validation.checks import CHECKS
 
 if TYPE_CHECKING:
-    from kinematify.evaluation.pool import TaskFailure
+    from kinematify.batch.engine import TaskFailure
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
 

@@ -15,7 +15,9 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.pool import Pool, TaskFailure
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import Pool, run_tasks
+from kinematify.batch.processes import Processes
 from tests.places import ROOT
 
 NUMBER = TypeAdapter(int)
@@ -100,7 +102,7 @@ def test_a_caller_that_is_killed_takes_its_processes_with_it(tmp_path: Path) -> 
     file = tmp_path / "pids"
     script = tmp_path / "caller.py"
     script.write_text(_CALLER.format(file=str(file), folder=str(tmp_path / "work")))
-    places = os.pathsep.join([str(ROOT / "tests" / "evaluation"), str(ROOT), *sys.path])
+    places = os.pathsep.join([str(ROOT / "tests" / "batch"), str(ROOT), *sys.path])
     caller = subprocess.Popen([sys.executable, str(script)], env={**os.environ, "PYTHONPATH": places})
     deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline and not (file.is_file() and file.read_text()):
@@ -108,3 +110,30 @@ def test_a_caller_that_is_killed_takes_its_processes_with_it(tmp_path: Path) -> 
     caller.kill()
     caller.wait()
     assert all(gone(int(pid)) for pid in file.read_text().split())
+
+
+def crash_once(marker: Path) -> int:
+    if marker.exists():
+        return 7
+    marker.touch()
+    return crash()
+
+
+def test_a_task_whose_worker_died_is_begun_again(tmp_path: Path) -> None:
+    tasks = [("once", partial(crash_once, tmp_path / "marker")), ("always", crash)]
+    found = dict(run_tasks(tasks, Processes(1), timeout=60.0, lives=2))
+    assert found["once"] == 7
+    assert isinstance(found["always"], TaskFailure)
+    assert found["always"].message == "the worker ended with SIGSEGV, the last of 2 that it cost"
+
+
+def take_memory() -> int:
+    return len(bytearray(2**33))
+
+
+def test_what_needs_more_memory_than_allowed_fails_alone() -> None:
+    found = dict(run_tasks([("much", take_memory), ("little", fail)], Processes(1, memory=2**32), timeout=60.0))
+    assert isinstance(found["much"], TaskFailure)
+    assert found["much"].message.startswith("MemoryError")
+    assert isinstance(found["little"], TaskFailure)
+    assert found["little"].message.startswith("ValueError")
