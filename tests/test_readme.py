@@ -16,9 +16,9 @@ from kinematify.cli.study import study_command
 from tests.places import ROOT
 
 PAGES = ("README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")))
-MADE_BY_COMMANDS = ("out/", "meshes/", "parts/", "inferred/", "OUT.job/")
+MADE_BY_COMMANDS = ("out/", "OUT/", "meshes/", "parts/", "inferred/", "OUT.job/")
 # Ids of environments, repositories elsewhere, what is yours.
-NO_PATHS = r".*-v\d|ZebraDevs/fetch_ros|Daniella1/.*|mees/.*|ros-industrial/.*|models/|more/.*"
+NO_PATHS = r".*-v\d|ZebraDevs/fetch_ros|Daniella1/.*|mees/.*|ros-industrial/.*|models/|more/.*|assets/.*"
 
 
 def blocks(text: str, language: str) -> str:

@@ -174,7 +174,20 @@ def _system() -> dict[str, str]:
         "executable": sys.executable,
         "platform": platform.platform(),
         "cores": str(os.cpu_count()),
+        "cuda": _cuda(),
     }
+
+
+def _cuda() -> str:
+    """The GPU that torch sees, or that it sees none."""
+    seen = "torch.cuda.get_device_name() if torch.cuda.is_available() else ''"
+    words = [sys.executable, "-c", f"import torch; print(torch.__version__, {seen}, sep='|')"]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, timeout=IMPORT_SECONDS, check=True)
+    except subprocess.SubprocessError:
+        return "unknown, torch cannot be imported"
+    version, _, device = done.stdout.strip().partition("|")
+    return f"{device}, seen by torch {version}" if device else f"torch {version} sees no GPU; nothing needs one"
 
 
 def _as_answer(findings: tuple[Finding, ...]) -> dict[str, Any]:

@@ -262,7 +262,7 @@ def test_unknown_words_are_named(data: Path, tmp_path: Path) -> None:
         load_report(data / "two_parts" / "model.urdf", RESULTS)
     blocked = tmp_path / "file"
     blocked.write_text("")
-    with pytest.raises(OutputError, match="work folder"):
+    with pytest.raises(OutputError, match="Results cannot be kept in"):
         run_benchmark(request(data, blocked / "work", "star"))
 
 

@@ -1,0 +1,141 @@
+"""One object, from its files to its results: what a worker does."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+import tempfile
+import time
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from kinematify.assembly.load import load_assembly
+from kinematify.batch.processes import sentence
+from kinematify.batch.record import ObjectRecord
+from kinematify.batch.source import content_hash, fetched, publish
+from kinematify.config import Config
+from kinematify.config.validation import ValidationSettings
+from kinematify.errors import InputError, KinematifyError, OutputError
+from kinematify.formats.export import export
+from kinematify.model.output import MODEL_FILE
+from kinematify.pipeline.clock import StageClock, peak_mb
+from kinematify.pipeline.infer import infer
+from kinematify.pipeline.record import write_inference_files
+from kinematify.refinement.loop import refine
+from kinematify.robot.joint_type import JointType
+from kinematify.validation.formats.json_lines import as_json_text
+from kinematify.validation.run import validate
+
+if TYPE_CHECKING:
+    from kinematify.batch.source import Source
+
+STEPS = ("infer", "refine", "validate", "export")
+"""What can be done with an object, in this order."""
+FORMATS = {"mjcf": "model.xml", "usd": "model.usda", "sdf": "model.sdf", "glb": "model.glb"}
+"""Formats of the step ``export`` and their files."""
+REPORT_FILE = "validation.json"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Conversion:
+    """What is asked for, of every object alike; small and picklable."""
+
+    steps: tuple[str, ...]
+    formats: tuple[str, ...]
+    config: Config
+    settings: ValidationSettings
+    engines: tuple[str, ...]
+    up: str
+    scale: float
+    hash: str
+    """Of all of these."""
+
+
+def convert(source: Source, conversion: Conversion, place: str, staging: str) -> ObjectRecord:
+    """Do all steps with an object; every exception becomes a record, so that one object never ends the run.
+
+    Args:
+        source: The object.
+        conversion: What is to be done.
+        place: Path or URL of the folder for its results, which appears when all steps are done.
+        staging: Folder in which results lie unfinished; on the disk of `place`, if that is on one.
+    """
+    clock, known = StageClock(None), dict[str, Any]()
+    start = time.perf_counter()
+    _forget_peak()
+    try:
+        with tempfile.TemporaryDirectory(prefix=".", dir=staging, ignore_cleanup_errors=True) as folder:
+            _do_steps(source, conversion, place, folder=Path(folder), clock=clock, known=known)
+    except Exception as error:
+        given = isinstance(error, InputError | _Unreadable) and not isinstance(error, OutputError)
+        known["status"] = "unusable" if given else "error"
+        known["error"] = str(error) if isinstance(error, KinematifyError | _Unreadable) else sentence(error)
+    return ObjectRecord(
+        object=source.name,
+        source=source.place,
+        **{"status": "ok", **known},
+        seconds=time.perf_counter() - start,
+        step_seconds=clock.seconds,
+        peak_mb=_peak_mb(),
+        configuration=conversion.hash,
+    )
+
+
+class _Unreadable(Exception):
+    """The files of the object cannot be read."""
+
+
+def _do_steps(
+    source: Source, conversion: Conversion, place: str, *, folder: Path, clock: StageClock, known: dict[str, Any]
+) -> None:
+    """Do the steps, and write down what is known after each of them."""
+    steps, made = conversion.steps, folder / "made"
+    made.mkdir()
+    with clock.stage("read", 0.0):
+        try:
+            known["content"] = content_hash(source.place)
+            model = fetched(source.place, folder)
+        except OSError as error:
+            raise _Unreadable(f"{source.place} cannot be read: {error.strerror or error}.") from error
+    if "infer" in steps:
+        with clock.stage("infer", 0.0):
+            config = conversion.config
+            assembly = load_assembly(model, config=config.assembly, up=conversion.up, scale=conversion.scale)
+            known["parts"] = len(assembly.parts)
+            known["faces"] = sum(len(part.faces) for part in assembly.parts)
+            inference = infer(assembly, config=config)
+        if "refine" in steps:
+            with clock.stage("refine", 0.0):
+                inference = refine(inference, settings=conversion.settings).inference
+        with clock.stage("write", 0.0):
+            write_inference_files(inference, made, preview=False)
+        known["joints"] = sum(joint.kind is not JointType.FIXED for joint in inference.model.joints)
+        model = made / MODEL_FILE
+    if "validate" in steps:
+        with clock.stage("validate", 0.0):
+            report = validate(model, settings=conversion.settings, engines=conversion.engines, workers=1)
+            report = replace(report, model=posixpath.join(place, MODEL_FILE) if "infer" in steps else source.place)
+            (made / REPORT_FILE).write_text(as_json_text([report]), encoding="utf-8")
+        known["verdict"] = report.verdict
+    if "export" in steps:
+        with clock.stage("export", 0.0):
+            for form in conversion.formats:
+                export(model, form, made / FORMATS[form], settings=conversion.settings)
+    with clock.stage("store", 0.0):
+        publish(made, place)
+
+
+def _forget_peak() -> None:
+    """Let the kernel count the most memory anew, where it can: a worker takes many objects."""
+    with suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+
+
+def _peak_mb() -> float:
+    """Most resident memory of this process since `_forget_peak` [MB]."""
+    with suppress(OSError):
+        status = Path("/proc/self/status").read_text(encoding="ascii")
+        return float(re.findall(r"^VmHWM:\s*(\d+) kB$", status, re.MULTILINE)[0]) / 1024.0
+    return peak_mb()

@@ -1,0 +1,147 @@
+"""The manifest: one JSON line for every object that has ended, in a file that a killed run leaves whole.
+
+It stands in the output, ``manifest.jsonl``, or ``manifest-2-of-8.jsonl`` for a share of the objects. In a store, where
+nothing can be appended, the file is kept on the disk of the driver and put there every few seconds and at the end.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import posixpath
+import shutil
+import tempfile
+import time
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from kinematify.batch.ledger import Ledger
+from kinematify.batch.record import RECORD, SCHEMA, ObjectRecord
+from kinematify.batch.source import filesystem, is_local
+from kinematify.errors import OutputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from types import TracebackType
+    from typing import Self
+
+_EVERY = 10.0
+"""Seconds between two copies to a store."""
+
+
+class Manifest:
+    """The records of a run and of those before it, by the places of the objects."""
+
+    def __init__(self, out: str, share: tuple[int, int] = (1, 1)) -> None:
+        """Open nothing yet.
+
+        Args:
+            out: Path or URL of the output.
+            share: Number of the share of the objects, from 1, and how many shares there are.
+        """
+        number, of = share
+        self._fs, path = filesystem(out)
+        self.name = "manifest.jsonl" if of == 1 else f"manifest-{number}-of-{of}.jsonl"
+        self.place = posixpath.join(path, self.name)
+        self.records: dict[str, ObjectRecord] = {}
+        self.notice = ""
+        """What a user must know of the lines that were there; empty if nothing."""
+        self._exit = ExitStack()
+        self._copied = 0.0
+
+    def __enter__(self) -> Self:
+        with ExitStack() as stack:
+            if is_local(self._fs):
+                file = Path(self.place)
+                self._lock(stack, file)
+            else:
+                file = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="kinematify-"))) / self.name
+                if self._fs.exists(self.place):
+                    self._fs.get_file(self.place, str(file))
+            self._ledger = stack.enter_context(Ledger(file))
+            self._read()
+            self._exit = stack.pop_all()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with self._exit:
+            self._copy()
+
+    def add(self, record: ObjectRecord) -> None:
+        """Add the record of an object that has none; it is on disk when this returns.
+
+        Raises:
+            OutputError: The disk is full or gone.
+        """
+        self._ledger.append(RECORD.dump_python(record, mode="json"))
+        self.records[record.source] = record
+        if time.monotonic() > self._copied + _EVERY:
+            self._copy()
+
+    def forget(self, places: Iterable[str]) -> None:
+        """Drop the records of objects that are going to be converted anew."""
+        gone = self.records.keys() & set(places)
+        if gone:
+            self.records = {place: record for place, record in self.records.items() if place not in gone}
+            self._ledger.rewrite(RECORD.dump_python(record, mode="json") for record in self.records.values())
+
+    def _read(self) -> None:
+        """Take up what stands there; a manifest of another version is put aside, not lost."""
+        lines = list(self._ledger)
+        if any(facts.get("schema") != SCHEMA for facts in lines):
+            aside = self._ledger.path.with_name(f"{self.name}.old")
+            shutil.copyfile(self._ledger.path, aside)
+            if not is_local(self._fs):
+                self._fs.put_file(str(aside), f"{self.place}.old")
+            self.notice = (
+                f"{self.name} has lines of another version, which stay in {aside.name}; these objects are new."
+            )
+        self.records = {record.source: record for record in _records(lines)}
+        if len(self.records) < len(lines):
+            self._ledger.rewrite(RECORD.dump_python(record, mode="json") for record in self.records.values())
+
+    def _copy(self) -> None:
+        if not is_local(self._fs) and self._ledger.path.stat().st_size:
+            self._fs.put_file(str(self._ledger.path), self.place)
+            self._copied = time.monotonic()
+
+    def _lock(self, stack: ExitStack, file: Path) -> None:
+        """Hold the manifest for this run; the lock goes with the process, however that ends."""
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            lock = stack.enter_context(file.with_name(f".{file.name}.lock").open("w"))
+        except OSError as error:
+            raise OutputError(
+                f"The output {file.parent} cannot be written: {error.strerror or error}. Give another folder with -o, "
+                "or mend its permissions."
+            ) from error
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise OutputError(
+                f"Another run writes {file}. Wait for its end, or give another folder with -o. Nothing was changed."
+            ) from error
+
+
+def read_manifests(out: str) -> list[ObjectRecord]:
+    """Return the records of all shares in an output, by name of the object."""
+    fs, path = filesystem(out)
+    lines: list[dict[str, Any]] = []
+    for file in fs.glob(posixpath.join(path, "manifest*.jsonl")):
+        for line in fs.cat_file(file).splitlines():
+            with suppress(ValueError):  # the last line of a share that is being written
+                lines.append(json.loads(line))
+    return sorted(_records(lines), key=lambda record: record.object)
+
+
+def _records(lines: Iterable[dict[str, Any]]) -> Iterator[ObjectRecord]:
+    """The records among lines of this version."""
+    for facts in lines:
+        with suppress(ValidationError):
+            if facts.get("schema") == SCHEMA:
+                yield RECORD.validate_python(facts)

@@ -1,0 +1,106 @@
+"""What a batch came to: counts, times and failures, and a page with all objects."""
+
+from __future__ import annotations
+
+import math
+import posixpath
+from collections import Counter
+from statistics import fmean
+from typing import TYPE_CHECKING
+
+from kinematify.batch.convert import REPORT_FILE
+from kinematify.batch.manifest import read_manifests
+from kinematify.batch.run import OBJECTS
+from kinematify.batch.source import filesystem
+from kinematify.errors import OutputError
+from kinematify.validation.formats.html_frame import badge, page, table, text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kinematify.batch.record import ObjectRecord
+
+PAGE_FILE = "index.html"
+STEP_HEADINGS = ("step", "objects", "mean [s]", "95 % within [s]", "most [s]", "share")
+_OBJECT_HEADINGS = ("object", "status", "verdict", "joints", "parts", "faces", "seconds", "memory [MB]", "why not")
+
+
+def outcome_words(records: Sequence[ObjectRecord]) -> str:
+    """``12 ok (9 pass, 2 warn, 1 fail), 1 unusable, 1 timeout``."""
+    verdicts = Counter(record.verdict for record in records if record.verdict)
+    judged = ", ".join(f"{verdicts[word]} {word}" for word in ("pass", "warn", "fail") if verdicts[word])
+    counts = Counter(record.status for record in records)
+    words = [f"{counts[status]} {status}" for status in ("unusable", "error", "timeout", "crash") if counts[status]]
+    return ", ".join([f"{counts['ok']} ok" + (f" ({judged})" if judged else ""), *words])
+
+
+def step_rows(records: Sequence[ObjectRecord]) -> list[tuple[str, ...]]:
+    """How long each step took, over the objects that had it."""
+    seconds: dict[str, list[float]] = {}
+    for record in records:
+        for step, value in record.step_seconds.items():
+            seconds.setdefault(step, []).append(value)
+    total = sum(map(sum, seconds.values())) or 1.0
+    return [
+        (
+            step,
+            str(len(values)),
+            f"{fmean(values):.2f}",
+            f"{sorted(values)[math.ceil(0.95 * len(values)) - 1]:.2f}",
+            f"{max(values):.2f}",
+            f"{sum(values) / total:.0%}",
+        )
+        for step, values in seconds.items()
+    ]
+
+
+def as_page(records: Sequence[ObjectRecord]) -> str:
+    """Return a page that lists all objects, with links to their folders beside it."""
+    title = f"kinematify batch: {outcome_words(records)}"
+    rows = [_row(record) for record in records]
+    body = [
+        f"<h1>{text(title)}</h1>",
+        "<h2>Time</h2>",
+        table(STEP_HEADINGS, step_rows(records), name="steps", classes=("", *["number"] * 5)),
+        "<h2>Objects</h2>",
+        table(_OBJECT_HEADINGS, rows, name="objects", classes=("", "", "", *["number"] * 5, "")),
+    ]
+    return page(title, body)
+
+
+def write_page(out: str) -> str:
+    """Write the page of an output, of all its shares; return its path or URL.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
+    place = posixpath.join(out, PAGE_FILE)
+    fs, path = filesystem(place)
+    try:
+        fs.pipe_file(path, as_page(read_manifests(out)).encode())
+    except OSError as error:
+        raise OutputError(
+            f"The page {place} cannot be written: {error.strerror or error}. The manifest beside it is whole; make "
+            "room and call the command again with --resume."
+        ) from error
+    return place
+
+
+def _row(record: ObjectRecord) -> tuple[str, ...]:
+    folder = f"{OBJECTS}/{text(record.object)}"
+    name = f'<a href="{folder}/">{text(record.object)}</a>' if record.status == "ok" else text(record.object)
+    verdict = f'<a href="{folder}/{REPORT_FILE}">{badge(record.verdict)}</a>' if record.verdict else ""
+    numbers = (
+        record.joints,
+        record.parts,
+        record.faces,
+        round(record.seconds, 1),
+        record.peak_mb and round(record.peak_mb),
+    )
+    return (
+        name,
+        text(record.status),
+        verdict,
+        *("" if value is None else str(value) for value in numbers),
+        text(record.error),
+    )

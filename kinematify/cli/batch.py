@@ -1,0 +1,191 @@
+"""`kinematify batch`: a library of assets becomes models, by all processors of a machine or of a cluster."""
+
+from __future__ import annotations
+
+import os
+import signal
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.help import examples
+from kinematify.cli.options import listed
+from kinematify.cli.progress import progress_reporter
+from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus
+
+if TYPE_CHECKING:
+    from kinematify.batch.engine import Engine
+    from kinematify.batch.run import BatchResult
+
+_SHOWN = 10
+"""Objects without a good model that are named on the terminal; the page has all."""
+
+
+@click.command(
+    "batch",
+    short_help="A library of assets -> models, resumable, on one machine or many.",
+    epilog=examples(
+        "kinematify batch 'assets/**/*.glb' -o out/library",
+        "kinematify batch 'assets/**/*.glb' -o out/library --resume",
+        "kinematify batch 'models/**/*.urdf' -o out/judged --steps validate",
+        "kinematify batch 's3://bucket/assets/*.glb' -o s3://bucket/models --engine ray --address auto",
+        "kinematify batch 'assets/*.glb' -o out/library --shard 2/8 --steps infer,validate,export --to mjcf,usd",
+    ),
+)
+@click.argument("inputs", nargs=-1, required=True, metavar="INPUT...")
+@click.option("-o", "--out", required=True, metavar="DIR|URL", help="Where the results go.")
+@click.option(
+    "--steps",
+    default="infer,validate",
+    show_default=True,
+    metavar="LIST",
+    help="Of infer, refine, validate, export; without infer the inputs are URDFs.",
+)
+@click.option(
+    "--to", default="mjcf", show_default=True, metavar="LIST", help="Formats of the step export: mjcf, usd, sdf, glb."
+)
+@click.option(
+    "--engine",
+    type=click.Choice(["local", "ray"]),
+    default="local",
+    show_default=True,
+    help="Processes of this machine, or of a Ray cluster (extra `ray`).",
+)
+@click.option("--address", metavar="ADDRESS", help="Of the Ray cluster, e.g. auto or ray://host:10001; none: one here.")
+@click.option(
+    "--workers", type=click.IntRange(min=1), help="Objects at a time; as many as there are cores if not given."
+)
+@click.option(
+    "--timeout", type=click.FloatRange(min=0.0, min_open=True), default=900.0, show_default=True, metavar="SECONDS",
+    help="Wall time for an object.",
+)  # fmt: skip
+@click.option(
+    "--memory",
+    type=click.FloatRange(min=1.0),
+    default=8.0,
+    show_default=True,
+    metavar="GB",
+    help="Address space of a worker.",
+)
+@click.option("--resume", is_flag=True, help="Go on with the run in the output: what has ended is left.")
+@click.option("--retry", is_flag=True, help="With --resume, convert anew what gave no model, whatever the reason.")
+@click.option("--shard", metavar="I/N", help="Only share I of N of the objects, for runs side by side.")
+@click.option(
+    "--up",
+    type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
+    default="auto",
+    show_default=True,
+    help="Axis of the inputs that points up.",
+)
+@click.option("--scale", type=float, default=1.0, show_default=True, help="Metres per unit of the inputs.")
+@click.option(
+    "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."
+)
+@click.option("--seed", type=int, help="Seed of everything random, instead of the configuration's.")
+@json_option
+def command(**values: Any) -> int:
+    """Convert every INPUT, a path, pattern or URL, each as `kinematify infer` takes it, into a model of its own.
+
+    OUT gets objects/NAME/ for each, manifest.jsonl with a line for each that has ended (status, verdict, time, memory,
+    error, hashes), and index.html. An object that crashes, hangs or cannot be read is recorded, and the run goes on.
+
+    Ends with 0 if every object has a model without errors, with 1 if one has not. Ctrl-C leaves valid records and ends
+    with 130; the same command with --resume goes on.
+    """
+    from kinematify.batch.run import BatchRequest, run_batch
+    from kinematify.batch.summary import write_page
+    from kinematify.config import load_config
+    from kinematify.config.validation import load_settings
+
+    if values["retry"] and not values["resume"]:
+        raise click.UsageError("--retry belongs to --resume. Give both, or leave it out.")
+    seed = {} if values["seed"] is None else {"seed": values["seed"]}
+    request = BatchRequest(
+        patterns=values["inputs"],
+        out=values["out"],
+        config=load_config(values["config"], **seed),
+        settings=load_settings(**seed),
+        steps=listed(values["steps"]),
+        formats=listed(values["to"]),
+        up=values["up"],
+        scale=values["scale"],
+        share=_share(values["shard"]),
+        timeout=values["timeout"],
+        resume=values["resume"],
+        retry=values["retry"],
+    )
+    signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))  # as schedulers of clusters stop jobs
+    with progress_reporter() as progress:
+        result = run_batch(request, _engine(values), progress)
+    page = write_page(result.out)
+    if values["json_to"]:
+        write_answer(_answer(result), values["json_to"])
+    if values["json_to"] != "-":
+        click.echo(f"{_described(result)}\n{page}")
+    if result.notice:
+        click.echo(result.notice, err=True)
+    if result.interrupted:
+        click.echo(f"Interrupted, {result.left} objects are left. Go on with --resume.", err=True)
+        return ExitStatus.INTERRUPTED
+    return ExitStatus.FAILURES if any(record.failed for record in result.records) else ExitStatus.FINE
+
+
+def _engine(values: dict[str, Any]) -> Engine:
+    """The engine that was asked for, started."""
+    from kinematify.batch.run import PRELOAD
+
+    memory = int(values["memory"] * 2**30)
+    if values["engine"] == "ray":
+        from kinematify.batch.ray_nodes import RayNodes
+
+        return RayNodes(values["address"], workers=values["workers"], preload=PRELOAD, memory=memory)
+    if values["address"]:
+        raise click.UsageError("--address belongs to --engine ray. Leave it out.")
+    from kinematify.batch.processes import Processes
+
+    return Processes(values["workers"] or os.cpu_count() or 1, preload=PRELOAD, memory=memory)
+
+
+def _share(words: str | None) -> tuple[int, int]:
+    """Number and count of the shares, from `2/8`."""
+    number, _, of = (words or "1/1").partition("/")
+    if not (number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise click.UsageError(f"--shard {words} is no share. Give I/N with I from 1 to N, e.g. 2/8.")
+    return int(number), int(of)
+
+
+def _described(result: BatchResult) -> str:
+    from kinematify.batch.summary import STEP_HEADINGS, outcome_words, step_rows
+
+    rate = f", {3600.0 * result.new / result.seconds:.0f} an hour" if result.new else ""
+    bad = [record for record in result.records if record.failed]
+    lines = [f"{record.object}: {record.error or 'an error, see its validation.json'}" for record in bad[:_SHOWN]]
+    if len(bad) > _SHOWN:
+        lines.append(f"and {len(bad) - _SHOWN} more, see the page")
+    return "\n".join(
+        [
+            f"{len(result.records)} objects: {outcome_words(result.records)}",
+            f"{result.new} of them now, in {result.seconds:.0f} s with {result.workers} workers{rate}",
+            "",
+            format_table(STEP_HEADINGS, step_rows(result.records)),
+            "",
+            *lines,
+        ]
+    )
+
+
+def _answer(result: BatchResult) -> dict[str, Any]:
+    from kinematify.batch.record import RECORD
+
+    return {
+        "schema": 1,
+        "out": result.out,
+        "new": result.new,
+        "left": result.left,
+        "seconds": result.seconds,
+        "workers": result.workers,
+        "interrupted": result.interrupted,
+        "records": [RECORD.dump_python(record, mode="json") for record in result.records],
+    }

@@ -1,0 +1,59 @@
+"""Assets to convert, and the processes of a run."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from pathlib import Path
+from typing import Any
+
+import trimesh
+
+from tests.household import knob
+
+
+def write_assets(folder: Path, count: int) -> list[Path]:
+    """Write knobs of some sizes, a GLB each, and return the files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return [write_knob(folder / f"knob_{number}.glb", number) for number in range(count)]
+
+
+def write_knob(path: Path, seed: int) -> Path:
+    scene = trimesh.Scene()
+    for part in knob(seed=seed).assembly.parts:
+        mesh = trimesh.Trimesh(part.vertices, part.faces, process=False)
+        scene.add_geometry(mesh, node_name=part.name, geom_name=part.name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(scene.export(file_type="glb"))
+    return path
+
+
+def manifest_lines(out: Path, name: str = "manifest.jsonl") -> list[dict[str, Any]]:
+    """What stands in the manifest; every line has to be whole."""
+    return [json.loads(line) for line in (out / name).read_text().splitlines()]
+
+
+def workers_of(pid: int) -> list[int]:
+    """Workers of a run: processes below it that lead a session of their own."""
+    parents: dict[int, tuple[int, int]] = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            state, parent, _, session = (folder / "stat").read_text().rpartition(")")[2].split()[:4]
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if state != "Z":
+            parents[int(folder.name)] = int(parent), int(session)
+    found, below = [], {pid}
+    while below:
+        below = {child for child, (parent, _) in parents.items() if parent in below}
+        found += [child for child in below if parents[child][1] == child]
+    return found
+
+
+def kill(pid: int) -> None:
+    """End a process at once, if it is there."""
+    try:
+        os.kill(pid, signal.SIGKILL)
+    except ProcessLookupError:
+        return

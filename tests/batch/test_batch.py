@@ -1,0 +1,263 @@
+"""`kinematify batch`: what is unreadable, killed, full or interrupted costs no other object, and no record."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from kinematify.cli.app import run
+from tests.batch.assets import kill, manifest_lines, workers_of, write_assets, write_knob
+
+INFER = ("--steps", "infer", "--up", "z")
+
+
+def batch(*words: str | Path) -> int:
+    return run(["batch", *map(str, words)])
+
+
+def started(*words: str | Path) -> subprocess.Popen[str]:
+    """The command in a process of its own."""
+    line = [sys.executable, "-m", "kinematify", "batch", *map(str, words)]
+    return subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for(path: Path, lines: int = 1) -> None:
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline and not (path.is_file() and path.read_text().count("\n") >= lines):
+        time.sleep(0.05)
+
+
+def by_object(out: Path) -> dict[str, dict[str, object]]:
+    lines = manifest_lines(out)
+    records = {str(line["object"]): line for line in lines}
+    assert len(records) == len(lines)
+    return records
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with assets, good and bad, and the output of a run over them."""
+    folder = tmp_path_factory.mktemp("batch")
+    write_assets(folder / "assets", 2)
+    write_knob(folder / "assets" / "deep" / "knob_0.glb", 5)
+    (folder / "assets" / "broken.glb").write_bytes(b"glTF\x02")
+    (folder / "assets" / "dangling.glb").symlink_to(folder / "nowhere.glb")
+    assert batch(folder / "assets/**/*.glb", "-o", folder / "out", "--up", "z", "--steps", "infer,validate,export") == 1
+    return folder
+
+
+def test_what_is_unreadable_is_recorded_among_the_good_ones(done: Path) -> None:
+    records = by_object(done / "out")
+    assert {name: record["status"] for name, record in records.items()} == {
+        "knob_0": "ok", "knob_1": "ok", "deep-knob_0": "ok", "broken": "unusable", "dangling": "unusable",
+    }  # fmt: skip
+    assert "dangling.glb cannot be read: No such file or directory" in str(records["dangling"]["error"])
+    good = records["knob_0"]
+    assert (good["parts"], good["joints"]) == (2, 1)
+    assert good["verdict"] in ("pass", "warn")
+    assert float(str(good["peak_mb"])) > 50.0
+
+
+def test_a_finished_object_has_a_folder_of_its_own_and_nothing_is_left_beside_them(done: Path) -> None:
+    folder = done / "out" / "objects" / "deep-knob_0"
+    assert {path.name for path in folder.iterdir()} >= {"model.urdf", "inference.json", "validation.json", "model.xml"}
+    assert json.loads((folder / "validation.json").read_text())["model"] == str(folder / "model.urdf")
+    assert {path.name for path in (done / "out").iterdir()} == {
+        "objects", "manifest.jsonl", "index.html", ".manifest.jsonl.lock",
+    }  # fmt: skip
+    assert "deep-knob_0" in (done / "out" / "index.html").read_text()
+
+
+def test_a_run_is_not_touched_unless_asked_for(done: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert batch(done / "assets/**/*.glb", "-o", done / "out", *INFER) == 2
+    assert "holds a run with 5 objects. Go on with --resume" in capsys.readouterr().err
+
+
+def test_what_has_not_changed_is_not_converted_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assets = write_assets(tmp_path / "assets", 3)
+    command = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER, "--json", "-")
+
+    def new(*more: str) -> int:
+        capsys.readouterr()
+        assert batch(*command, *more) == 0
+        return int(json.loads(capsys.readouterr().out)["new"])
+
+    assert (new(), new("--resume")) == (3, 0)
+    write_knob(assets[1], 7)
+    assert new("--resume") == 1
+    assert new("--resume", "--seed", "4") == 3
+    assert len(by_object(tmp_path / "out")) == 3
+
+
+def test_equal_names_stay_apart(tmp_path: Path) -> None:
+    first, second = write_knob(tmp_path / "a" / "knob.glb", 0), write_knob(tmp_path / "b" / "knob.glb", 1)
+    assert batch(first, second, "-o", tmp_path / "out", *INFER) == 0
+    names = sorted(by_object(tmp_path / "out"))
+    assert [name.rpartition("-")[0] for name in names] == ["knob", "knob"]
+    assert sorted(path.name for path in (tmp_path / "out" / "objects").iterdir()) == names
+
+
+def test_shares_are_disjoint_and_complete(tmp_path: Path) -> None:
+    write_assets(tmp_path / "assets", 3)
+    for number in (1, 2):
+        words = ("--shard", f"{number}/2", "--json", str(tmp_path / "answer.json"))
+        assert batch(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER, *words) == 0
+    found = [line["object"] for n in (1, 2) for line in manifest_lines(tmp_path / "out", f"manifest-{n}-of-2.jsonl")]
+    assert sorted(found) == [f"knob_{number}" for number in range(3)]
+    page = (tmp_path / "out" / "index.html").read_text()
+    assert all(f"knob_{number}" in page for number in range(3))
+
+
+def test_a_manifest_of_another_version_is_put_aside(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_assets(tmp_path / "assets", 1)
+    (tmp_path / "out").mkdir()
+    old = '{"schema": 0, "object": "knob_0", "state": "fine"}\n'
+    (tmp_path / "out" / "manifest.jsonl").write_text(old)
+    assert batch(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER) == 0
+    assert "lines of another version, which stay in manifest.jsonl.old" in capsys.readouterr().err
+    assert (tmp_path / "out" / "manifest.jsonl.old").read_text() == old
+    assert by_object(tmp_path / "out")["knob_0"]["status"] == "ok"
+
+
+def test_time_that_ran_out_is_recorded_and_tried_again_if_asked(tmp_path: Path) -> None:
+    write_assets(tmp_path / "assets", 1)
+    command = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
+    assert batch(*command, "--timeout", "0.01") == 1
+    assert by_object(tmp_path / "out")["knob_0"]["status"] == "timeout"
+    assert batch(*command, "--resume") == 1
+    assert batch(*command, "--resume", "--retry") == 0
+
+
+def test_a_full_disk_loses_nothing(tmp_path: Path) -> None:
+    """Files of more than 20 kB cannot be written; meshes of knobs are larger, their records are not."""
+    write_assets(tmp_path / "assets", 2)
+    (tmp_path / "assets" / "broken.glb").write_bytes(b"glTF\x02")
+    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
+    line = [sys.executable, "-m", "kinematify", "batch", *map(str, words)]
+    small = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # noqa: E731
+    full = subprocess.run(line, capture_output=True, text=True, check=False, preexec_fn=small)
+    assert full.returncode == 1, full.stderr
+    records = by_object(tmp_path / "out")
+    assert {name: record["status"] for name, record in records.items()} == {
+        "knob_0": "error", "knob_1": "error", "broken": "unusable",
+    }  # fmt: skip
+    assert "File too large" in str(records["knob_0"]["error"])
+    assert list((tmp_path / "out" / "objects").iterdir()) == []
+    (tmp_path / "assets" / "broken.glb").unlink()
+    assert batch(*words, "--resume") == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("nothing/*.glb",), r"nothing/\*.glb matches no file"),
+        (("--steps", "infer,paint"), "--steps names 'paint'"),
+        (("--steps", "refine"), "has nothing to work on"),
+        (("--to", "dae"), "--to names 'dae'"),
+        (("--shard", "3/2"), "--shard 3/2 is no share"),
+        (("--retry",), "--retry belongs to --resume"),
+        (("--address", "auto"), "--address belongs to --engine ray"),
+    ],
+)
+def test_what_cannot_be_done_is_said_at_once(
+    words: tuple[str, ...], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_assets(tmp_path / "assets", 1)
+    assert batch(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *words) == 2
+    assert re.search(said, capsys.readouterr().err)
+
+
+def test_an_output_that_cannot_be_written_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (asset,) = write_assets(tmp_path / "assets", 1)
+    assert batch(asset, "-o", asset / "out", *INFER) == 2
+    assert "cannot be written" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_a_file_without_permission_is_recorded(tmp_path: Path) -> None:
+    first, _ = write_assets(tmp_path / "assets", 2)
+    first.chmod(0)
+    assert batch(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER) == 1
+    assert "Permission denied" in str(by_object(tmp_path / "out")["knob_0"]["error"])
+
+
+def test_ctrl_c_ends_the_workers_and_keeps_what_is_known(tmp_path: Path) -> None:
+    write_assets(tmp_path / "assets", 6)
+    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
+    command = started(*words, "--workers", "1")
+    wait_for(tmp_path / "out" / "manifest.jsonl")
+    workers = workers_of(command.pid)
+    command.send_signal(signal.SIGINT)
+    _, said = command.communicate(timeout=30.0)
+    assert command.returncode == 130
+    assert "objects are left. Go on with --resume" in said
+    assert workers
+    assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    ended = len(by_object(tmp_path / "out"))
+    assert 1 <= ended < 6
+    assert not list((tmp_path / "out").glob(".unfinished*"))
+    assert batch(*words, "--resume") == 0
+    assert len(by_object(tmp_path / "out")) == 6
+
+
+def test_two_runs_do_not_write_one_output(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_assets(tmp_path / "assets", 8)
+    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
+    command = started(*words, "--workers", "1")
+    wait_for(tmp_path / "out" / "manifest.jsonl")
+    try:
+        assert batch(*words, "--resume") == 2
+        assert "Another run writes" in capsys.readouterr().err
+    finally:
+        command.terminate()
+        command.communicate(timeout=30.0)
+    assert command.returncode == 130, "schedulers stop jobs by SIGTERM"
+
+
+def test_an_object_that_costs_every_worker_is_set_aside(tmp_path: Path) -> None:
+    write_assets(tmp_path / "assets", 1)
+    command = started(tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
+    deadline = time.monotonic() + 60.0
+    while command.poll() is None and time.monotonic() < deadline:
+        for worker in workers_of(command.pid):
+            kill(worker)
+    command.communicate(timeout=30.0)
+    assert command.returncode == 1
+    record = by_object(tmp_path / "out")["knob_0"]
+    assert (record["status"], record["error"]) == ("crash", "the worker ended with SIGKILL, the last of 3 that it cost")
+
+
+def test_nothing_is_lost_or_doubled_when_workers_and_the_driver_are_killed(tmp_path: Path) -> None:
+    count = 8
+    write_assets(tmp_path / "assets", count)
+    manifest = tmp_path / "out" / "manifest.jsonl"
+    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER, "--resume", "--workers", "2")
+    for before_the_driver_is_killed in (2, 5):
+        command = started(*words)
+        wait_for(manifest, before_the_driver_is_killed - 1)
+        for worker in workers_of(command.pid)[:1]:
+            kill(worker)
+        wait_for(manifest, before_the_driver_is_killed)
+        workers = workers_of(command.pid)
+        command.kill()
+        command.communicate()
+        deadline = time.monotonic() + 10.0
+        while any(Path(f"/proc/{worker}").exists() for worker in workers) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    assert batch(*words) == 0
+    records = by_object(tmp_path / "out")
+    assert {record["status"] for record in records.values()} == {"ok"}
+    assert sorted(records) == sorted(f"knob_{number}" for number in range(count))
+    assert {path.name for path in (tmp_path / "out" / "objects").iterdir()} == set(records)
+    shutil.rmtree(tmp_path / "out")
