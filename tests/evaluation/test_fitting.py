@@ -49,11 +49,16 @@ def test_groups_of_one_name_share_a_fold(tmp_path: Path) -> None:
     assert len(by_category) == len({category for category, _ in by_category}) == len(set(folds)) == 2
 
 
-def test_a_small_fit_writes_weights_and_tables(tmp_path: Path) -> None:
+def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path) -> None:
     pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
-    report = run_fit(
-        [], tmp_path, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=False, progress=silent
-    )
-    assert (tmp_path / WEIGHTS).stat().st_size > 0
-    assert set(report["sets"]) == {"random mechanisms"}
-    assert "left out" in (tmp_path / "choice.md").read_text()
+    once, again = tmp_path / "once", tmp_path / "again"
+    for out in (once, again):
+        report = run_fit(
+            [], out, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=False, progress=silent
+        )
+        assert set(report["sets"]) == {"random mechanisms"}
+    assert "left out" in (once / "choice.md").read_text()
+    first, second = (np.load(out / WEIGHTS) for out in (once, again))
+    for name in first.files:
+        if name != "facts":  # they hold the date
+            np.testing.assert_array_equal(first[name], second[name])

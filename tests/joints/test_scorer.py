@@ -12,7 +12,7 @@ from kinematify.errors import EnvironmentFault
 from kinematify.evaluation.fitting.trees import recipe_key
 from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.choice.judge import hypotheses_of, judge, rule_scores
+from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of
 from kinematify.joints.choice.scorer import shipped_scorer
 from kinematify.joints.measure.measurements import measure
 from kinematify.joints.measure.scene import part_frames
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.joints.choice.weighed import WeighedJoints
+    from kinematify.joints.measure.measurements import Values
 
 
 def weighed_joints(name: str) -> WeighedJoints:
@@ -36,10 +37,15 @@ def weighed_joints(name: str) -> WeighedJoints:
     return weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=CONFIG.joints)
 
 
+def measured_of(weighed: WeighedJoints) -> Values:
+    """All that the scorer reads."""
+    return {**measure(weighed.scene, hypotheses_of(weighed)), **cues_of(weighed), **verdicts_of(weighed)}
+
+
 def test_probabilities_follow_the_hypotheses_in_any_order() -> None:
     weighed = weighed_joints("drawer")
     hypotheses = hypotheses_of(weighed)
-    measured = {**measure(weighed.scene, hypotheses), **rule_scores(weighed)}
+    measured = measured_of(weighed)
     likely = shipped_scorer().probabilities(hypotheses.kinds, measured)
     assert likely.sum() == pytest.approx(1.0)
     order = np.random.default_rng(0).permutation(len(likely))
@@ -50,7 +56,7 @@ def test_probabilities_follow_the_hypotheses_in_any_order() -> None:
 def test_what_is_not_finite_counts_as_not_known() -> None:
     weighed = weighed_joints("drawer")
     hypotheses = hypotheses_of(weighed)
-    measured = {**measure(weighed.scene, hypotheses), **rule_scores(weighed)}
+    measured = measured_of(weighed)
     broken = {**measured, "slip_contact": np.full(len(hypotheses), np.inf)}
     missing = {name: value for name, value in measured.items() if name != "slip_contact"}
     scorer = shipped_scorer()
@@ -61,7 +67,7 @@ def test_what_is_not_finite_counts_as_not_known() -> None:
 
 def test_the_measurements_are_those_that_were_fitted() -> None:
     weighed = weighed_joints("edge_door")
-    measured = {**measure(weighed.scene, hypotheses_of(weighed)), **rule_scores(weighed)}
+    measured = measured_of(weighed)
     assert set(measured) <= set(shipped_scorer().measurements)
 
 

@@ -13,7 +13,8 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.choice.judge import hypotheses_of, rule_scores
+from kinematify.joints.choice.judge import cues_of, hypotheses_of, verdicts_of
+from kinematify.joints.choice.twins import alike_edges
 from kinematify.joints.hypotheses.bearing import fit_bearings
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
 from kinematify.joints.measure.scene import part_frames
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import GroundTruth, TrueJoint
     from kinematify.config import Config
     from kinematify.robot.arrays import FloatArray, IntArray
+
+VERDICTS = "verdicts"
+"""Group of what the weighted cues say (`judge.verdicts_of`)."""
 
 _ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
 _DISTANCE = 0.05  # of the child's diagonal, the same for a line
@@ -51,7 +55,7 @@ class Example:
     measured: Mapping[str, FloatArray]
     """Shape (h,) each."""
     groups: Mapping[str, Sequence[str]]
-    """Names of the measurements by the group that measures them; "cues" for what the weighted cues say."""
+    """Names of the measurements by the group that measures them, with "cues" and `VERDICTS`."""
     right: FloatArray
     """How right each hypothesis is, in [0, 1], shape (h,)."""
     angles: FloatArray
@@ -60,6 +64,8 @@ class Example:
     """1 where the type is that of this joint, shape (h,)."""
     by_cues: int
     """Position of what the weighted cues alone would choose."""
+    alike: int
+    """The same number for edges of an object that are alike (`twins.alike_edges`), -1 for all others."""
 
     @property
     def kinds(self) -> IntArray:
@@ -92,6 +98,7 @@ def examples_of(
     tree = KinematicTree(parents=tuple(truth.parents))
     cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
     frames = part_frames(cache, tree, config.joints)
+    alike = alike_edges(graph, tree)
     found = []
     for edge in tree.edges():
         joints = [joint for joint in truth.joints if (joint.parent, joint.child) == edge]
@@ -106,7 +113,8 @@ def examples_of(
         best = np.argmax([right + 1e-3 * same for right, _, same in judged], axis=0)
         rows = np.arange(len(hypotheses))
         right, angles, same = (np.array([item[k] for item in judged])[best, rows] for k in range(3))
-        groups = measure_groups(weighed.scene, hypotheses) | {"cues": rule_scores(weighed)}
+        groups = measure_groups(weighed.scene, hypotheses)
+        groups |= {"cues": cues_of(weighed), VERDICTS: verdicts_of(weighed)}
         slides = weighed.decision.kind is JointType.PRISMATIC
         stuck = weighed.decision.kind is JointType.FIXED
         found.append(
@@ -124,6 +132,7 @@ def examples_of(
                 angles=angles,
                 types_right=same.astype(np.int64),
                 by_cues=0 if stuck else 1 + (len(weighed.turns.scores) if slides else 0),
+                alike=next((number for number, group in enumerate(alike) if edge in group), -1),
             )
         )
     return found
@@ -169,6 +178,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "by_cues": example.by_cues,
                 "size": example.size,
                 "groups": example.groups,
+                "alike": example.alike,
                 "sources": example.hypotheses.sources,
                 "names": names,
             }

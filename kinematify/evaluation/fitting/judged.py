@@ -12,6 +12,7 @@ from kinematify.config import load_config
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
 from kinematify.evaluation.fitting.trees import fit_scorer
 from kinematify.joints.choice.judge import Judgement
+from kinematify.joints.choice.twins import agreed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -77,7 +78,20 @@ def judge_left_out(
         fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
         scorer = fit_scorer(fitted, seeds=(0,), provenance={})
         found |= {k: scorer.probabilities(examples[k].kinds, examples[k].measured) for k in judged}
-    return [found[k] for k in range(len(examples))]
+    return agreed_examples(examples, [found[k] for k in range(len(examples))])
+
+
+def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -> list[FloatArray]:
+    """Probabilities after edges that are alike have agreed on a type, as the inference has it."""
+    groups: dict[tuple[str, str, int], list[int]] = {}
+    for k, example in enumerate(examples):
+        if example.alike >= 0:
+            groups.setdefault((example.origin, example.object, example.alike), []).append(k)
+    found = list(likely)
+    for rows in groups.values():
+        for k, given in zip(rows, agreed([examples[k].kinds for k in rows], [likely[k] for k in rows]), strict=True):
+            found[k] = given
+    return found
 
 
 def folds_of(examples: Sequence[Example], group: Callable[[Example], str]) -> list[int]:

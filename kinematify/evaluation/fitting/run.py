@@ -16,6 +16,7 @@ from kinematify import __version__
 from kinematify.evaluation.fitting.corpora import GENERATED, gather_examples, generated_sources, real_sources
 from kinematify.evaluation.fitting.judged import (
     CAUSES,
+    agreed_examples,
     calibration_of,
     cause_of,
     judge_left_out,
@@ -107,7 +108,8 @@ def fit_and_judge(
     likely = {"left out by category": judge_left_out(examples, lambda example: example.category, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
-    likely["shipped weights"] = [scorer.probabilities(example.kinds, example.measured) for example in examples]
+    shipped = [scorer.probabilities(example.kinds, example.measured) for example in examples]
+    likely["shipped weights"] = agreed_examples(examples, shipped)
     report = {
         "schema": 2,
         "provenance": provenance,

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.evaluation.fitting.examples import content_key
+from kinematify.evaluation.fitting.examples import VERDICTS, content_key
 from kinematify.joints.choice.scorer import FORMAT, SUMMARIES, Scorer, base_columns, stacked
 
 if TYPE_CHECKING:
@@ -37,13 +37,16 @@ _PARAMETERS = {
     "deterministic": True,
     "verbosity": -1,
 }
-_ROUNDS = 220
+_ROUNDS, _ROUNDS_UNTOLD = 220, 280  # those who are not told what the cues say have more to find out
 _SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
 """Weight of an example of such an origin beside one of a real object."""
 
 
 def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
-    """Fit the scorer to examples; trees of several seeds are averaged.
+    """Fit the scorer to examples: the average of trees of several seeds, of which half see no verdicts.
+
+    Those that see what the weighted cues say are better on furniture, those that do not on all else; together they are
+    better on both (`results/choice.md`).
 
     Raises:
         InputError: There is nothing to fit to.
@@ -62,13 +65,20 @@ def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance:
     weights = _weights(usable)[np.repeat(np.arange(len(usable)), np.diff(starts))]
     begun = np.concatenate([base_columns(example.kinds, example.measured) for example in usable])
     base = _fit_base(begun, starts, target, weights)
-    boosters = [_boost(columns, begun @ base, starts, target, weights, seed=seed) for seed in seeds]
-    return Scorer(measurements=names, base=base, temperature=1.0, provenance=dict(provenance), **_arrays(boosters))
+    told = [_boost(columns, begun @ base, starts, target, weights, seed=seed, rounds=_ROUNDS) for seed in seeds]
+    verdicts = {name for example in usable for name in example.groups[VERDICTS]}
+    hidden = 3 + np.array([k for k, name in enumerate(names) if name in verdicts])
+    columns[:, [*hidden, *(hidden + len(names))]] = np.nan
+    nothing = np.zeros(len(columns))
+    untold = [_boost(columns, nothing, starts, target, weights, seed=seed, rounds=_ROUNDS_UNTOLD) for seed in seeds]
+    return Scorer(
+        measurements=names, base=0.5 * base, temperature=1.0, provenance=dict(provenance), **_arrays([*told, *untold])
+    )
 
 
 def recipe_key(measurements: Sequence[str]) -> str:
     """Hash of how weights are fitted: of what measurements, from which start, with which parameters."""
-    return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, _SHARE)
+    return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, _ROUNDS_UNTOLD, _SHARE)
 
 
 def data_key(examples: Sequence[Example]) -> str:
@@ -128,7 +138,14 @@ def _fit_base(begun: FloatArray, starts: IntArray, target: FloatArray, weights: 
 
 
 def _boost(
-    columns: NDArray[Any], begun: FloatArray, starts: IntArray, target: FloatArray, weights: FloatArray, *, seed: int
+    columns: NDArray[Any],
+    begun: FloatArray,
+    starts: IntArray,
+    target: FloatArray,
+    weights: FloatArray,
+    *,
+    seed: int,
+    rounds: int,
 ) -> Any:
     try:
         import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
@@ -144,7 +161,7 @@ def _boost(
     data = lightgbm.Dataset(
         columns, label=target, init_score=begun, params={"max_bin": _PARAMETERS["max_bin"], "verbosity": -1}
     )
-    return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, _ROUNDS)
+    return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, rounds)
 
 
 _DTYPES = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.kind import Siblings, decide_kind
 from kinematify.joints.choice.limits import find_range
+from kinematify.joints.choice.twins import agreed, alike_edges
 from kinematify.joints.choice.weighed import WeighedJoints
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import JointsConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.choice.judge import Judgement
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.joints.hypotheses.frames import BoxFrame
     from kinematify.joints.hypotheses.line import Line
@@ -54,21 +57,20 @@ def estimate_joints(
     """
     cache = PartCache(assembly, graph, samples=config.samples, seed=seed)
     frames = part_frames(cache, tree, config)
-    return tuple(_estimate(cache, tree, frames, edge, bearings, config=config) for edge in tree.edges())
+    weighed = {
+        edge: weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
+        for edge in tree.edges()
+    }
+    judged = {edge: judge(joints, lead=config.confidence.cues_lead) for edge, joints in weighed.items()}
+    for group in alike_edges(graph, tree):
+        alike = [judged[edge] for edge in group]
+        likely = agreed([item.hypotheses.kinds for item in alike], [item.likely for item in alike])
+        judged |= {edge: replace(judged[edge], likely=given) for edge, given in zip(group, likely, strict=True)}
+    return tuple(_estimate(weighed[edge], judged[edge], config=config) for edge in tree.edges())
 
 
-def _estimate(
-    cache: PartCache,
-    tree: RootedTree,
-    frames: Mapping[int, BoxFrame],
-    edge: tuple[int, int],
-    bearings: Mapping[tuple[int, int], EdgeBearing],
-    *,
-    config: JointsConfig,
-) -> JointEstimate:
-    weighed = weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
+def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig) -> JointEstimate:
     scene, decision = weighed.scene, weighed.decision
-    judged = judge(weighed, lead=config.confidence.cues_lead)
     kind = JointType.FIXED if decision.kind is JointType.FIXED else judged.kind(judged.best)
     axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
     found = find_range(scene, kind, axis, pivot, config)

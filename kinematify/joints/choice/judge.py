@@ -124,7 +124,7 @@ class Judgement:
 def judge(weighed: WeighedJoints, *, lead: float) -> Judgement:
     """Measure every proposed joint of an edge and score them together; what cues would choose has a lead [log odds]."""
     hypotheses = hypotheses_of(weighed)
-    measured = {**measure(weighed.scene, hypotheses), **rule_scores(weighed)}
+    measured = {**measure(weighed.scene, hypotheses), **cues_of(weighed), **verdicts_of(weighed)}
     slides = weighed.decision.kind is JointType.PRISMATIC
     return Judgement(
         hypotheses=hypotheses,
@@ -148,11 +148,10 @@ def hypotheses_of(weighed: WeighedJoints) -> Hypotheses:
     )
 
 
-def rule_scores(weighed: WeighedJoints) -> Values:
-    """The cues and what their weighted sums say, as measurements like others; NaN where they do not apply, (h,)."""
-    scene, turns, slides, decision = weighed.scene, weighed.turns, weighed.slides, weighed.decision
+def cues_of(weighed: WeighedJoints) -> Values:
+    """The cues of turns and of slides before any weight, as measurements like others; NaN where none applies, (h,)."""
+    scene, turns, slides = weighed.scene, weighed.turns, weighed.slides
     n, m = len(turns.scores), len(slides.scores)
-    odds = float(np.clip(decision.odds, -_ODDS, _ODDS))
 
     def of_turns(value: FloatArray) -> FloatArray:
         return np.concatenate([[np.nan], value, np.full(m, np.nan)])
@@ -160,16 +159,8 @@ def rule_scores(weighed: WeighedJoints) -> Values:
     def of_slides(value: FloatArray) -> FloatArray:
         return np.concatenate([np.full(1 + n, np.nan), value])
 
-    facts = {
-        **{f"type_{name}": value for name, value in decision.cues.items()},
-        "has_bearing": float(scene.has_bearing),
-        "mechanism": scene.mechanism,
-        "smallness": scene.smallness,
-        "stuck": float(decision.kind is JointType.FIXED),
-    }
+    facts = {"has_bearing": scene.has_bearing, "mechanism": scene.mechanism, "smallness": scene.smallness}
     return {
-        "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
-        "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),
         "turn_room": of_turns(turns.free.max(axis=1)),
         "turn_room_parent": of_turns(turns.free_parent.max(axis=1)),
         "slide_room": of_slides(slides.free.max(axis=1)),
@@ -177,4 +168,21 @@ def rule_scores(weighed: WeighedJoints) -> Values:
         **{f"turn_{name}": of_turns(value) for name, value in turns.cues.items()},
         **{f"slide_{name}": of_slides(value) for name, value in slides.cues.items()},
         **{name: np.full(1 + n + m, float(value)) for name, value in facts.items()},
+    }
+
+
+def verdicts_of(weighed: WeighedJoints) -> Values:
+    """What the weighted sums of cues say of each hypothesis, and the cues of the type, (h,) each.
+
+    They were written while objects were looked at. Half of what is fitted does not see them.
+    """
+    turns, slides, decision = weighed.turns, weighed.slides, weighed.decision
+    n, m = len(turns.scores), len(slides.scores)
+    odds = float(np.clip(decision.odds, -_ODDS, _ODDS))
+    facts = {f"type_{name}": value for name, value in decision.cues.items()}
+    facts["stuck"] = float(decision.kind is JointType.FIXED)
+    return {
+        "rules_score": np.concatenate([[np.nan], *(found.scores - found.scores.max() for found in (turns, slides))]),
+        "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),
+        **{name: np.full(1 + n + m, value) for name, value in facts.items()},
     }

@@ -1,0 +1,49 @@
+"""Edges that are alike agree on a type."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.joints.choice.twins import agreed, alike_edges
+from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
+from tests.joints.joint_scenes import evidence, infer_joints
+from tests.objects import BUILDERS
+
+KINDS = np.array([FIXED, TURN, TURN, SLIDE])
+
+
+def test_what_is_likelier_for_all_together_is_likelier_for_each() -> None:
+    """One part is nearly sure, the other hardly leans the other way."""
+    sure, leaning = np.array([0.0, 0.05, 0.05, 0.9]), np.array([0.0, 0.4, 0.2, 0.4])
+    for found in agreed([KINDS, KINDS], [sure, leaning]):
+        assert found.sum() == pytest.approx(1.0)
+        assert found[3] > 0.5
+
+
+def test_within_a_type_nothing_changes() -> None:
+    first, second = np.array([0.1, 0.5, 0.2, 0.2]), np.array([0.1, 0.1, 0.1, 0.7])
+    found = agreed([KINDS, KINDS], [first, second])
+    assert found[0][1] / found[0][2] == pytest.approx(2.5)
+    assert found[1][1] / found[1][2] == pytest.approx(1.0)
+
+
+def test_one_part_cannot_rule_out_a_type_for_all() -> None:
+    never, sure = np.array([0.0, 1.0, 0.0, 0.0]), np.array([0.0, 0.0, 0.0, 1.0])
+    assert all(np.isfinite(found).all() for found in agreed([KINDS, KINDS], [never, sure]))
+
+
+def test_fingers_of_one_hand_are_alike_and_get_one_type() -> None:
+    known = BUILDERS["parallel_gripper"]()
+    tree, graph, _ = evidence(known)
+    groups = alike_edges(graph, tree)
+    assert [sorted(known.parts[child].name for _, child in group) for group in groups] == [
+        sorted(joint.child for joint in known.joints if "finger" in joint.child)
+    ]
+    estimates = infer_joints(known)
+    assert len({estimates[known.parts[child].name].kind for _, child in groups[0]}) == 1
+
+
+def test_parts_of_different_shape_are_not_alike() -> None:
+    tree, graph, _ = evidence(BUILDERS["edge_door"]())
+    assert alike_edges(graph, tree) == []
