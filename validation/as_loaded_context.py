@@ -154,8 +154,10 @@ class AsLoadedContext:
 
     @cached_property
     def overlaps(self) -> tuple[Overlap, ...]:
-        """At rest, the deepest first."""
-        return self.loaded.overlaps(self.values)
+        """At rest, the deepest first, of links that can move against each other: nothing pushes others apart."""
+        body = dict(zip(self.mechanism.links, self.mechanism.body_of_link.tolist(), strict=True))
+        found = self.loaded.overlaps(self.values)
+        return tuple(item for item in found if body[item.links[0]] != body[item.links[1]])
 
     @cached_property
     def left_alone(self) -> RestRun:
@@ -211,6 +213,11 @@ class AsLoadedContext:
         """What a force at each joint moves at rest [kg or kg m^2]."""
         return dict(zip(self.loaded.joints, self.running.inertias(self.values).tolist(), strict=True))
 
+    @cached_property
+    def bearable(self) -> dict[str, float]:
+        """Largest force at each joint at rest that the engine answers rightly [N or N m]."""
+        return dict(zip(self.loaded.joints, self.running.bearable(self.values).tolist(), strict=True))
+
     def ratios(self, travel: Travel) -> dict[str, float]:
         """Return the motion of a joint, 1, and of those that mimic it."""
         leader = [item.joint for item in self.mechanism.travels].index(travel.joint)
@@ -265,6 +272,7 @@ class AsLoadedContext:
             force=force,
             speed=self.speed(travel),
             time_step=self.running.time_step,
+            bearable=self.bearable[travel.joint],
             **more,
         )
 

@@ -70,6 +70,24 @@ def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> Co
     return ConvexPiece(vertices=vertices, faces=faces)
 
 
+def enclosing_piece(points: FloatArray, *, directions: int) -> ConvexPiece:
+    """Return a hull around points that has at most so many corners, a little larger than theirs where they are more.
+
+    Args:
+        points: Shape (n, 3); they span a volume.
+        directions: As in `convex_piece`.
+    """
+    vertices, faces = convex_hull(points)
+    if len(vertices) > directions:
+        middle = vertices.mean(axis=0)
+        few, faces = convex_hull(outermost(vertices, directions) - middle)
+        a, b, c = (few[faces[:, k]] for k in range(3))
+        normals = crossed(b - a, c - a)
+        reach = (normals @ (vertices - middle).T).max(axis=1) / np.einsum("ij,ij->i", normals, a)
+        vertices = few * reach.max() + middle
+    return ConvexPiece(vertices=vertices, faces=faces)
+
+
 def plain_piece(piece: ConvexPiece) -> ConvexPiece:
     """Return the hull of a piece's corners: points on edges and faces, and corners beside another one, make slivers.
 

@@ -152,6 +152,10 @@ class DrakeFile:
         world.place(self._row(values))
         return np.asarray(1.0 / np.diagonal(np.linalg.inv(world.plant.CalcMassMatrix(world.state))))
 
+    def bearable(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`."""
+        return np.full(len(values), np.inf)
+
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `RunningFile`."""
         world, rest = self._world(contacts=contacts, gravity=False), self._row(values)

@@ -153,6 +153,9 @@ class RunningFile(LoadedFile, Protocol):
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
         """What a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
 
+    def bearable(self, values: Mapping[str, float]) -> FloatArray:
+        """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
+
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """Push a joint from `values`, the others held there."""
 
@@ -179,6 +182,7 @@ def hand(
     time_step: float,
     resistance: float = 0.0,
     damping: float = 0.0,
+    bearable: float = np.inf,
     patience: float = PATIENCE,
 ) -> Push:
     """Return the push of a hand.
@@ -192,13 +196,14 @@ def hand(
         time_step: Of the engine [s].
         resistance: Declared friction that is overcome besides [N or N m].
         damping: The same of declared damping [N s/m or N m s/rad].
+        bearable: From `RunningFile.bearable`; no more is given [N or N m].
         patience: See `Push`.
     """
     inertia_of = {name: max(inertias[name], 1e-9) for name in ratios}
     inertia = sum(ratio**2 * inertia_of[name] for name, ratio in ratios.items())
     length = abs(way[1] - way[0])
     speed = max(speed, 0.5 * length)
-    force = max(force, inertia * speed / _START_SECONDS) + resistance + damping * speed
+    force = min(max(force, inertia * speed / _START_SECONDS) + resistance + damping * speed, bearable)
     whole = force * time_step / (speed * _START_SECONDS)  # grows to the full force in that time
     return Push(
         moved=tuple(ratios),

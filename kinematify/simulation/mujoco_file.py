@@ -171,6 +171,10 @@ class MujocoFile:
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
         return np.asarray(1.0 / np.diagonal(inverse))
 
+    def bearable(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`."""
+        return np.full(len(values), np.inf)
+
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `RunningFile`."""
         rest, joint, data = self._place(values), self.joints.index(push.joint), self._data

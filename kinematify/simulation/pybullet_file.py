@@ -81,6 +81,8 @@ print("\\n", max(seen) - seen[0])
 _LOOK_STEPS = 8
 """Between two looks at the energy."""
 _TIME_STEP = 1.0 / 240.0
+_FASTEST = 100.0
+"""Speed that Bullet lets no joint exceed [rad/s or m/s]."""
 _MOTOR = 240.0
 """Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
 
@@ -193,6 +195,26 @@ class PybulletFile:
             local = np.array(bullet.getMatrixFromQuaternion(turned)).reshape(3, 3).T @ axis
             total += mass * float(arm @ arm) + float(local @ (np.array(tensor) * local))
         return total
+
+    def bearable(self, values: Mapping[str, float]) -> FloatArray:
+        """See `RunningFile`.
+
+        Bullet lets no joint be faster than 100 rad/s within a step either, before motors hold the others: a joint that
+        is light where those give way is thrown back by more.
+        """
+        world, torques = self._world(values, contacts=False), 1e-2 * self.inertias(values)
+        bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
+        for k in self._index.values():
+            world.do(bullet.setJointMotorControl2, k, bullet.VELOCITY_CONTROL, force=0)
+        speeds = []
+        for k, torque in zip(self._index.values(), torques.tolist(), strict=True):
+            for name, place in self._index.items():
+                world.do(bullet.resetJointState, place, values[name])
+            world.do(bullet.setJointMotorControl2, k, bullet.TORQUE_CONTROL, force=torque)
+            bullet.stepSimulation(physicsClientId=world.client)
+            speeds.append(abs(world.do(bullet.getJointState, k)[1]))
+        del self._worlds[False]
+        return 0.5 * _FASTEST * torques / np.maximum(speeds, 1e-12)
 
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `RunningFile`."""

@@ -118,9 +118,9 @@ def _remedy_of_loading(context: AsLoadedContext, message: str) -> str:
     needs=(not_loaded,),
 )
 def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
-    """In the untouched file at rest, no two links that the engine lets touch are in each other by more than
-    as_loaded.overlap of the model's size, at least as_loaded.overlap_length. PyBullet is asked with
-    `URDF_USE_SELF_COLLISION`.
+    """In the untouched file at rest, no two links that the engine lets touch and that joints move against each other
+    are in each other by more than as_loaded.overlap of the model's size, at least as_loaded.overlap_length. PyBullet is
+    asked with `URDF_USE_SELF_COLLISION`.
 
     Why it matters: Engines push such links apart: parts jump, jam, or tremble.
 
@@ -249,13 +249,12 @@ def moves(result: OpenCheck, context: AsLoadedContext) -> None:
     Remedy: Write convex pieces as collision geometry of the links that are named, clear of each other along the motion.
     """
     short = [run for run in context.hands if not context.arrives(run, run.pushed.farthest)]
-    jammed = [run for run in short if _free_without_contacts(context, run)]
-    right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in jammed}
+    right = {run.travel.joint for run in context.hands} - {run.travel.joint for run in short}
     right -= {travel.joint for travel in context.travels if context.left_alone.complaint or _leaves(context, travel)}
     result.measured["joints"] = float(len(context.mechanism.travels))
     result.measured["right"] = float(len(right))
     for run in short:
-        _find_short(result, context, run, jammed=run in jammed)
+        _find_short(result, context, run, jammed=_free_without_contacts(context, run))
 
 
 def _free_without_contacts(context: AsLoadedContext, run: HandRun) -> bool:
