@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import fast_simplification
 import igl
@@ -13,14 +13,16 @@ from scipy.spatial import cKDTree
 from kinematify.assembly.names import part_names
 from kinematify.assembly.part import Assembly, Part, SetAside
 from kinematify.errors import AssemblyError
+from kinematify.robot.appearance import MAX_MATERIALS
 from kinematify.robot.arrays import used_vertices
-from kinematify.robot.weld import welded
+from kinematify.robot.weld import weld, welded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.config import AssemblyConfig
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.appearance import Appearance
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mesh_file import RawMesh
 
 _PROBES = 200
@@ -55,7 +57,7 @@ def assemble(
         source=source,
         set_aside=tuple(_set_aside(part, reason, triage.kept) for part, reason in triage.aside),
         original_names=dict(zip(names, (mesh.name for mesh in meshes), strict=True)),
-        warnings=(*warnings, *triage.warnings, *_thinning_warnings(thin, originals)),
+        warnings=(*warnings, *_told_looks(meshes, names), *triage.warnings, *_thinning_warnings(thin, originals)),
         originals=originals,
     )
 
@@ -100,12 +102,39 @@ def check_finite(mesh: RawMesh, source: str) -> None:
 
 
 def _welded_part(mesh: RawMesh, name: str, config: AssemblyConfig) -> Part:
-    vertices, faces = welded(mesh.vertices, mesh.faces, config.weld)
+    vertices, faces, kept = weld(mesh.vertices, mesh.faces, config.weld)
     if len(faces):
-        return Part(name=name, vertices=vertices, faces=faces)
+        appearance = None if mesh.appearance is None else mesh.appearance.of_faces(kept).with_few_materials()
+        return Part(name=name, vertices=vertices, faces=faces, **_looks(vertices, faces, appearance))
     # Nothing has area: kept as it was given, so that the user finds it in the output.
     finite = mesh.vertices if np.isfinite(mesh.vertices).all() else mesh.vertices[:0]
     return Part(name=name, vertices=finite, faces=mesh.faces)
+
+
+def _looks(vertices: FloatArray, faces: IntArray, appearance: Appearance | None) -> dict[str, Any]:
+    """Colour and appearance of a part; the latter only where it says more than the colour."""
+    if appearance is None:
+        return {}
+    *color, opacity = appearance.mean_color(vertices, faces)
+    one_color = len(appearance.materials) == 1 and not appearance.is_textured and opacity == 1.0
+    return {"color": tuple(color), "appearance": None if one_color else appearance}
+
+
+def _told_looks(meshes: Sequence[RawMesh], names: Sequence[str]) -> list[str]:
+    """What of the materials is lost."""
+    notes = dict.fromkeys(note for mesh in meshes if mesh.appearance for note in mesh.appearance.notes)
+    told = [f"Not all colours are those of the input: {'; '.join([*notes][:8])}."] if notes else []
+    many = [
+        name
+        for mesh, name in zip(meshes, names, strict=True)
+        if mesh.appearance and len(np.unique(mesh.appearance.material_of_face)) > MAX_MATERIALS
+    ]
+    if many:
+        told.append(
+            f"Parts of more than {MAX_MATERIALS} materials keep {MAX_MATERIALS} colours that are near, without "
+            f"textures: {', '.join(many[:8])}."
+        )
+    return told
 
 
 def _without_degenerate(parts: Sequence[Part], source: str, config: AssemblyConfig) -> _Triage:
@@ -213,7 +242,7 @@ def simplified(part: Part, config: AssemblyConfig) -> Part:
         part.vertices.copy(), part.faces.copy(), target_count=config.max_part_faces
     )
     vertices, faces = welded(np.asarray(vertices, dtype=np.float64), faces.astype(np.int64), config.weld)
-    return Part(name=part.name, vertices=vertices, faces=faces)
+    return Part(name=part.name, vertices=vertices, faces=faces, color=part.color)
 
 
 def _thinning_warnings(thin: Sequence[Part], originals: dict[str, Part]) -> list[str]:

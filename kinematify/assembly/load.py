@@ -17,6 +17,7 @@ from kinematify.assembly.names import natural_key
 from kinematify.assembly.pieces import connected_pieces, labelled_parts
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
+from kinematify.robot.lengths import length_text
 from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import GLTF_SUFFIXES
 from kinematify.robot.read import read_robot
@@ -40,6 +41,8 @@ PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf")
 """Mesh files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
 """Files beside meshes that nobody takes for a part."""
+_GUESSES = (("millimetres", 1e-3), ("centimetres", 1e-2), ("metres, and were divided by a thousand", 1e3))
+"""What lengths may be in that cannot be metres, the likeliest first, and metres per unit."""
 _UNITS = {"millimeter": 1e-3, "micron": 1e-6, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048}
 
 
@@ -94,8 +97,10 @@ def load_assembly(
     given = _given(path, _Reading(up=up, labels=labels, config=config))
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
     scaled = meshes if scale == 1.0 else [replace(mesh, vertices=mesh.vertices * scale) for mesh in meshes]
-    warnings = (*given.warnings, *(_unit_warnings(given.meshes) if scale == 1.0 else ()))
-    return assemble(scaled, source=str(path), config=config, warnings=warnings)
+    stated = _unit_warnings(given.meshes) if scale == 1.0 else ()
+    assembly = assemble(scaled, source=str(path), config=config, warnings=(*given.warnings, *stated))
+    doubts = () if stated else _size_warnings(assembly, scale, config)
+    return replace(assembly, warnings=(*assembly.warnings, *doubts))
 
 
 def _check_arguments(up: str, scale: float) -> None:
@@ -201,7 +206,7 @@ def _unpacked(archive: Path, folder: Path, reading: _Reading) -> _Given:
 
 def _description(path: Path, reading: _Reading) -> _Given:
     """Rigid groups of links at rest; everything else that the description says is dropped."""
-    robot = read_robot(path, geometry="shown")
+    robot = read_robot(path, geometry="shown", appearance=True)
     poses = forward_kinematics(robot, rest_configuration(robot))
     groups = [group for group in rigid_groups(robot) if group.has_geometry]
     meshes = tuple(
@@ -231,7 +236,7 @@ def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ..
         check_packed_mesh(path, allowed)
     usual = "y" if path.suffix.lower() in GLTF_SUFFIXES else "z"
     up = usual if reading.up == "auto" else reading.up
-    return tuple(_upright(mesh, up) for mesh in read_meshes(path, empty_ok=empty_ok))
+    return tuple(_upright(mesh, up) for mesh in read_meshes(path, empty_ok=empty_ok, appearance=True))
 
 
 def _upright(mesh: RawMesh, up: str) -> RawMesh:
@@ -251,6 +256,17 @@ def _unit_warnings(meshes: tuple[RawMesh, ...]) -> tuple[str, ...]:
         f"The file states its lengths in {unit}; they were taken as metres. Give --scale {_metres(unit)} to convert."
         for unit in units
     )
+
+
+def _size_warnings(assembly: Assembly, scale: float, config: AssemblyConfig) -> tuple[str, ...]:
+    """Ask about the unit of an object that is larger or smaller than what has joints."""
+    size = float(np.ptp(assembly.bounds, axis=0).max())
+    if config.smallest <= size <= config.largest:
+        return ()
+    unit, factor = next((item for item in _GUESSES if config.smallest <= size * item[1] <= config.largest), _GUESSES[0])
+    said = f"The object is {length_text(size)} long with {scale:g} m to the unit, which is unusual. "
+    guess = f"If its lengths are in {unit}, it is {length_text(size * factor)} long: give --scale {scale * factor:g}."
+    return (said + guess,)
 
 
 def _metres(unit: str) -> str:

@@ -18,6 +18,7 @@ from kinematify.robot.vectors import crossed, highest, lengths_of, lowest
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
@@ -32,7 +33,9 @@ class Part:
     faces: IntArray
     """Vertex indices of triangles, shape (F, 3). Read-only."""
     color: tuple[float, float, float] | None = None
-    """sRGB in [0, 1] where the source knows it; models and pictures choose one otherwise."""
+    """sRGB in [0, 1] where the source knows it, the mean of several; models and pictures choose one otherwise."""
+    appearance: Appearance | None = None
+    """Materials of the faces where the source knows more than one colour."""
     density: float | None = None
     """[kg/m^3] where the source knows it."""
 

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from kinematify.errors import AssemblyError
 from kinematify.robot.mesh_file import RawMesh, compacted
-from kinematify.robot.weld import welded
+from kinematify.robot.weld import weld
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -75,19 +75,20 @@ def connected_pieces(mesh: RawMesh, tolerance: float) -> tuple[RawMesh, ...]:
         mesh: Any mesh with finite vertices; it is welded first, because many formats store corners per triangle.
         tolerance: Fraction of the mesh's diagonal below which vertices are one.
     """
-    vertices, faces = welded(mesh.vertices, mesh.faces, tolerance)
+    vertices, faces, kept = weld(mesh.vertices, mesh.faces, tolerance)
     _, first, piece = np.unique(_piece_of_face(faces, len(vertices)), return_index=True, return_inverse=True)
     rank = np.argsort(np.argsort(first))
     names = [f"piece_{k:03d}" for k in range(len(first))]
-    return _split(replace(mesh, vertices=vertices, faces=faces), rank[piece], names)
+    return _split(replace(mesh.of_faces(kept), vertices=vertices, faces=faces), rank[piece], names)
 
 
 def _split(mesh: RawMesh, index: IntArray, names: Sequence[str]) -> tuple[RawMesh, ...]:
     """One mesh per name, made of the faces with its index; one pass, since there may be thousands."""
-    faces = mesh.faces[np.argsort(index, kind="stable")]
+    order = np.argsort(index, kind="stable")
     ends = np.cumsum(np.bincount(index, minlength=len(names)))[:-1]
     return tuple(
-        compacted(replace(mesh, name=name, faces=part)) for name, part in zip(names, np.split(faces, ends), strict=True)
+        compacted(replace(mesh.of_faces(part), name=name))
+        for name, part in zip(names, np.split(order, ends), strict=True)
     )
 
 

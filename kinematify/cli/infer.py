@@ -56,8 +56,9 @@ if TYPE_CHECKING:
     "--hint",
     "hints",
     multiple=True,
-    metavar="PART=TYPE|PART:axis=x",
-    help="What you know of a joint: its type, or the direction of its axis. It decides. Several may be given.",
+    metavar="PART=TYPE|PART:axis=x|PART:pivot=X,Y,Z",
+    help="What you know of a joint: its type, the direction of its axis (or X,Y,Z), a point that a hinge goes through "
+    "[m]. It decides. Several may be given.",
 )
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."

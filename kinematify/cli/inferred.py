@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.cli.table import format_table
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.lengths import range_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -65,7 +66,7 @@ def _range(joint: Joint) -> str:
         return "unlimited"
     if joint.kind.turns:
         return f"{math.degrees(joint.lower):z.0f} to {math.degrees(joint.upper):.0f} deg"
-    return f"{joint.lower * 1000:z.0f} to {joint.upper * 1000:.0f} mm"
+    return range_text(joint.lower, joint.upper)
 
 
 def _describe_doubts(inference: Inference) -> list[str]:

@@ -26,6 +26,10 @@ class AssemblyConfig(StageConfig):
     """Vertices closer than this fraction of their mesh's diagonal are merged."""
     duplicate: float
     """Two parts whose vertices agree within this fraction of the assembly's diagonal are the same part twice."""
+    smallest: float
+    """Objects whose longest side is shorter are asked about: their unit may not be the metre [m]."""
+    largest: float
+    """Objects whose longest side is longer are asked about as well [m]."""
 
 
 class SurfaceConfig(StageConfig):

@@ -16,6 +16,7 @@ from kinematify.geometry.rest import overlapping_links
 from kinematify.geometry.scene import read_scene
 from kinematify.model.collision import collides_as_it_is, fit_collision
 from kinematify.model.masses import prepared_inertials
+from kinematify.robot.appearance import Material, plain, surfaces
 from kinematify.robot.joint_type import FREE_KINDS
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import Link, Shape
@@ -26,9 +27,10 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import PrepareSettings, ValidationSettings
     from kinematify.model.masses import PreparedInertial
+    from kinematify.robot.appearance import Surface
     from kinematify.robot.robot import Robot
 
-GREY = (0.7, 0.7, 0.7, 1.0)
+GREY = Material().color
 """Of shapes whose colour the file does not state."""
 WORLD = "world"
 """What MuJoCo and Gazebo call the outside."""
@@ -72,7 +74,7 @@ def read_content(urdf: Path, settings: ValidationSettings, *, package_dirs: Sequ
     Raises:
         InputError: The URDF cannot be used.
     """
-    model = read_robot(urdf, package_dirs=package_dirs)
+    model = read_robot(urdf, package_dirs=package_dirs, appearance=True)
     made = not collides_as_it_is(model)
     robot = model
     if made:
@@ -120,3 +122,9 @@ def _visuals(link: Link) -> tuple[Shape, ...]:
         if shape.kind != "mesh" or len(np.unique(shape.mesh.faces)) >= _LEAST_VERTICES
     ]
     return tuple(Shape(mesh=shape.mesh, color=shape.color) if shape.kind == "mesh" else shape for shape in shown)
+
+
+def shown_surfaces(shape: Shape) -> tuple[Surface, ...]:
+    """What is seen of a shape, cut into its materials; one that states none has its colour, or grey."""
+    appearance = shape.mesh.appearance or plain(shape.color or GREY, len(shape.mesh.faces))
+    return surfaces(shape.mesh.vertices, shape.mesh.faces, appearance)

@@ -6,15 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import trimesh
+from PIL import Image
 
-from kinematify.formats.content import GREY
+from kinematify.formats.content import shown_surfaces
+from kinematify.robot.colors import linear_of
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.formats.content import Content
-    from kinematify.robot.robot import Joint, Shape
+    from kinematify.robot.appearance import Surface
+    from kinematify.robot.robot import Joint
 
 _OUTSIDE = "y up"  # node above the root link, which may well be named "world"
 _UP = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])
@@ -31,9 +34,10 @@ def write_glb(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
         extras = {"kinematify": _described(joint)}
         graph.update(frame_from=joint.parent, frame_to=joint.child, matrix=joint.T_parent_child, metadata=extras)
     for link in content.robot.links:
-        for number, shape in enumerate(link.visuals):
+        seen = [surface for shape in link.visuals for surface in shown_surfaces(shape)]
+        for number, surface in enumerate(seen):
             name = f"{link.name}_{number}"
-            scene.add_geometry(_mesh(shape), geom_name=name, node_name=f"{name}_mesh", parent_node_name=link.name)
+            scene.add_geometry(_mesh(surface), geom_name=name, node_name=f"{name}_mesh", parent_node_name=link.name)
     exported: Any = scene.export  # untyped in trimesh
     out.write_bytes(exported(file_type="glb"))
     moving = sum(joint.kind is not JointType.FIXED for joint in content.robot.joints)
@@ -50,10 +54,19 @@ def _described(joint: Joint) -> dict[str, object]:
     return told
 
 
-def _mesh(shape: Shape) -> trimesh.Trimesh:
-    mesh = trimesh.Trimesh(shape.mesh.vertices, shape.mesh.faces, process=False)
-    color = np.round(255.0 * np.array(shape.color or GREY)).astype(np.uint8)
+def _mesh(surface: Surface) -> trimesh.Trimesh:
+    mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
     look: Any = trimesh.visual
-    material = look.material.PBRMaterial(baseColorFactor=color, metallicFactor=0.0, roughnessFactor=0.8)
-    mesh.visual = look.TextureVisuals(material=material)
+    stated = surface.material
+    texture = stated.texture
+    material = look.material.PBRMaterial(
+        name=stated.name or None,
+        # The factor is linear light in glTF, while the bytes of a picture are sRGB.
+        baseColorFactor=[*linear_of(np.array(stated.color[:3])).tolist(), stated.color[3]],
+        baseColorTexture=None if texture is None else Image.fromarray(texture.pixels),
+        metallicFactor=stated.metallic,
+        roughnessFactor=stated.roughness,
+        alphaMode="BLEND" if stated.color[3] < 1.0 else "OPAQUE",
+    )
+    mesh.visual = look.TextureVisuals(uv=surface.uv, material=material)
     return mesh

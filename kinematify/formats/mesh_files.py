@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kinematify.robot.material_files import write_texture
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kinematify.robot.appearance import Surface, Texture
     from kinematify.robot.robot import Shape
 
 
@@ -25,10 +27,32 @@ class MeshFiles:
         self.folder = out.parent / f"{out.stem}_meshes"
         self.folder.mkdir(exist_ok=True)
         self._count = 0
+        self._textures: dict[Texture, str] = {}
 
     def write(self, shape: Shape, link: str) -> str:
-        """Write a mesh in its link's frame and return its file name."""
-        name = f"{self._count:03d}_{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:60]}.obj"
+        """Write a mesh in its link's frame, with its materials beside it, and return its file name."""
+        name = self._name(link, "obj")
+        appearance = shape.mesh.appearance
+        says_more = appearance is not None and (len(appearance.materials) > 1 or appearance.is_textured)
+        write_obj(
+            self.folder / name, shape.mesh.vertices, shape.mesh.faces, OBJ_DIGITS, appearance if says_more else None
+        )
+        return name
+
+    def write_surface(self, surface: Surface, link: str) -> str:
+        """Write the faces of one material, with their places in its texture but without the material."""
+        name = self._name(link, "obj")
+        write_obj(self.folder / name, surface.vertices, surface.faces, OBJ_DIGITS, uv=surface.uv)
+        return name
+
+    def write_texture(self, texture: Texture) -> str:
+        """Write a picture once and return its file name."""
+        if texture not in self._textures:
+            self._textures[texture] = self._name("texture", "png")
+            write_texture(self.folder / self._textures[texture], texture)
+        return self._textures[texture]
+
+    def _name(self, link: str, suffix: str) -> str:
+        name = f"{self._count:03d}_{re.sub(r'[^A-Za-z0-9_-]', '_', link)[:60]}.{suffix}"
         self._count += 1
-        write_obj(self.folder / name, shape.mesh.vertices, shape.mesh.faces, OBJ_DIGITS)
         return name

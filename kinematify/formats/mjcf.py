@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.formats.content import GREY, body_name, told_renaming
+from kinematify.formats.content import GREY, body_name, shown_surfaces, told_renaming
 from kinematify.formats.mesh_files import MeshFiles
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.formats.content import Content
+    from kinematify.robot.appearance import Surface
     from kinematify.robot.robot import Joint, Link, Shape
 
 _SEEN, _COLLIDES = "2", "3"  # MuJoCo's viewer shows groups 0 to 2
@@ -100,22 +101,48 @@ class _Writer:
                 fullinertia=numbers([m[0, 0], m[1, 1], m[2, 2], m[0, 1], m[0, 2], m[1, 2]]),
             )  # fmt: skip
         for shape in link.visuals:
-            geom = self._geom(element, link, shape)
-            geom.set("rgba", numbers(shape.color or GREY))
-            geom.set("group", _SEEN)
-            geom.set("contype", "0")
-            geom.set("conaffinity", "0")
+            for geom in self._seen(element, link, shape):
+                geom.set("group", _SEEN)
+                geom.set("contype", "0")
+                geom.set("conaffinity", "0")
         for shape in link.collisions:
             self._geom(element, link, shape).set("group", _COLLIDES)
+
+    def _seen(self, element: _Element, link: Link, shape: Shape) -> list[_Element]:
+        """A geometry for every material of what is seen."""
+        if shape.kind != "mesh":
+            geom = self._geom(element, link, shape)
+            geom.set("rgba", numbers(shape.color or GREY))
+            return [geom]
+        return [self._surface(element, link, surface) for surface in shown_surfaces(shape)]
+
+    def _surface(self, element: _Element, link: Link, surface: Surface) -> _Element:
+        geom = etree.SubElement(element, "geom", type="mesh", mass="0")
+        geom.set("mesh", self._mesh(self._meshes.write_surface(surface, link.name)))
+        material, texture = surface.material, surface.material.texture
+        if texture is None:
+            geom.set("rgba", numbers(material.color))
+            return geom
+        name = self._meshes.write_texture(texture).removesuffix(".png")
+        if self._assets.find(f"texture[@name='{name}']") is None:
+            file = f"{self._meshes.folder.name}/{name}.png"
+            etree.SubElement(self._assets, "texture", name=name, type="2d", file=file)
+        stated = f"{name}_{len(self._assets)}"
+        etree.SubElement(self._assets, "material", name=stated, texture=name, rgba=numbers(material.color))
+        geom.set("material", stated)
+        return geom
+
+    def _mesh(self, file: str) -> str:
+        """Declare a mesh file and return its name."""
+        name = file.removesuffix(".obj")
+        # Only what is seen may be open or flat, for which a volume makes no sense.
+        etree.SubElement(self._assets, "mesh", name=name, file=file, inertia="shell")
+        return name
 
     def _geom(self, element: _Element, link: Link, shape: Shape) -> _Element:
         geom = etree.SubElement(element, "geom", type=shape.kind, mass="0")
         if shape.kind == "mesh":
-            file = self._meshes.write(shape, link.name)
-            name = file.removesuffix(".obj")
-            # Only what is seen may be open or flat, for which a volume makes no sense.
-            etree.SubElement(self._assets, "mesh", name=name, file=file, inertia="shell")
-            geom.set("mesh", name)
+            geom.set("mesh", self._mesh(self._meshes.write(shape, link.name)))
             return geom
         T = shape.T_link_shape
         geom.set("pos", numbers(T[:3, 3]))

@@ -73,7 +73,7 @@ def _add_link(model: _Element, link: Link, T_model_link: FloatArray, meshes: Mes
         for number, shape in enumerate(shapes):
             block = etree.SubElement(element, kind, name=f"{kind}_{number}")
             _add_shape(block, shape, link.name, meshes)
-            if kind == "visual":
+            if kind == "visual" and not (shape.mesh.appearance and len(shape.mesh.appearance.materials) > 1):
                 material = etree.SubElement(block, "material")
                 for name in ("ambient", "diffuse"):
                     etree.SubElement(material, name).text = numbers(shape.color or GREY)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics, UsdShade
 
 from kinematify.errors import OutputError
-from kinematify.formats.content import GREY
+from kinematify.formats.content import GREY, shown_surfaces
+from kinematify.robot.colors import linear_of
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.material_files import write_texture
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import quaternion_of, rotation_from_x
 
@@ -18,7 +20,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.formats.content import Content
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.appearance import Material, Rgba, Surface, Texture
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint, Link, Shape
 
 SUFFIXES = (".usd", ".usda", ".usdc")
@@ -31,7 +34,7 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
     """
     if out.suffix.lower() not in SUFFIXES:
         raise OutputError(f"USD cannot be written to {out}: its name has to end with {', '.join(SUFFIXES)}.")
-    writer = _Writer(content)
+    writer = _Writer(content, out)
     writer.add_all(free=free)
     if not writer.stage.GetRootLayer().Export(str(out)):
         raise OSError(f"USD could not write {out}")
@@ -49,14 +52,15 @@ def write_usd(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
 class _Writer:
     """One stage in memory."""
 
-    def __init__(self, content: Content) -> None:
-        self._content = content
+    def __init__(self, content: Content, out: Path) -> None:
+        self._content, self._out = content, out
+        self._materials: dict[Material, Any] = {}
         self.stage = Usd.Stage.CreateInMemory()
         UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)
         UsdGeom.SetStageMetersPerUnit(self.stage, 1.0)
         UsdPhysics.SetStageKilogramsPerUnit(self.stage, 1.0)
         self._top = Sdf.Path.absoluteRootPath.AppendChild(_identifier(content.robot.name, set()))
-        taken: set[str] = {"joints"}
+        taken: set[str] = {"joints", "materials"}
         self._paths = {link.name: self._top.AppendChild(_identifier(link.name, taken)) for link in content.robot.links}
 
     def add_all(self, *, free: bool) -> None:
@@ -92,7 +96,12 @@ class _Writer:
             if folder == "collisions":
                 UsdGeom.Imageable(scope).CreatePurposeAttr(UsdGeom.Tokens.guide)
             for number, shape in enumerate(shapes):
-                prim = self._add_shape(above.AppendChild(f"{shape.kind}_{number}"), shape)
+                name = f"{shape.kind}_{number}"
+                if folder == "visuals" and shape.kind == "mesh":
+                    for index, surface in enumerate(shown_surfaces(shape)):
+                        self._add_surface(above.AppendChild(f"{name}_{index}"), surface)
+                    continue
+                prim = self._add_shape(above.AppendChild(name), shape)
                 if folder == "collisions":
                     UsdPhysics.CollisionAPI.Apply(prim)
                     if shape.kind == "mesh":
@@ -111,18 +120,72 @@ class _Writer:
 
     def _add_shape(self, path: Any, shape: Shape) -> Any:
         if shape.kind == "mesh":
-            found = UsdGeom.Mesh.Define(self.stage, path)
-            found.CreatePointsAttr([_vector(point) for point in shape.mesh.vertices])
-            found.CreateFaceVertexCountsAttr([3] * len(shape.mesh.faces))
-            found.CreateFaceVertexIndicesAttr(shape.mesh.faces.ravel().tolist())
-            found.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+            found = self._mesh(path, shape.mesh.vertices, shape.mesh.faces)
         else:
             found = _primitive(self.stage, path, shape)
-        *color, opacity = shape.color or GREY
-        found.CreateDisplayColorAttr([_vector(color)])
-        if opacity < 1.0:
-            found.CreateDisplayOpacityAttr([float(opacity)])
+        _display(found, shape.color or GREY)
         return found.GetPrim()
+
+    def _mesh(self, path: Any, vertices: FloatArray, faces: IntArray) -> Any:
+        found = UsdGeom.Mesh.Define(self.stage, path)
+        found.CreatePointsAttr([_vector(point) for point in vertices])
+        found.CreateFaceVertexCountsAttr([3] * len(faces))
+        found.CreateFaceVertexIndicesAttr(faces.ravel().tolist())
+        found.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        return found
+
+    def _add_surface(self, path: Any, surface: Surface) -> None:
+        """What is seen of one material: a display colour, and the material itself for renderers that know it."""
+        found = self._mesh(path, surface.vertices, surface.faces)
+        _display(found, surface.material.color)
+        if surface.uv is not None:
+            places = UsdGeom.PrimvarsAPI(found).CreatePrimvar(
+                "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex
+            )
+            places.Set([Gf.Vec2f(*map(float, place)) for place in surface.uv])
+        UsdShade.MaterialBindingAPI.Apply(found.GetPrim()).Bind(self._material(surface.material))
+
+    def _material(self, material: Material) -> Any:
+        """The material in the file, written when first asked for."""
+        if material in self._materials:
+            return self._materials[material]
+        path = self._top.AppendChild("materials")
+        UsdGeom.Scope.Define(self.stage, path)
+        path = path.AppendChild(f"material_{len(self._materials)}")
+        found = UsdShade.Material.Define(self.stage, path)
+        shader = UsdShade.Shader.Define(self.stage, path.AppendChild("surface"))
+        shader.CreateIdAttr("UsdPreviewSurface")
+        values = {"opacity": material.color[3], "metallic": material.metallic, "roughness": material.roughness}
+        for name, value in values.items():
+            shader.CreateInput(name, Sdf.ValueTypeNames.Float).Set(float(value))
+        color = shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f)
+        light = linear_of(np.array(material.color[:3]))
+        if material.texture is None:
+            color.Set(_vector(light))
+        else:
+            self._show_texture(path, color, material.texture, light)
+        found.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+        self._materials[material] = found
+        return found
+
+    def _show_texture(self, path: Any, color: Any, texture: Texture, light: FloatArray) -> None:
+        """Let a picture beside the file, times a colour, be what an input shows."""
+        folder = self._out.parent / f"{self._out.stem}_textures"
+        folder.mkdir(exist_ok=True)
+        file = folder / f"{path.name}.png"
+        write_texture(file, texture)
+        reader = UsdShade.Shader.Define(self.stage, path.AppendChild("places"))
+        reader.CreateIdAttr("UsdPrimvarReader_float2")
+        reader.CreateInput("varname", Sdf.ValueTypeNames.String).Set("st")
+        picture = UsdShade.Shader.Define(self.stage, path.AppendChild("texture"))
+        picture.CreateIdAttr("UsdUVTexture")
+        picture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(f"{folder.name}/{file.name}")
+        picture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set("sRGB")
+        picture.CreateInput("scale", Sdf.ValueTypeNames.Float4).Set(Gf.Vec4f(*map(float, light), 1.0))
+        for side in ("wrapS", "wrapT"):
+            picture.CreateInput(side, Sdf.ValueTypeNames.Token).Set("repeat")
+        picture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
+        color.ConnectToSource(picture.ConnectableAPI(), "rgb")
 
     def _add_joint(self, joint: Joint, path: Any) -> None:
         kind = {JointType.FIXED: UsdPhysics.FixedJoint, JointType.PRISMATIC: UsdPhysics.PrismaticJoint}
@@ -166,6 +229,14 @@ class _Writer:
             if frozenset((first, second)) not in joined:
                 prim = self.stage.GetPrimAtPath(self._paths[first])
                 UsdPhysics.FilteredPairsAPI.Apply(prim).CreateFilteredPairsRel().AddTarget(self._paths[second])
+
+
+def _display(found: Any, color: Rgba) -> None:
+    """The colour that is seen where no material is: linear light, as all colours of USD."""
+    *rgb, opacity = color
+    found.CreateDisplayColorAttr([_vector(linear_of(np.array(rgb)))])
+    if opacity < 1.0:
+        found.CreateDisplayOpacityAttr([float(opacity)])
 
 
 def _identifier(name: str, taken: set[str]) -> str:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.colors import srgb_of
+
 if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.arrays import FloatArray
@@ -41,6 +43,4 @@ def link_colors(model: KinematicModel) -> dict[str, FloatArray]:
 def _oklch(lightness: float, chroma: float, hue: float) -> FloatArray:
     """OKLCh (hue in rad) to sRGB in [0, 1], shape (3,)."""
     lab = np.array([lightness, chroma * np.cos(hue), chroma * np.sin(hue)])
-    linear = np.clip(_LMS_TO_RGB @ (_OKLAB_TO_LMS @ lab) ** 3, 0.0, 1.0)
-    srgb: FloatArray = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return srgb
+    return srgb_of(_LMS_TO_RGB @ (_OKLAB_TO_LMS @ lab) ** 3)

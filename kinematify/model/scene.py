@@ -9,6 +9,7 @@ import numpy as np
 from kinematify.render.camera import fit_camera
 from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import PosedMesh
+from kinematify.robot.appearance import joined, plain
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
 
@@ -86,7 +87,12 @@ def posed_meshes(
         faces = np.concatenate([part.faces + start for part, start in zip(parts, starts[:-1], strict=True)])
         T_moved = T_world_link[link.name] @ np.linalg.inv(link.T_world_link)
         moved = vertices @ T_moved[:3, :3].T + T_moved[:3, 3]
-        posed[link.name] = PosedMesh(vertices=moved, faces=faces, color=colors[link.name])
+        usual = [part.color or colors[link.name].tolist() for part in parts]
+        looks = [
+            part.appearance or plain((*color, 1.0), len(part.faces)) for part, color in zip(parts, usual, strict=True)
+        ]
+        appearance = joined(looks, [len(part.faces) for part in parts])
+        posed[link.name] = PosedMesh(vertices=moved, faces=faces, color=colors[link.name], appearance=appearance)
     return posed
 
 

@@ -17,6 +17,7 @@ from kinematify.robot.write import write_robot
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.model.kinematic_model import KinematicModel, ModelLink
+    from kinematify.robot.appearance import Rgba
     from kinematify.robot.arrays import FloatArray
 
 MESH_FOLDER = "meshes"
@@ -52,7 +53,7 @@ def write_model(robot: Robot, folder: Path) -> Path:
     (folder / MESH_FOLDER).mkdir(exist_ok=True)
     shapes = (shape for link in robot.links for shape in (*link.visuals, *link.collisions))
     for file, mesh in {shape.file: shape.mesh for shape in shapes if shape.file is not None}.items():
-        write_obj(folder / file, mesh.vertices, mesh.faces, OBJ_DIGITS)
+        write_obj(folder / file, mesh.vertices, mesh.faces, OBJ_DIGITS, mesh.appearance)
     return write_robot(robot, folder / MODEL_FILE)
 
 
@@ -69,10 +70,9 @@ def model_robot(model: KinematicModel) -> Robot:
 
 def _link(link: ModelLink, color: FloatArray, taken: set[str]) -> Link:
     origin = link.T_world_link[:3, 3]
-    red, green, blue = color.tolist()
     # A set-aside part may have no face at all: engines refuse such a file, and there is nothing to see.
     shown = [link.visual, *(part for part in link.fixed_visuals if len(part.faces))]
-    visuals = tuple(_shape(part, origin, taken, (red, green, blue, 1.0)) for part in shown)
+    visuals = tuple(_shape(part, origin, taken, _color(part, color)) for part in shown)
     return Link(
         name=link.name,
         inertial=link.inertial,
@@ -81,9 +81,14 @@ def _link(link: ModelLink, color: FloatArray, taken: set[str]) -> Link:
     )
 
 
-def _shape(
-    part: Part, origin: FloatArray, taken: set[str], color: tuple[float, float, float, float] | None = None
-) -> Shape:
+def _color(part: Part, usual: FloatArray) -> Rgba:
+    """The one colour of a mesh that is written beside its materials, for readers that know no others."""
+    red, green, blue = (round(value, 4) for value in part.color or usual.tolist())
+    opacity = 1.0 if part.appearance is None else part.appearance.mean_color(part.vertices, part.faces)[3]
+    return red, green, blue, round(opacity, 4)
+
+
+def _shape(part: Part, origin: FloatArray, taken: set[str], color: Rgba | None = None) -> Shape:
     """A mesh in the link frame, which has world orientation, with a file name that is distinct on every file system."""
     used, inverse = np.unique(part.faces, return_inverse=True)
     stem = re.sub(r"[^A-Za-z0-9_-]", "_", part.name)[:_MAX_STEM] or "part"
@@ -93,7 +98,7 @@ def _shape(
         name = f"{stem}_{number}"
     taken.add(name.casefold())
     return Shape(
-        mesh=LinkMesh(vertices=part.vertices[used] - origin, faces=inverse.reshape(-1, 3)),
+        mesh=LinkMesh(vertices=part.vertices[used] - origin, faces=inverse.reshape(-1, 3), appearance=part.appearance),
         file=Path(MESH_FOLDER, f"{name}.obj"),
         color=color,
     )

@@ -41,6 +41,8 @@ class Inference:
     """What the user should know, one sentence each; those of the assembly included."""
     refinement: Mapping[str, Any] | None = None
     """Rounds of simulation and choosing again (`kinematify.refine`), as JSON values; None where there were none."""
+    hints: tuple[str, ...] = ()
+    """What the user said of joints, as it is typed behind ``--hint``; in force already."""
     provenance: Mapping[str, Any] | None = None
     """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
 

@@ -74,7 +74,9 @@ def as_left(inference: Inference, record: dict[str, Any]) -> Inference:
     joints = tuple(_joint(edge, left[edge[1]], known.get(edge)) for edge in tree.edges())
     same = tree.parents == inference.trees[0].parents
     trees = inference.trees if same else (tree, *inference.trees)
-    return replace(inference, trees=trees, joints=joints, refinement=record.get("refinement"))
+    return replace(
+        inference, trees=trees, joints=joints, hints=tuple(record.get("hints", ())), refinement=record.get("refinement")
+    )
 
 
 def _joint(edge: tuple[int, int], item: dict[str, Any], known: JointEstimate | None) -> JointEstimate:
@@ -164,7 +166,7 @@ def _check_untouched(folder: Path, record: dict[str, Any]) -> None:
 
 def _meshes(folder: Path, record: dict[str, Any]) -> list[RawMesh]:
     """One mesh per part, and those that had been set aside, in the world frame of the input."""
-    robot = read_robot(folder / MODEL_FILE, geometry="shown")
+    robot = read_robot(folder / MODEL_FILE, geometry="shown", appearance=True)
     poses = forward_kinematics(robot, {})
     aside: dict[str, list[str]] = defaultdict(list)
     for item in record["set_aside"]:
@@ -175,7 +177,10 @@ def _meshes(folder: Path, record: dict[str, Any]) -> list[RawMesh]:
         names = [link.name, *aside[link.name]]
         for name, mesh in zip(names, link.meshes, strict=False):
             found[name] = RawMesh(
-                name=name, vertices=np.asarray(mesh.vertices @ T[:3, :3].T + T[:3, 3]), faces=mesh.faces
+                name=name,
+                vertices=np.asarray(mesh.vertices @ T[:3, :3].T + T[:3, 3]),
+                faces=mesh.faces,
+                appearance=mesh.appearance,
             )
     order = [part["name"] for part in record["parts"]]
     return [found.pop(name) for name in order if name in found] + list(found.values())

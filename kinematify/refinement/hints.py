@@ -1,7 +1,8 @@
 """Hints: what the user knows about single joints decides; geometry fills in the rest and says where it disagrees.
 
 A hint names a part and what moves it: ``door_1=prismatic`` gives the type, ``lid:axis=x`` the direction of the axis
-in the world. The line, the opening direction and the limits come from the best candidate that agrees.
+in the world, ``lid:pivot=0.1,0,0.9`` a point that a hinge goes through. What is not said, the opening direction and
+the limits come from the best candidate that agrees.
 """
 
 from __future__ import annotations
@@ -28,8 +29,13 @@ if TYPE_CHECKING:
 TYPES = {str(kind): kind for kind in JointType}
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _NEAR = np.cos(np.radians(30.0))  # a candidate along the named axis: parts are tilted, and people name the nearest
+_SAME = np.cos(np.radians(5.0))  # a candidate along an axis that is given by its numbers
+_THROUGH = 0.02  # of the object's diagonal: a candidate that goes through the point that is given
 _HELD = 0.1  # a slide that is stopped within a tenth of the part's length has no way to go
-_FORMS = "Write PART=TYPE or PART:axis=AXIS, as in `door_1=prismatic` and `lid:axis=x`."
+_FORMS = (
+    "Write PART=TYPE, PART:axis=AXIS or PART:pivot=X,Y,Z, as in `door_1=prismatic`, `lid:axis=x` (numbers do as well: "
+    "`lid:axis=0.7,0,0.7`) and `lid:pivot=0.1,0,0.9`."
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,14 +45,37 @@ class Hint:
     part: str
     kind: JointType | None = None
     axis: str | None = None
-    """Of `AXES`."""
+    """Of `AXES`, or three numbers with commas between them, world frame."""
+    pivot: str | None = None
+    """A point on the axis, world frame [m], written in the same way."""
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """As it is typed."""
+        stated = ((f"{self.part}=", self.kind), (f"{self.part}:axis=", self.axis), (f"{self.part}:pivot=", self.pivot))
+        return tuple(f"{key}{value}" for key, value in stated if value is not None)
+
+    @property
+    def direction(self) -> FloatArray | None:
+        """Unit direction of the axis, shape (3,); None if the hint states none."""
+        if self.axis is None:
+            return None
+        given = np.array(AXES[self.axis]) if self.axis in AXES else _vector(self.axis)
+        assert given is not None
+        unit: FloatArray = given / np.linalg.norm(given)
+        return unit
+
+    def agrees(self, axis: FloatArray) -> bool:
+        """Whether a unit direction is the one that is named, or one is near enough to it."""
+        named = self.direction
+        return named is None or bool(abs(float(axis @ named)) > (_NEAR if self.axis in AXES else _SAME))
 
 
 def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None = None) -> tuple[Hint, ...]:
     """Read hints as they are typed; those on one part are taken together.
 
     Args:
-        texts: ``PART=TYPE`` and ``PART:axis=AXIS``.
+        texts: ``PART=TYPE``, ``PART:axis=AXIS`` and ``PART:pivot=X,Y,Z``.
         parts: Names that there are.
         base: Part that is said to be the base link, if any.
 
@@ -57,14 +86,16 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
     for text in texts:
         hint = _parsed(text, parts)
         known = found.get(hint.part, Hint(part=hint.part))
-        for name in ("kind", "axis"):
+        for name in ("kind", "axis", "pivot"):
             old, new = getattr(known, name), getattr(hint, name)
             if old is not None and new is not None and old != new:
                 raise InputError(
                     f"The hints contradict each other: the joint of {hint.part} cannot be both {old} and {new}. "
                     "Keep one of them."
                 )
-        found[hint.part] = Hint(part=hint.part, kind=hint.kind or known.kind, axis=hint.axis or known.axis)
+        found[hint.part] = Hint(
+            part=hint.part, kind=hint.kind or known.kind, axis=hint.axis or known.axis, pivot=hint.pivot or known.pivot
+        )
     for hint in found.values():
         if hint.kind is JointType.FIXED and hint.axis is not None:
             raise InputError(
@@ -85,19 +116,33 @@ def _about_the_base(part: str) -> InputError:
 
 def _parsed(text: str, parts: Sequence[str]) -> Hint:
     left, _, value = text.rpartition("=")
-    name, value = left.removesuffix(":axis").strip(), value.strip().lower()
+    name, value = left.removesuffix(":axis").removesuffix(":pivot").strip(), value.strip().lower()
     if not name or not value:
         raise InputError(f"The hint {text!r} cannot be read. {_FORMS}")
     if name not in parts:
         near = difflib.get_close_matches(name, parts, n=3, cutoff=0.6)
         meant = f"Did you mean {' or '.join(near)}?" if near else f"The parts are {', '.join(parts)}."
         raise InputError(f"The hint {text!r} names no part of the input. {meant}")
+    if left.endswith(":pivot"):
+        if _vector(value) is None:
+            raise InputError(f"The hint {text!r} asks for the pivot {value!r}. Give three numbers [m]. {_FORMS}")
+        return Hint(part=name, pivot=value)
     choices = list(AXES if left.endswith(":axis") else TYPES)
-    if value not in choices:
+    numbers = _vector(value) if left.endswith(":axis") else None
+    if value not in choices and (numbers is None or not numbers.any()):
         raise InputError(f"The hint {text!r} asks for {value!r}. Choose one of {', '.join(choices)}. {_FORMS}")
     if left.endswith(":axis"):
         return Hint(part=name, axis=value)
     return Hint(part=name, kind=TYPES[value])
+
+
+def _vector(text: str) -> FloatArray | None:
+    """Three numbers with commas between them; None if the text is anything else."""
+    try:
+        found = np.array([float(word) for word in text.split(",")])
+    except ValueError:
+        return None
+    return found if found.shape == (3,) and np.isfinite(found).all() else None
 
 
 def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
@@ -116,14 +161,17 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
         before = joints[place]
         joints[place] = _hinted(inference, maker, before, hint)
         warnings += _objections(joints[place], hint, inference, before)
-    return replace(inference, joints=tuple(joints), warnings=tuple(warnings))
+    spoken = {hint.part for hint in hints}
+    earlier = tuple(text for text in inference.hints if text.partition("=")[0].partition(":")[0] not in spoken)
+    texts = tuple(text for hint in hints for text in hint.texts)
+    return replace(inference, joints=tuple(joints), warnings=tuple(warnings), hints=(*earlier, *texts))
 
 
 def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, hint: Hint) -> JointEstimate:
     """The joint that agrees with a hint; its confidence is that of the user."""
     if hint.kind is JointType.FIXED:
         return replace(joint, kind=JointType.FIXED, lower=0.0, upper=0.0, confidence=1.0)
-    candidate = _best(joint, hint)
+    candidate = _best(joint, hint, _THROUGH * inference.assembly.diagonal)
     found = maker.realise(inference.trees[0], joint, candidate)
     if hint.kind is JointType.CONTINUOUS:
         found = replace(found, kind=JointType.CONTINUOUS, lower=-np.inf, upper=np.inf)
@@ -132,26 +180,28 @@ def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, 
     return replace(found, confidence=1.0)
 
 
-def _best(joint: JointEstimate, hint: Hint) -> JointCandidate:
-    """The best candidate that agrees with a hint; where none does, a joint along the axis that is asked for."""
+def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:
+    """The best candidate that agrees with a hint, its pivot to within reach [m]; else the joint that it asks for."""
     own = _of_estimate(joint)
     every = (*([own] if own else []), *joint.alternatives)
     turns = None if hint.kind is None else hint.kind.turns
-    named = None if hint.axis is None else np.array(AXES[hint.axis])
+    pivot = None if hint.pivot is None else _vector(hint.pivot)
     for candidate in every:
-        if (turns is None or candidate.kind.turns == turns) and (
-            named is None or abs(float(candidate.axis @ named)) > _NEAR
-        ):
-            return candidate
+        if (turns is None or candidate.kind.turns == turns) and hint.agrees(candidate.axis):
+            off = np.zeros(3) if pivot is None else np.cross(pivot - candidate.pivot, candidate.axis)
+            if not candidate.kind.turns or float(np.linalg.norm(off)) <= reach:
+                return candidate
     kind = joint.kind if turns is None else JointType.REVOLUTE if turns else JointType.PRISMATIC
-    return JointCandidate(kind=kind, axis=_direction(every, named, joint), pivot=joint.pivot, score=0.0, source="hint")
+    place = joint.pivot if pivot is None else pivot
+    return JointCandidate(kind=kind, axis=_direction(every, hint, joint), pivot=place, score=0.0, source="hint")
 
 
-def _direction(every: Sequence[JointCandidate], named: FloatArray | None, joint: JointEstimate) -> FloatArray:
+def _direction(every: Sequence[JointCandidate], hint: Hint, joint: JointEstimate) -> FloatArray:
     """The axis that is asked for, square to the part where a candidate of any type runs that way."""
+    named = hint.direction
     if named is None:
         return joint.axis
-    return next((item.axis for item in every if abs(float(item.axis @ named)) > _NEAR), named)
+    return next((item.axis for item in every if hint.agrees(item.axis)), named)
 
 
 def _of_estimate(joint: JointEstimate) -> JointCandidate | None:

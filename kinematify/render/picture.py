@@ -16,6 +16,7 @@ from scipy.ndimage import binary_dilation
 
 from kinematify.geometry.rays import RayScene
 from kinematify.render.daylight import SAME_SURFACE_COSINE, FloorShadow, SkyLight
+from kinematify.robot.colors import linear_of, srgb_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from kinematify.config import PreviewConfig
     from kinematify.geometry.rays import RayHits
     from kinematify.render.camera import Camera
+    from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
@@ -48,6 +50,8 @@ class PosedMesh:
     """Shape (F, 3)."""
     color: FloatArray
     """sRGB in [0, 1], shape (3,)."""
+    appearance: Appearance | None = None
+    """Of the faces, in place of the colour; opacity is not shown."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -123,10 +127,11 @@ class _Painter:
     """One picture; holds what all its pixels share."""
 
     def __init__(self, scene: PictureScene, camera: Camera, config: PreviewConfig) -> None:
-        self.rays = scene.rays
+        self.rays, self.meshes = scene.rays, scene.meshes
+        self.first_faces = np.cumsum([0, *(len(mesh.faces) for mesh in scene.meshes)])
         self.glyphs = RayScene([(mesh.vertices, mesh.faces) for mesh in scene.glyphs]) if scene.glyphs else None
-        self.colors = _linear(np.array([mesh.color for mesh in scene.meshes]))
-        self.glyph_colors = _linear(np.array([mesh.color for mesh in scene.glyphs]).reshape(-1, 3))
+        self.colors = linear_of(np.array([mesh.color for mesh in scene.meshes]))
+        self.glyph_colors = linear_of(np.array([mesh.color for mesh in scene.glyphs]).reshape(-1, 3))
         self.camera, self.config = camera, config
         self.shape = (camera.height, camera.width)
         self.sky = SkyLight(self.rays, config)
@@ -139,7 +144,7 @@ class _Painter:
         image = self._colors(view, light)
         rough = np.flatnonzero(self._edges(view) | self._near_glyphs(view))
         image[rough] = self._subsampled(rough, view, light)
-        return Image.fromarray(np.round(_srgb(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
+        return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
     def _view(self, pixels: FloatArray) -> _View:
         origins, directions = self.camera.rays(pixels)
@@ -155,7 +160,7 @@ class _Painter:
     def _colors(self, view: _View, light: FloatArray) -> FloatArray:
         """Linear colour of what each ray meets: a mesh, the floor or the background, shape (n, 3)."""
         shadow = self.floor.seen(view.origins, view.directions, view.pixels, self.camera)
-        colors = _linear(BACKGROUND) * (1.0 - _FLOOR_SHADOW * shadow)[:, None]
+        colors = linear_of(BACKGROUND) * (1.0 - _FLOOR_SHADOW * shadow)[:, None]
         met = view.hits.met
         normal, sky = view.normals[met], light[met]
         upward = _UNDERSIDE + (1.0 - _UNDERSIDE) * 0.5 * (1.0 + normal[:, 2])
@@ -164,7 +169,19 @@ class _Painter:
         cosine = np.einsum("ij,ij->i", normal, halfway) / np.sqrt(np.einsum("ij,ij->i", halfway, halfway))
         matt = _SKY * upward * sky + _LAMP * lamp * (_LAMP_IN_DARK + (1.0 - _LAMP_IN_DARK) * sky)
         gloss = _GLOSS * np.clip(cosine, 0.0, 1.0) ** 40 * sky
-        colors[met] = self.colors[view.hits.mesh[met]] * matt[:, None] + gloss[:, None]
+        colors[met] = self._surface_colors(view) * matt[:, None] + gloss[:, None]
+        return colors
+
+    def _surface_colors(self, view: _View) -> FloatArray:
+        """Linear colour of the surfaces that rays meet, without light, shape (number met, 3)."""
+        met = view.hits.met
+        mesh = view.hits.mesh[met]
+        colors: FloatArray = self.colors[mesh]
+        for index, posed in enumerate(self.meshes):
+            at = np.flatnonzero(mesh == index)
+            if posed.appearance is not None and len(at):
+                face = view.hits.face[met][at] - self.first_faces[index]
+                colors[at] = linear_of(posed.appearance.colors_at(face, view.hits.barycentric[met][at])[:, :3])
         return colors
 
     @cached_property
@@ -240,14 +257,3 @@ def _pixel_centers(camera: Camera) -> FloatArray:
     """Picture positions of all pixels, row by row, shape (h * w, 2)."""
     x, y = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
     return np.column_stack([x.ravel(), y.ravel()])
-
-
-def _linear(srgb: FloatArray) -> FloatArray:
-    values: FloatArray = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    return values
-
-
-def _srgb(linear: FloatArray) -> FloatArray:
-    clipped = np.clip(linear, 0.0, 1.0)
-    values: FloatArray = np.where(clipped <= 0.0031308, 12.92 * clipped, 1.055 * clipped ** (1 / 2.4) - 0.055)
-    return values

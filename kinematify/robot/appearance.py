@@ -218,6 +218,6 @@ def surfaces(vertices: FloatArray, faces: IntArray, appearance: Appearance) -> t
         else:
             rows = np.column_stack([corners, appearance.uv[at].reshape(-1, 2)])
             distinct, inverse = np.unique(rows, axis=0, return_inverse=True)
-            points, uv = vertices[distinct[:, 0].astype(np.int64)], distinct[:, 1:]
+            points, uv = vertices[distinct[:, 0].astype(np.int64)], np.asarray(distinct[:, 1:], dtype=np.float64)
         found.append(Surface(material=material, vertices=points, faces=inverse.reshape(-1, 3), uv=uv))
     return tuple(found)

@@ -1,15 +1,18 @@
-"""Geometry of glTF 2.0 files: one mesh per node with all its primitives, node transforms kept apart."""
+"""glTF 2.0 files: one mesh per node with all its primitives and materials, node transforms kept apart."""
 
 from __future__ import annotations
 
 import base64
 import json
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 import numpy as np
+
+from kinematify.robot.appearance import Appearance, Material, joined, painted
+from kinematify.robot.colors import srgb_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,10 +20,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kinematify.robot.appearance import Texture
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC3": 3}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "MSFT_", "KHR_mesh_quantization")
@@ -39,13 +43,16 @@ class GltfNode:
     """Shape (F, 3)."""
     T_world_node: FloatArray
     """May scale and mirror, shape (4, 4)."""
+    appearance: Appearance | None = None
+    """None where the file states no material, and where it was not asked for."""
 
 
-def read_gltf(path: Path) -> tuple[GltfNode, ...]:
+def read_gltf(path: Path, *, appearance: bool = False) -> tuple[GltfNode, ...]:
     """Read the nodes with triangles of the default scene, parents before children.
 
     Args:
         path: A ``.glb``, or a ``.gltf`` whose buffers are inside or beside it.
+        appearance: Read materials, textures and colours of vertices too.
 
     Raises:
         OSError: A file cannot be opened.
@@ -54,7 +61,7 @@ def read_gltf(path: Path) -> tuple[GltfNode, ...]:
     document, binary = _opened(path)
     _check_extensions(document)
     source = _Buffers(document=document, binary=binary, folder=path.parent, loaded={})
-    return tuple(_nodes(document, source))
+    return tuple(_nodes(document, source, _Materials(document, source) if appearance else None))
 
 
 def _opened(path: Path) -> tuple[dict[str, Any], bytes]:
@@ -111,6 +118,12 @@ class _Buffers:
             return np.maximum(array / np.iinfo(dtype).max, -1.0)
         return array
 
+    def content(self, view: int) -> bytes:
+        """The bytes of a buffer view."""
+        stated = self.document["bufferViews"][view]
+        start = stated.get("byteOffset", 0)
+        return self._buffer(stated["buffer"])[start : start + stated["byteLength"]]
+
     def _buffer(self, index: int) -> bytes:
         if index not in self.loaded:
             self.loaded[index] = self._read_buffer(self.document["buffers"][index])
@@ -120,18 +133,115 @@ class _Buffers:
         uri = buffer.get("uri")
         if uri is None:
             return self.binary
+        return self.named(uri, "buffer")[: buffer["byteLength"]]
+
+    def named(self, uri: str, what: str) -> bytes:
+        """The bytes that an address in the document or beside it stands for."""
         if uri.startswith("data:"):
             return base64.b64decode(uri.partition(",")[2])
         path = (self.folder / unquote(uri)).resolve()
         if not path.is_relative_to(self.folder.resolve()):
-            raise ValueError(f"its buffer {uri!r} lies outside of its folder")
+            raise ValueError(f"its {what} {uri!r} lies outside of its folder")
         if not path.is_file():
-            raise ValueError(f"its buffer {uri!r} is not there")  # a pipe or a device would never end
-        with path.open("rb") as file:
-            return file.read(buffer["byteLength"])
+            raise ValueError(f"its {what} {uri!r} is not there")  # a pipe or a device would never end
+        return path.read_bytes()
 
 
-def _nodes(document: dict[str, Any], source: _Buffers) -> Iterator[GltfNode]:
+class _Materials:
+    """Materials of a document, each read once."""
+
+    def __init__(self, document: dict[str, Any], source: _Buffers) -> None:
+        self._document, self._source = document, source
+        self._read: dict[int, Material] = {}
+        self._textures: dict[int, Texture | str] = {}
+        self._notes: dict[int, str] = {}
+
+    def of_primitive(self, primitive: dict[str, Any], corners: IntArray) -> Appearance | None:
+        """The appearance of a primitive with these faces, shape (F, 3); None where it states nothing."""
+        index, colors = primitive.get("material"), primitive["attributes"].get("COLOR_0")
+        if index is None and colors is None:
+            return None
+        material = Material(color=(1.0, 1.0, 1.0, 1.0)) if index is None else self._material(index)
+        if colors is not None and material.texture is None:
+            return self._painted(colors, corners, material)
+        uv = None if index is None or material.texture is None else self._places(primitive, index, corners)
+        notes = (self._notes[index],) if index in self._notes else ()
+        kept = material if uv is not None else replace(material, texture=None)
+        zeros = np.zeros(len(corners), dtype=np.int64)
+        return Appearance(materials=(kept,), material_of_face=zeros, uv=uv, notes=notes)
+
+    def _painted(self, accessor: int, corners: IntArray, material: Material) -> Appearance:
+        """Colours of vertices, which are linear light, times that of the material, a mean for each face."""
+        stated = self._source.numbers(accessor).astype(np.float64)
+        factor = np.array(material.color)
+        light = stated[corners].mean(axis=1)
+        opacity = light[:, 3] if light.shape[1] == 4 else np.ones(len(light))
+        return painted(np.column_stack([srgb_of(light[:, :3]), opacity]) * factor)
+
+    def _places(self, primitive: dict[str, Any], index: int, corners: IntArray) -> FloatArray | None:
+        """Where the corners lie in the texture, upwards as everywhere but in glTF, shape (F, 3, 2)."""
+        stated = _base_color(self._document["materials"][index])[1]
+        moved = stated.get("extensions", {}).get("KHR_texture_transform", {})
+        number = moved.get("texCoord", stated.get("texCoord", 0))
+        accessor = primitive["attributes"].get(f"TEXCOORD_{number}")
+        if accessor is None:
+            return None
+        uv = self._source.numbers(accessor).astype(np.float64)
+        turn = moved.get("rotation", 0.0)
+        cosine, sine = np.cos(turn), np.sin(turn)
+        scaled = uv * np.array(moved.get("scale", (1.0, 1.0)))
+        uv = scaled @ np.array([[cosine, -sine], [sine, cosine]]) + np.array(moved.get("offset", (0.0, 0.0)))
+        return np.asarray((np.array([0.0, 1.0]) + np.array([1.0, -1.0]) * uv)[corners], dtype=np.float64)
+
+    def _material(self, index: int) -> Material:
+        if index not in self._read:
+            stated = self._document["materials"][index]
+            factor, picture = _base_color(stated)
+            surface = stated.get("pbrMetallicRoughness", {})
+            red, green, blue = srgb_of(np.array(factor[:3])).tolist()
+            opacity = float(factor[3]) if stated.get("alphaMode", "OPAQUE") != "OPAQUE" else 1.0
+            self._read[index] = Material(
+                name=str(stated.get("name", "")),
+                color=(red, green, blue, opacity),
+                metallic=float(surface.get("metallicFactor", 1.0 if surface else 0.0)),
+                roughness=float(surface.get("roughnessFactor", 1.0)),
+                texture=self._texture(index, picture["index"]) if picture else None,
+            )
+        return self._read[index]
+
+    def _texture(self, material: int, index: int) -> Texture | None:
+        from kinematify.robot.material_files import open_texture  # noqa: PLC0415  # opens pictures, most files hold none
+
+        if index not in self._textures:
+            stated = self._document["textures"][index]
+            number = stated.get("source", stated.get("extensions", {}).get("EXT_texture_webp", {}).get("source"))
+            image = {} if number is None else self._document["images"][number]
+            name = str(image.get("name") or image.get("uri", "")[:40] or f"texture {index}")
+            try:
+                view = image.get("bufferView")
+                content = (
+                    self._source.content(view) if view is not None else self._source.named(image["uri"], "texture")
+                )
+                self._textures[index] = open_texture(name, content)
+            except (ValueError, KeyError) as error:
+                self._textures[index] = f"the texture {name} cannot be read: {error}"
+        found = self._textures[index]
+        if isinstance(found, str):
+            self._notes[material] = found
+            return None
+        return found
+
+
+def _base_color(material: dict[str, Any]) -> tuple[list[float], dict[str, Any]]:
+    """Linear colour with opacity of a material, and its texture; of its older way to say it where it uses that."""
+    older = material.get("extensions", {}).get("KHR_materials_pbrSpecularGlossiness")
+    if older is not None:
+        return older.get("diffuseFactor", [1.0, 1.0, 1.0, 1.0]), older.get("diffuseTexture", {})
+    surface = material.get("pbrMetallicRoughness", {})
+    return surface.get("baseColorFactor", [1.0, 1.0, 1.0, 1.0]), surface.get("baseColorTexture", {})
+
+
+def _nodes(document: dict[str, Any], source: _Buffers, materials: _Materials | None) -> Iterator[GltfNode]:
     nodes = document.get("nodes", [])
     waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
     seen: set[int] = set()
@@ -145,10 +255,10 @@ def _nodes(document: dict[str, Any], source: _Buffers) -> Iterator[GltfNode]:
         waiting.extend((child, transform) for child in reversed(node.get("children", [])))
         if "mesh" in node:
             mesh = document["meshes"][node["mesh"]]
-            vertices, faces = _merged_primitives(mesh, source)
+            vertices, faces, appearance = _merged_primitives(mesh, source, materials)
             if len(faces):
                 name = str(node.get("name") or mesh.get("name") or "")
-                yield GltfNode(name=name, vertices=vertices, faces=faces, T_world_node=transform)
+                yield GltfNode(name=name, vertices=vertices, faces=faces, T_world_node=transform, appearance=appearance)
 
 
 def _roots(document: dict[str, Any]) -> list[int]:
@@ -177,9 +287,12 @@ def _local_transform(node: dict[str, Any]) -> FloatArray:
     return transform
 
 
-def _merged_primitives(mesh: dict[str, Any], source: _Buffers) -> tuple[FloatArray, IntArray]:
+def _merged_primitives(
+    mesh: dict[str, Any], source: _Buffers, materials: _Materials | None
+) -> tuple[FloatArray, IntArray, Appearance | None]:
     """All triangles of a mesh; its primitives differ by material only. Points and lines are left out."""
     vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0
+    looks: list[Appearance | None] = []
     for primitive in mesh["primitives"]:
         mode = primitive.get("mode", _TRIANGLES)
         if mode not in (_TRIANGLES, _STRIP, _FAN):
@@ -192,8 +305,9 @@ def _merged_primitives(mesh: dict[str, Any], source: _Buffers) -> tuple[FloatArr
             raise ValueError("a face refers to a vertex that the file does not hold")
         vertices.append(points)
         faces.append(triangles + count)
+        looks.append(materials.of_primitive(primitive, triangles) if materials is not None else None)
         count += len(points)
-    return np.concatenate(vertices), np.concatenate(faces)
+    return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
 
 
 def _triangles(corners: IntArray, mode: int) -> IntArray:

@@ -12,6 +12,7 @@ import numpy as np
 from lxml import etree
 
 from kinematify.errors import AssemblyError
+from kinematify.robot.appearance import joined, painted
 from kinematify.robot.gltf_file import read_gltf
 from kinematify.robot.mesh_paths import MESH_SUFFIXES
 from kinematify.robot.obj_file import read_obj
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
     from trimesh.scene import Scene
 
+    from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
 
 # Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
@@ -51,9 +53,16 @@ class RawMesh:
     """Unit that the file states, where it is neither metres nor converted to them."""
     up: str = ""
     """Key of `TO_Z_UP` if the file states such an axis, which was not heeded."""
+    appearance: Appearance | None = None
+    """Of the faces; None where the file states no material and no colours, and where it was not asked for."""
+
+    def of_faces(self, index: IntArray) -> RawMesh:
+        """Return the mesh of some faces, in the order of their indices, shape (n,)."""
+        appearance = None if self.appearance is None else self.appearance.of_faces(index)
+        return replace(self, faces=self.faces[index], appearance=appearance)
 
 
-def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
+def read_meshes(path: Path, *, empty_ok: bool = False, appearance: bool = False) -> tuple[RawMesh, ...]:
     """Read a mesh file: one mesh per node of a scene, group of an OBJ, or object of a 3MF, transforms applied.
 
     COLLADA lengths are turned into metres by the unit that the file states, and its up axis is told but ignored: so
@@ -63,6 +72,7 @@ def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
     Args:
         path: A file with one of `MESH_SUFFIXES`.
         empty_ok: True returns a well-formed file without triangles as it is, perhaps as no mesh at all.
+        appearance: Read materials, textures and colours too; what of them cannot be read is a note, not an error.
 
     Raises:
         AssemblyError: The file is missing, empty, truncated, of another format, or (unless `empty_ok`) holds no
@@ -75,7 +85,7 @@ def read_meshes(path: Path, *, empty_ok: bool = False) -> tuple[RawMesh, ...]:
         )
     if not path.is_file():
         raise AssemblyError(f"There is no mesh file {path}. Check the path.")
-    meshes = _guarded(path, _READERS.get(path.suffix.lower(), _read_scene))
+    meshes = _guarded(path, _READERS.get(path.suffix.lower(), _read_scene), appearance=appearance)
     if not empty_ok and not any(len(mesh.faces) for mesh in meshes):
         raise AssemblyError(
             f"The file {path} holds no triangle (it may be empty, a point cloud, or a drawing). Give a file with a "
@@ -98,15 +108,16 @@ def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
         vertices=np.concatenate([mesh.vertices for mesh in meshes]),
         faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
         up=meshes[0].up if meshes else "",
+        appearance=joined([mesh.appearance for mesh in meshes], [len(mesh.faces) for mesh in meshes]),
     )
 
 
-def _guarded(path: Path, read: Callable[[Path], tuple[RawMesh, ...]]) -> tuple[RawMesh, ...]:
+def _guarded(path: Path, read: Callable[[Path, bool], tuple[RawMesh, ...]], *, appearance: bool) -> tuple[RawMesh, ...]:
     """Run a reader; loaders of third parties fail in as many ways as there are broken files."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            meshes = read(path)
+            meshes = read(path, appearance)
             _check_indices(meshes)
     except MemoryError as error:
         raise AssemblyError(f"The mesh file {path} does not fit into memory. Simplify it first.") from error
@@ -125,33 +136,38 @@ def _check_indices(meshes: tuple[RawMesh, ...]) -> None:
             raise ValueError("a face refers to a vertex that the file does not hold")
 
 
-def _read_obj(path: Path) -> tuple[RawMesh, ...]:
-    vertices, groups = read_obj(path)
+def _read_obj(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
+    vertices, groups = read_obj(path, appearance=appearance)
     if not len(vertices):
         raise ValueError("it has no vertex")
-    meshes = tuple(RawMesh(name=group.name, vertices=vertices, faces=group.faces) for group in groups)
+    meshes = tuple(
+        RawMesh(name=group.name, vertices=vertices, faces=group.faces, appearance=group.appearance) for group in groups
+    )
     _check_indices(meshes)
     # Every group keeps its own vertices only: with thousands of groups the copies would fill the memory.
     return tuple(compacted(mesh) for mesh in meshes) if len(meshes) > 1 else meshes
 
 
-def _read_gltf(path: Path) -> tuple[RawMesh, ...]:
+def _read_gltf(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
     return tuple(
-        _placed(RawMesh(name=node.name, vertices=node.vertices, faces=node.faces), node.T_world_node)
-        for node in read_gltf(path)
+        _placed(
+            RawMesh(name=node.name, vertices=node.vertices, faces=node.faces, appearance=node.appearance),
+            node.T_world_node,
+        )
+        for node in read_gltf(path, appearance=appearance)
     )
 
 
-def _read_scene(path: Path) -> tuple[RawMesh, ...]:
+def _read_scene(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
     import trimesh  # noqa: PLC0415  # takes longer than reading an OBJ or a glTF, which need none of it
 
     suffix = path.suffix.lower()
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
-    scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=True)
+    scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=not appearance)
     if suffix == ".dae" and not scene.geometry:
         # What is bound to a material that the file does not hold is dropped with it.
         scene = trimesh.load_scene(_without_materials(path), file_type="dae", process=False, skip_materials=True)
-    meshes = tuple(_scene_meshes(scene, path, trimesh.Trimesh))
+    meshes = tuple(_scene_meshes(scene, path, trimesh.Trimesh, appearance=appearance))
     if suffix == ".stl" and not meshes and not _is_empty_stl(path):
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
     return meshes
@@ -170,8 +186,9 @@ def _is_empty_stl(path: Path) -> bool:
     return content == content[:80] + bytes(4) or (content.startswith(b"solid") and b"facet" not in content)
 
 
-def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh]) -> Iterator[RawMesh]:
+def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh], *, appearance: bool) -> Iterator[RawMesh]:
     suffix = path.suffix.lower()
+    looks = _scene_appearances(scene, path) if appearance else {}
     unit, up = _collada_asset(path) if suffix == ".dae" else (1.0, "")
     for node in scene.graph.nodes_geometry:
         transform, key = scene.graph[node]
@@ -181,16 +198,34 @@ def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh]) -> Iterator[Raw
         vertices = np.asarray(geometry.vertices, dtype=np.float64)
         faces = np.asarray(geometry.faces, dtype=np.int64)
         stated = str(geometry.metadata.get("units", "")) if suffix == ".3mf" else ""
-        yield _placed(RawMesh(name=str(node), vertices=vertices, faces=faces, unit=stated, up=up), transform, unit)
+        mesh = RawMesh(
+            name=str(node), vertices=vertices, faces=faces, unit=stated, up=up, appearance=looks.get(str(key))
+        )
+        yield _placed(mesh, transform, unit)
+
+
+def _scene_appearances(scene: Scene, path: Path) -> dict[str, Appearance | None]:
+    """Appearance of every geometry by its name."""
+    from kinematify.robot.material_files import appearance_found, read_3mf_colors  # noqa: PLC0415  # opens pictures
+
+    if path.suffix.lower() != ".3mf":
+        return {key: appearance_found(item.visual, np.asarray(item.faces)) for key, item in scene.geometry.items()}
+    colors = read_3mf_colors(path)
+    counts = [len(item.faces) for item in scene.geometry.values()]
+    if [len(item) for item, _ in colors] != counts:
+        return {}  # parts of other files, in which the objects do not follow one another
+    return {key: painted(item) if stated else None for key, (item, stated) in zip(scene.geometry, colors, strict=True)}
 
 
 def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
     """Apply the transform of a node, shape (4, 4), then a change of unit; mirroring would turn a mesh inside out."""
     if unit == 1.0 and np.array_equal(transform, np.eye(4)):
         return mesh  # formats without nodes can hold millions of vertices: no copy
-    order = [0, 2, 1] if np.linalg.det(transform[:3, :3]) < 0 else [0, 1, 2]
     vertices = unit * (mesh.vertices @ transform[:3, :3].T + transform[:3, 3])
-    return replace(mesh, vertices=vertices, faces=mesh.faces[:, order])
+    if np.linalg.det(transform[:3, :3]) >= 0:
+        return replace(mesh, vertices=vertices)
+    appearance = None if mesh.appearance is None else mesh.appearance.mirrored()
+    return replace(mesh, vertices=vertices, faces=mesh.faces[:, [0, 2, 1]], appearance=appearance)
 
 
 def _collada_asset(path: Path) -> tuple[float, str]:

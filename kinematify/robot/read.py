@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     Geometry = Literal["all", "shown", "none"]
 
 
-def read_robot(path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geometry = "all") -> Robot:
+def read_robot(
+    path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geometry = "all", appearance: bool = False
+) -> Robot:
     """Read a URDF; every mesh file is opened once.
 
     ``package://NAME/...`` is looked up in `package_dirs` (each a package or a folder of packages), then in the folders
@@ -42,12 +44,15 @@ def read_robot(path: Path, *, package_dirs: Sequence[Path] = (), geometry: Geome
         package_dirs: Where packages lie.
         geometry: ``shown`` leaves out the collision shapes of links that have visual ones, ``none`` opens no mesh file
             and gives links without any shapes.
+        appearance: Read materials, textures and colours too.
 
     Raises:
         DescriptionError: The file cannot be read, is not a kinematic tree of single-axis joints, or a mesh is missing
             or broken. The message names the link or joint and says what to do.
     """
-    return parse_robot(parse_description(path), path, geometry_source(path, package_dirs), geometry)
+    return parse_robot(
+        parse_description(path), path, geometry_source(path, package_dirs, appearance=appearance), geometry
+    )
 
 
 def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry: Geometry = "all") -> Robot:

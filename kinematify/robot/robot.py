@@ -18,6 +18,7 @@ from kinematify.robot.transforms import joint_motion
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
 
 _UNLIMITED_TURN = np.pi
@@ -39,6 +40,9 @@ class LinkMesh:
     """Link frame [m], shape (V, 3). Read-only."""
     faces: IntArray
     """Shape (F, 3). Read-only."""
+    appearance: Appearance | None = None
+    """Of the faces, from the mesh file or from the colour that the link states; None where neither says anything, and
+    where it was not asked for."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import AssemblyError, DescriptionError
+from kinematify.robot.appearance import plain
 from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
 from kinematify.robot.mesh_paths import find_mesh
 from kinematify.robot.robot import LinkMesh, Shape
@@ -40,6 +41,8 @@ class GeometrySource:
     cache: dict[Path, RawMesh]
     heeds_up_axis: bool = False
     """Whether meshes are turned upright whose files state that another axis than z points up."""
+    appearance: bool = False
+    """Whether materials of mesh files are read; they go before the colour that the document states."""
 
     def shapes(self, link: _Element, tag: str) -> tuple[Shape, ...]:
         """Return all ``visual`` or ``collision`` elements of a link with their triangles.
@@ -63,16 +66,26 @@ class GeometrySource:
         color, line = _color(element.find("material")), line_of(element)
         if shape.tag != "mesh":
             size = _primitive_size(shape, where)
-            return replace(primitive(str(shape.tag), size, transform, color), line=line) if min(size) > 0.0 else None
+            if min(size) <= 0.0:
+                return None
+            built = replace(primitive(str(shape.tag), size, transform, color), line=line)
+            looks = plain(color, len(built.mesh.faces)) if self.appearance and color else None
+            return replace(built, mesh=replace(built.mesh, appearance=looks))
         mesh = self._mesh_file(shape, where)
         scale = vector(shape, "scale", (1.0, 1.0, 1.0), where)
         # A mirroring scale turns the triangles inside out.
-        order = [0, 2, 1] if np.prod(scale) < 0 else [0, 1, 2]
+        mirrored = np.prod(scale) < 0
+        order = [0, 2, 1] if mirrored else [0, 1, 2]
+        looks = mesh.appearance if mesh.appearance is None or not mirrored else mesh.appearance.mirrored()
+        if looks is None and color is not None and self.appearance:
+            looks = plain(color, len(mesh.faces))
         turned = self.heeds_up_axis and mesh.up
         vertices = mesh.vertices @ TO_Z_UP[mesh.up].T if turned else mesh.vertices
         return Shape(
             mesh=LinkMesh(
-                vertices=(vertices * scale) @ transform[:3, :3].T + transform[:3, 3], faces=mesh.faces[:, order]
+                vertices=(vertices * scale) @ transform[:3, :3].T + transform[:3, 3],
+                faces=mesh.faces[:, order],
+                appearance=looks,
             ),
             file=self.resolved(shape.get("filename") or "", where),
             scale=scale,
@@ -86,7 +99,7 @@ class GeometrySource:
         path = self.resolved(shape.get("filename") or "", where)
         if path not in self.cache:
             try:
-                self.cache[path] = merged(read_meshes(path), path.stem)
+                self.cache[path] = merged(read_meshes(path, appearance=self.appearance), path.stem)
             except AssemblyError as error:
                 raise DescriptionError(f"The mesh of {where} cannot be used. {error}") from error
         return self.cache[path]
@@ -105,10 +118,10 @@ class GeometrySource:
         return find_mesh(filename, self.folder, self.package_dirs, where)
 
 
-def geometry_source(document: Path, package_dirs: Sequence[Path]) -> GeometrySource:
+def geometry_source(document: Path, package_dirs: Sequence[Path], *, appearance: bool = False) -> GeometrySource:
     """Return the source of geometry for the URDF at `document`."""
     folders = tuple(Path(folder).resolve() for folder in package_dirs)
-    return GeometrySource(folder=document.resolve().parent, package_dirs=folders, cache={})
+    return GeometrySource(folder=document.resolve().parent, package_dirs=folders, cache={}, appearance=appearance)
 
 
 def primitive(

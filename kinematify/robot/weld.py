@@ -17,6 +17,12 @@ if TYPE_CHECKING:
 
 
 def welded(vertices: FloatArray, faces: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:
+    """Return what `weld` returns without the faces that are kept."""
+    points, triangles, _ = weld(vertices, faces, tolerance)
+    return points, triangles
+
+
+def weld(vertices: FloatArray, faces: IntArray, tolerance: float) -> tuple[FloatArray, IntArray, IntArray]:
     """Merge vertices that lie closer than a tolerance, and drop what is left without area or use.
 
     A merged vertex keeps the coordinates of its first one, so that an already clean mesh comes back unchanged. Faces
@@ -28,12 +34,13 @@ def welded(vertices: FloatArray, faces: IntArray, tolerance: float) -> tuple[Flo
         tolerance: Fraction of the mesh's bounding box diagonal.
 
     Returns:
-        New vertices and faces; both may be empty.
+        New vertices and faces, which may be empty, and the index of each of these faces among those that were given.
     """
     points, triangles = without_unused(vertices, faces)
     first, merged = _merged(points, tolerance * _diagonal(points))
     triangles = first[merged[triangles]]
-    return without_unused(points, triangles[_has_area(points, triangles)])
+    kept = np.flatnonzero(_has_area(points, triangles))
+    return (*without_unused(points, triangles[kept]), kept)
 
 
 def without_unused(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:

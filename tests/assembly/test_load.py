@@ -176,7 +176,30 @@ def test_3mf_objects_are_parts_and_the_unit_is_pointed_out(tmp_path: Path) -> No
     loaded = load(tmp_path / "a.3mf")
     assert loaded.names == ("body", "door")
     assert "--scale 0.001" in loaded.warnings[0]
-    assert load(tmp_path / "a.3mf", scale=0.001).warnings == ()
+    assert not any("states its lengths" in warning for warning in load(tmp_path / "a.3mf", scale=0.001).warnings)
+
+
+@pytest.mark.parametrize(
+    ("factor", "scale", "told", "remedy"),
+    [
+        (1000.0, 1.0, "2 km long", "2 m long: give --scale 0.001"),
+        (25.0, 1.0, "50 m long", "50 mm long: give --scale 0.001"),
+        (25.0, 0.0001, "5 mm long", ""),
+        (25.0, 0.00001, "0.5 mm long", "500 mm long: give --scale 0.01"),
+        (1.0, 1.0, "", ""),
+    ],
+)
+def test_an_unusual_size_is_told_with_the_guess_and_the_remedy(
+    tmp_path: Path, factor: float, scale: float, told: str, remedy: str
+) -> None:
+    given = trimesh.util.concatenate([box(0), box(3)])  # 4 m long
+    given.apply_scale(0.5 * factor)
+    given.export(tmp_path / "a.stl")
+    warnings = load(tmp_path / "a.stl", scale=scale).warnings
+    if not remedy:
+        assert not warnings
+    else:
+        assert any(told in warning and remedy in warning for warning in warnings)
 
 
 def test_one_mesh_without_labels_falls_into_its_pieces(tmp_path: Path) -> None:

@@ -44,6 +44,8 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
         (["nosuch=prismatic"], "The parts are body, door_1"),
         (["door_1=sliding"], "prismatic"),
         (["door_1:axis=w"], "x, y, z"),
+        (["door_1:axis=0,0,0"], "x, y, z"),
+        (["door_1:pivot=1,2"], "three numbers"),
         (["door_1"], "PART=TYPE"),
         (["=prismatic"], "PART=TYPE"),
         (["door_1=prismatic", "door_1=revolute"], "contradict"),
@@ -79,6 +81,24 @@ def test_an_axis_is_obeyed_in_every_direction(axis: str) -> None:
     name = moving(inference)
     joint = joint_of(with_hints(inference, [Hint(part=name, axis=axis)]), name)
     assert abs(joint.axis["xyz".index(axis)]) > np.cos(np.radians(30.0))
+
+
+def test_a_pivot_chooses_the_hinge_that_goes_through_it() -> None:
+    inference = inferred("edge_door")
+    name = moving(inference)
+    joint = joint_of(inference, name)
+    bounds = next(part.bounds for part in inference.assembly.parts if part.name == name)
+    upright = np.abs(joint.axis) > 0.9
+    other_edge = np.where(upright, joint.pivot, bounds.sum(axis=0) - joint.pivot)
+    numbers = ",".join(f"{value:.6g}" for value in other_edge)
+    axis = ",".join(f"{value:.3g}" for value in joint.axis)
+    told = parse_hints([f"{name}=revolute", f"{name}:axis={axis}", f"{name}:pivot={numbers}"], inference.assembly.names)
+    hinted = with_hints(inference, told)
+    found = joint_of(hinted, name)
+    assert np.linalg.norm(np.cross(found.pivot - other_edge, found.axis)) < 0.02 * inference.assembly.diagonal
+    assert hinted.hints == told[0].texts
+    again = with_hints(hinted, parse_hints([f"{name}=fixed"], inference.assembly.names))
+    assert again.hints == (f"{name}=fixed",), "the last word counts"
 
 
 def test_a_hint_that_agrees_changes_nothing_but_the_confidence() -> None:

@@ -87,6 +87,7 @@ def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig
         evidence={
             **decision.cues,
             "odds_prismatic": judged.odds_prismatic,
+            "probability_fixed": float(judged.believed[0]),
             "bearing_gate": float(scene.has_bearing),
             "smallness": scene.smallness,
             "mechanism": scene.mechanism,
