@@ -1,8 +1,8 @@
 """From findings to feedback: which decision each failure blames, as plain data (design section 5).
 
 A failure seldom proves anything. Each signal carries a weight in log odds, the unit in which the inference adds up its
-own evidence, and the search decides. Failures that are not the search's to mend are listed with the reason, so that
-nothing is dropped in silence; above all, no collision is ever switched off.
+own evidence (`failure_rates` measures it), and the search decides. Failures that are not the search's to mend are
+listed with the reason, so that nothing is dropped in silence; above all, no collision is ever switched off.
 
 Which row of the table (`FeedbackRow`) a finding belongs to stands at its check, here stands what each row does;
 `docs/checks.md` shows the table.
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
+from kinematify.validation.failure_rates import LINE, PARENT, TYPE, shipped_rates
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import FeedbackConfig
     from kinematify.robot.robot import Joint
+    from kinematify.validation.failure_rates import FailureRates
     from kinematify.validation.finding import Finding
     from kinematify.validation.summary import JointSummary
 
@@ -114,9 +116,10 @@ class Feedback:
         return bool(self.edges or self.lines or self.types or self.ranges)
 
     def against(self, child: str) -> float:
-        """Sum of the log odds against the joint of a part, parent left out."""
-        weights = [signal.weight for signal in self.lines if signal.child == child]
-        return sum(weights) + sum(signal.weight for signal in self.types if signal.child == child)
+        """Log odds against the joint of a part, parent left out; each check counts once, whatever engines found it."""
+        lines = {signal.check: signal.weight for signal in self.lines if signal.child == child}
+        types = {signal.check: signal.weight for signal in self.types if signal.child == child}
+        return max(sum(lines.values()), sum(types.values()))
 
     def as_json(self) -> dict[str, Any]:
         """JSON values."""
@@ -130,6 +133,7 @@ def feedback_from(
     config: FeedbackConfig,
     *,
     placements: Mapping[str, float] | None = None,
+    rates: FailureRates | None = None,
 ) -> Feedback:
     """Turn the findings about one model into feedback.
 
@@ -137,11 +141,19 @@ def feedback_from(
         findings: All of them, in any order; suppressed ones do not count.
         summaries: Free travel of the joints, where it was measured.
         joints: The joints of the model by name.
-        config: Weight of each kind of failure.
+        config: How failures are read.
         placements: How many places of a robot were tried for each joint, if there was a task.
+        rates: How often each failure occurs, which is what it weighs; the shipped ones if absent.
     """
     travel = {item.joint: item.free_travel for item in summaries if item.free_travel is not None}
-    case = _Case(findings=findings, travel=travel, joints=joints, config=config, placements=placements or {})
+    case = _Case(
+        findings=findings,
+        travel=travel,
+        joints=joints,
+        config=config,
+        placements=placements or {},
+        rates=rates or shipped_rates(),
+    )
     for finding in findings:
         if finding.suppressed is None:
             _route(case, finding)
@@ -164,6 +176,7 @@ class _Case:
     joints: Mapping[str, Joint]
     config: FeedbackConfig
     placements: Mapping[str, float]
+    rates: FailureRates
     edges: list[EdgeSignal] = field(default_factory=list)
     lines: list[LineSignal] = field(default_factory=list)
     types: list[TypeSignal] = field(default_factory=list)
@@ -178,22 +191,40 @@ class _Case:
             for item in self.findings
         )
 
-    def strength(self, finding: Finding) -> float:
-        """Warnings say less than errors."""
-        return 1.0 if finding.severity is Severity.ERROR else self.config.warning_share
+    def against_line(self, finding: Finding, joint: Joint, reason: str) -> None:
+        """Add a signal against the line of a joint, if the failure is more frequent where it is wrong."""
+        weight = self.rates.weight(finding.check, LINE)
+        if weight > 0.0:
+            self.lines.append(LineSignal(child=joint.child, weight=weight, check=finding.check, reason=reason))
 
-    def against_line(self, finding: Finding, child: str, weight: float, reason: str) -> None:
-        """Add a signal against the line of a joint."""
-        self.lines.append(
-            LineSignal(child=child, weight=self.strength(finding) * weight, check=finding.check, reason=reason)
-        )
+    def against_type(self, finding: Finding, joint: Joint, reason: str) -> None:
+        """Add a signal against the type of a joint, if the failure is more frequent where it is wrong."""
+        weight = self.rates.weight(finding.check, TYPE)
+        if weight > 0.0:
+            self.types.append(
+                TypeSignal(child=joint.child, kind=joint.kind.value, weight=weight, check=finding.check, reason=reason)
+            )
 
-    def against_type(self, finding: Finding, joint: Joint, weight: float, reason: str) -> None:
-        """Add a signal against the type of a joint."""
-        weight = self.strength(finding) * weight
-        self.types.append(
-            TypeSignal(child=joint.child, kind=joint.kind.value, weight=weight, check=finding.check, reason=reason)
-        )
+    def against_parent(self, finding: Finding, joint: Joint, reason: str, better: str | None = None) -> None:
+        """Add a signal against the parent of a part, if the failure is more frequent where it is wrong."""
+        weight = self.rates.weight(finding.check, PARENT)
+        if weight > 0.0:
+            self.edges.append(
+                EdgeSignal(
+                    parent=joint.parent,
+                    child=joint.child,
+                    weight=weight,
+                    better=better,
+                    check=finding.check,
+                    reason=reason,
+                )
+            )
+
+    def against_all(self, finding: Finding, joint: Joint, reason: str) -> None:
+        """Add signals against the line, the type and the parent of a joint."""
+        self.against_line(finding, joint, reason)
+        self.against_type(finding, joint, reason)
+        self.against_parent(finding, joint, reason)
 
     def end(
         self,
@@ -266,9 +297,7 @@ def _into_parent(case: _Case, finding: Finding, joint: Joint) -> None:
         ends = max(low, -way), min(high, way)
         case.end(finding, joint, ends, "to the other side it is free: it opens there")
         return
-    reason = "blocked to both sides at once"
-    case.against_line(finding, joint.child, case.config.blocked_line, reason)
-    case.against_type(finding, joint, case.config.blocked_type, reason)
+    case.against_all(finding, joint, "blocked to both sides at once")
 
 
 def _end_there(case: _Case, finding: Finding, joint: Joint) -> None:
@@ -280,46 +309,33 @@ def _end_there(case: _Case, finding: Finding, joint: Joint) -> None:
 
 def _into_others(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV311: what a part meets besides its parent may be what carries it."""
-    other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
-    if other is None or finding.pair is None or joint.child not in finding.pair:
-        case.leave(finding, "what the joint carries meets others, not the part itself")
+    pair = finding.pair or ()
+    met = next((name for name in pair if name not in (joint.child, joint.parent)), None)
+    if met is not None and joint.child in pair:
+        reason = f"it runs into {met}"
+        if not case.has("KV310", "KV312", joint=finding.joint):
+            reason += ", never into its parent"
+        case.against_parent(finding, joint, reason, met)
         return
-    case.edges.append(
-        EdgeSignal(
-            parent=joint.parent,
-            child=joint.child,
-            weight=case.strength(finding) * case.config.sibling_edge,
-            better=other,
-            check=finding.check,
-            reason=f"it runs into {other}, never into its parent"
-            if not case.has("KV310", "KV312", joint=finding.joint)
-            else f"it runs into {other}",
-        )
-    )
+    carried = next((item for item in case.joints.values() if item.child in pair and item.parent == joint.child), None)
+    if carried is None:
+        case.leave(finding, "what the joint carries farther out meets others")
+        return
+    other = next((name for name in pair if name != carried.child), None)
+    case.against_parent(finding, carried, f"what carries it moves it into {other}", other)
 
 
 def _not_carried(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV303 and KV341: nothing is seen to carry the part there."""
     other = next((name for name in finding.pair or () if name not in (joint.child, joint.parent)), None)
-    case.edges.append(
-        EdgeSignal(
-            parent=joint.parent,
-            child=joint.child,
-            weight=case.strength(finding) * case.config.hovering_edge,
-            better=other,
-            check=finding.check,
-            reason="it does not touch what carries it",
-        )
-    )
+    case.against_parent(finding, joint, "it does not touch what carries it", other)
 
 
 def _derailed(case: _Case, finding: Finding, joint: Joint) -> None:
     """KV320: what leaves its parent runs along the wrong line or moves in the wrong way, or too far."""
     if case.has("KV321", joint=finding.joint):
         return  # a slide with a guide goes too far along the right line
-    reason = "it leaves its parent"
-    case.against_line(finding, joint.child, case.config.derailed_line, reason)
-    case.against_type(finding, joint, case.config.derailed_type, reason)
+    case.against_all(finding, joint, "it leaves its parent")
     if joint.kind is JointType.PRISMATIC and finding.value is not None and finding.limit is not None:
         upwards, share = _upwards(finding), finding.limit / max(finding.value, finding.limit)
         end = share * (joint.upper if upwards else joint.lower)
@@ -351,11 +367,11 @@ def _upwards(finding: Finding) -> bool:
 
 
 def _line_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
-    case.against_line(finding, joint.child, case.config.evidence_line, "the parts show another line")
+    case.against_line(finding, joint, "the parts show another line")
 
 
 def _type_doubted(case: _Case, finding: Finding, joint: Joint) -> None:
-    case.against_type(finding, joint, case.config.evidence_type, "the parts look as if they moved otherwise")
+    case.against_type(finding, joint, "the parts look as if they moved otherwise")
 
 
 def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
@@ -363,7 +379,7 @@ def _not_reached(case: _Case, finding: Finding, joint: Joint) -> None:
     if case.has("KV332", "KV403", "KV503", joint=finding.joint) or finding.blame is not Blame.KINEMATICS:
         case.leave(finding, "only the hulls that engines collide are in the way", Blame.PHYSICS)
     else:
-        case.against_line(finding, joint.child, case.config.stuck_line, f"{finding.engine} cannot drive it to its end")
+        case.against_line(finding, joint, f"{finding.engine} cannot drive it to its end")
 
 
 def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
@@ -371,11 +387,16 @@ def _unstable(case: _Case, finding: Finding, joint: Joint) -> None:
     if case.has("KV201", "KV202", "KV204", "KV205", "KV207", "KV301", "KV302", "KV403", "KV503"):
         case.leave(finding, "mend masses and overlaps at rest first", Blame.PHYSICS)
     else:
-        case.against_line(finding, joint.child, case.config.unstable_line, "unstable though masses and rest are fine")
+        case.against_line(finding, joint, "unstable though masses and rest are fine")
 
 
 def _sinks(case: _Case, finding: Finding, joint: Joint) -> None:
-    case.against_line(finding, joint.child, case.config.sinking_line, "it does not stay where it was given")
+    case.against_line(finding, joint, "it does not stay where it was given")
+
+
+def _as_loaded(case: _Case, finding: Finding, joint: Joint) -> None:
+    """KV803 and KV804: the written file, whose pieces leave every free motion free, does not move as it should."""
+    case.against_all(finding, joint, f"as loaded, {finding.engine} does not move it as it should")
 
 
 def _no_way(case: _Case, finding: Finding, joint: Joint) -> None:
@@ -383,7 +404,7 @@ def _no_way(case: _Case, finding: Finding, joint: Joint) -> None:
     if finding.check != "KV706" and case.placements.get(finding.joint or "", 0.0) < case.config.placements:
         case.leave(finding, "too few places of the robot were tried to blame the joint", Blame.TASK)
     else:
-        case.against_line(finding, joint.child, case.config.task_line, "no way leads through its range")
+        case.against_all(finding, joint, "no way leads through its range")
 
 
 _ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
@@ -398,6 +419,7 @@ _ROWS: dict[FeedbackRow | None, Callable[[_Case, Finding, Joint], None]] = {
     FeedbackRow.NOT_REACHED: _not_reached,
     FeedbackRow.UNSTABLE: _unstable,
     FeedbackRow.SINKS: _sinks,
+    FeedbackRow.AS_LOADED: _as_loaded,
     FeedbackRow.NO_WAY: _no_way,
 }
 

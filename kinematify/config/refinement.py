@@ -6,40 +6,14 @@ from kinematify.config.base import StageConfig
 
 
 class FeedbackConfig(StageConfig):
-    """What each kind of failure weighs, in log odds, the unit of the scores of candidates."""
+    """How failures are read; what each weighs is measured (`kinematify.validation.failure_rates`)."""
 
-    warning_share: float
-    """Weight of a warning, as a share of that of an error."""
     open_share: float
     """A side that is free over this share of the range is the one that opens."""
     back_share: float
     """A slide that leaves its guide, and whose way back is free over this share of its range, stands open."""
     full_turn: float
     """Ranges of turning joints count up to this [rad]."""
-    blocked_line: float
-    """Against a line about which the part is blocked to both sides at once (KV310)."""
-    blocked_type: float
-    """The same against its type."""
-    derailed_line: float
-    """Against a line along which the part leaves its parent (KV320)."""
-    derailed_type: float
-    """The same against its type."""
-    sibling_edge: float
-    """Against a parent, where the part runs into another body (KV311)."""
-    hovering_edge: float
-    """Against a parent that the part does not touch (KV303, KV341)."""
-    evidence_line: float
-    """Against a line where another one fits better (KV342 to KV344)."""
-    evidence_type: float
-    """Against a type where the other one fits better (KV345)."""
-    stuck_line: float
-    """Against a line that an engine cannot drive to its end though no hull is in the way (KV405, KV505)."""
-    unstable_line: float
-    """Against a line that escapes its limits or gains energy though masses and rest are fine (KV407 to KV409)."""
-    sinking_line: float
-    """Against a line along which the part sinks (KV404)."""
-    task_line: float
-    """Against a line that no robot can pull through (KV703 to KV706)."""
     placements: int
     """Places of the robot that must have failed before that counts."""
 

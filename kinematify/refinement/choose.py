@@ -1,7 +1,9 @@
 """Choosing joints again under feedback: every near-best candidate is simulated, and the evidence is added up.
 
 The score of a candidate is that of the inference, in log odds, less what the simulation has against it. A candidate
-that was never simulated has nothing against it, so none may replace another before it was.
+that was never simulated has nothing against it, so none may replace another before it was: by exact geometry, and in
+the tier in which the chosen joint failed. Failures only ever speak against a candidate, so that what geometry leaves of
+it bounds what a dear tier can; the most promising one is tried there first, until none could still do better.
 """
 
 from __future__ import annotations
@@ -12,15 +14,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.refinement.candidates import is_same
+from kinematify.refinement.hints import HINTED
 from kinematify.refinement.history import PlanChange
+from kinematify.refinement.tiers import TIERS, dear_verdict
 from kinematify.refinement.words import described, ranged
 from kinematify.robot.joint_type import JointType
+from kinematify.validation.failure_rates import GEOMETRY, tier_of
 from kinematify.validation.feedback import feedback_from
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.config import RefineConfig
+    from kinematify.config.validation import ValidationSettings
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.refinement.plan import Plan
@@ -42,6 +48,8 @@ class Trial:
     """What the simulation has against it [log odds]."""
     blocked: bool
     """It can move to neither side."""
+    tier: str = GEOMETRY
+    """How far it was simulated."""
 
     @property
     def total(self) -> float:
@@ -55,6 +63,7 @@ class Chooser:
 
     candidates: CandidateJoints
     simulator: Simulator
+    settings: ValidationSettings
     config: RefineConfig
     in_time: Callable[[], bool]
     simulated: int = 0
@@ -77,9 +86,15 @@ class Chooser:
             names[joint.child]: feedback.against(names[joint.child]) - self.candidates.score(plan.tree, joint)
             for joint in plan.joints
         }
+        hinted = {names[joint.child] for joint in plan.joints if HINTED in joint.evidence}
+        self.refused += [
+            f"{child}: what failed speaks against its joint, but a hint asked for it; without the hint others are tried"
+            for child in sorted(blamed & hinted)
+        ]
         doubted = [child for child in odds if child in blamed or odds[child] > self.config.lead_elsewhere]
+        doubted = [child for child in doubted if child not in hinted]
         for child in sorted(doubted, key=lambda child: (-odds[child], child)):
-            plan, change = self._again(plan, child, feedback.against(child))
+            plan, change = self._again(plan, child, feedback.against(child), _failed_in(feedback, child))
             changes += [change] if change is not None else []
         moved = {change.part for change in changes}
         for signal in feedback.ranges:
@@ -88,23 +103,29 @@ class Chooser:
                 changes += [cut] if cut is not None else []
         return plan, changes
 
-    def trials(self, plan: Plan, joint: JointEstimate, against: float | None = None) -> list[Trial]:
+    def trials(self, plan: Plan, joint: JointEstimate, against: float, tier: str = GEOMETRY) -> list[Trial]:
         """The chosen joint and every near-best candidate of an edge, simulated, as many as there is time for.
 
         Args:
             plan: Where the other joints are as they are.
             joint: The chosen one.
-            against: What the simulation has against it, if that is known already.
+            against: What the simulation has against it.
+            tier: The dearest in which it failed; candidates that could replace it are tried there too.
         """
         best = max((candidate.score for candidate in joint.alternatives), default=0.0)
-        own = self.candidates.score(plan.tree, joint)
-        found = [self.trial(plan, joint, own) if against is None else _known(joint, own, against)]
+        first = _known(joint, self.candidates.score(plan.tree, joint), against, tier)
+        others: list[Trial] = []
         for candidate in self._near_best(joint, best):
             if not self.in_time():
                 break
             realised = self.candidates.realise(plan.tree, joint, candidate)
-            found.append(self.trial(plan, realised, candidate.score - best))
-        return found
+            others.append(self.trial(plan, realised, candidate.score - best))
+        while others and self.in_time():
+            top = max(range(len(others)), key=lambda k: others[k].total)
+            if others[top].tier == tier or others[top].total <= first.total:
+                break
+            others[top] = self.trial(plan, others[top].joint, others[top].score, tier)
+        return [first, *others]
 
     def _near_best(self, joint: JointEstimate, best: float) -> list[JointCandidate]:
         """Candidates within the margin that are not the chosen one, the best of either type at least."""
@@ -115,27 +136,33 @@ class Chooser:
         rest = [item for item in near if all(item is not first for first in firsts)]
         return sorted((firsts + rest)[: self.config.near_best], key=lambda item: -item.score)
 
-    def trial(self, plan: Plan, joint: JointEstimate, score: float) -> Trial:
+    def trial(self, plan: Plan, joint: JointEstimate, score: float, tier: str = GEOMETRY) -> Trial:
         """Simulate one joint for a part of a plan, whose inference scored it so."""
         self.simulated += 1
         tried = plan.with_joint(joint)
         child = plan.assembly.names[joint.child]
-        name = tried.joint_of[child]
-        verdict = self.simulator.judge_joint(tried.model, name)
+        verdict = self.simulator.judge_joint(tried.model, tried.joint_of[child])
+        if tier != GEOMETRY:
+            verdict = dear_verdict(tried, verdict, tier=tier, settings=self.settings)
         feedback = feedback_from(
-            verdict.findings, verdict.joints, tried.model.robot.joint_by_name, self.config.feedback
+            verdict.findings,
+            verdict.joints,
+            tried.model.robot.joint_by_name,
+            self.config.feedback,
+            placements=verdict.placements,
         )
         blocked = any(signal.check == "KV310" for signal in feedback.lines)
-        return Trial(joint=joint, score=score, against=feedback.against(child), blocked=blocked)
+        return Trial(joint=joint, score=score, against=feedback.against(child), blocked=blocked, tier=tier)
 
-    def _again(self, plan: Plan, child: str, against: float) -> tuple[Plan, PlanChange | None]:
+    def _again(self, plan: Plan, child: str, against: float, tier: str) -> tuple[Plan, PlanChange | None]:
         """The joint of one part, chosen again."""
         old = plan.joints[plan.index(child)]
-        trials = self.trials(plan, old, against)
+        trials = self.trials(plan, old, against, tier)
         first = trials[0]
         if len(trials) > 1 and self._can_never_move(trials):
             return self._fixed(plan, child, old, trials)
-        best = max(trials[1:], key=lambda trial: trial.total - self._lead_of(trial, old), default=first)
+        tried = [trial for trial in trials[1:] if trial.tier == tier]
+        best = max(tried, key=lambda trial: trial.total - self._lead_of(trial, old), default=first)
         if best.total <= first.total + self._lead_of(best, old) or best.joint.kind is JointType.FIXED:
             return plan, None
         what = "type" if best.joint.kind.turns != old.kind.turns else "axis"
@@ -200,5 +227,12 @@ def shortened(joint: JointEstimate, signal: RangeSignal) -> JointEstimate | None
     return replace(joint, kind=kind, axis=sign * joint.axis, lower=low, upper=high)
 
 
-def _known(joint: JointEstimate, score: float, against: float) -> Trial:
-    return Trial(joint=joint, score=score, against=against, blocked=against > 0.0)
+def _known(joint: JointEstimate, score: float, against: float, tier: str) -> Trial:
+    return Trial(joint=joint, score=score, against=against, blocked=against > 0.0, tier=tier)
+
+
+def _failed_in(feedback: Feedback, child: str) -> str:
+    """The dearest tier in which the joint of a part failed."""
+    signals = [*feedback.lines, *feedback.types]
+    failed = {tier_of(signal.check) for signal in signals if signal.child == child}
+    return max(failed, key=TIERS.index, default=GEOMETRY)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 TYPES = {str(kind): kind for kind in JointType}
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+HINTED = "hinted"
+"""1 in `JointEstimate.evidence` where the user said what the joint is: no failure overrules that."""
 _NEAR = np.cos(np.radians(30.0))  # a candidate along the named axis: parts are tilted, and people name the nearest
 _SAME = np.cos(np.radians(5.0))  # a candidate along an axis that is given by its numbers
 _THROUGH = 0.02  # of the object's diagonal: a candidate that goes through the point that is given
@@ -170,14 +172,18 @@ def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
 def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, hint: Hint) -> JointEstimate:
     """The joint that agrees with a hint; its confidence is that of the user."""
     if hint.kind is JointType.FIXED:
-        return replace(joint, kind=JointType.FIXED, lower=0.0, upper=0.0, confidence=1.0)
+        return _told(replace(joint, kind=JointType.FIXED, lower=0.0, upper=0.0))
     candidate = _best(joint, hint, _THROUGH * inference.assembly.diagonal)
     found = maker.realise(inference.trees[0], joint, candidate)
     if hint.kind is JointType.CONTINUOUS:
         found = replace(found, kind=JointType.CONTINUOUS, lower=-np.inf, upper=np.inf)
     elif hint.kind is JointType.REVOLUTE and found.kind is JointType.CONTINUOUS:
         found = replace(found, kind=JointType.REVOLUTE, lower=-np.pi, upper=np.pi)
-    return replace(found, confidence=1.0)
+    return _told(found)
+
+
+def _told(joint: JointEstimate) -> JointEstimate:
+    return replace(joint, confidence=1.0, evidence={**joint.evidence, HINTED: 1.0})
 
 
 def _best(joint: JointEstimate, hint: Hint, reach: float) -> JointCandidate:

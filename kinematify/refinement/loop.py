@@ -22,9 +22,12 @@ from kinematify.refinement.history import History, PlanChange, Round
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.split import infer_joined
-from kinematify.refinement.tiers import GEOMETRY, TIERS, dear_verdict
+from kinematify.refinement.tiers import TIERS, dear_verdict
 from kinematify.refinement.topology import EdgeMemory, SearchedContacts, replanned, search_again
 from kinematify.refinement.twins import TWINS, vote
+from kinematify.validation.check import FeedbackRow
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.failure_rates import GEOMETRY
 from kinematify.validation.feedback import feedback_from
 from kinematify.validation.finding import Blame, Severity
 
@@ -247,18 +250,25 @@ class _Loop:
             if rebuilt_plan is not None:
                 self.mended = 1
                 return (*rebuilt_plan, [])
-        plan = done.plan
-        changes: list[PlanChange] = []
-        if done.feedback.edges:
-            plan, changes = self._repaired(done)
+        carried = any(CHECKS[signal.check].feedback in _OF_PARENTS for signal in done.feedback.edges)
+        plan, changes = self._repaired(done) if carried else (done.plan, [])
         if changes:
             return plan, done.contacts, changes, []
         candidates = self._candidates_of(done.contacts)
-        chooser = Chooser(candidates=candidates, simulator=self.simulator, config=self.config, in_time=self.in_time)
+        chooser = Chooser(
+            candidates=candidates,
+            simulator=self.simulator,
+            settings=self.request.settings,
+            config=self.config,
+            in_time=self.in_time,
+        )
         plan, changes = chooser.choose_again(plan, done.feedback)
         plan, votes = vote(plan, done.contacts.graph, chooser)
         self.simulated += chooser.simulated
-        return plan, done.contacts, [*changes, *votes], chooser.refused
+        changes += votes
+        if not changes and not carried:  # no joint on this edge is better: it may be the wrong edge
+            plan, changes = self._repaired(done)
+        return plan, done.contacts, changes, chooser.refused
 
     def _candidates_of(self, contacts: SearchedContacts) -> CandidateJoints:
         """The joints that the edges of a contact graph may have."""
@@ -290,7 +300,7 @@ class _Loop:
         graph, bearings = rebuilt(assembly, surfaces, audit, self.given.bearings, config)
         contacts = SearchedContacts(graph=graph, bearings=bearings)
         trees = search_again(assembly, contacts, self.memory, self.given.trees, config, base=self.base)
-        plan, changes = replanned(done.plan, contacts, trees[0])
+        plan, changes = replanned(done.plan, contacts, trees[0], keep=False)
         why = f"{len(audit.missing)} contacts were missing and {len(audit.spurious)} are none"
         told = PlanChange(
             part=assembly.names[trees[0].root], what="contacts", before=f"{len(self.given.graph.edges)}",
@@ -299,13 +309,18 @@ class _Loop:
         return plan, contacts, [told, *changes]
 
     def _repaired(self, done: _Done) -> tuple[Plan, list[PlanChange]]:
-        """Another tree, if the search finds a better one with what the simulation had against edges."""
+        """Another tree on the same base, if the search finds one by what failed, and geometry fails less on it."""
+        if not done.feedback.edges:
+            return done.plan, []
+        base = done.plan.tree.root
         trees = search_again(
-            done.plan.assembly, done.contacts, self.memory, self.given.trees, self.given.config, base=self.base
+            done.plan.assembly, done.contacts, self.memory, self.given.trees, self.given.config, base=base
         )
         if trees[0].parents == done.plan.tree.parents:
             return done.plan, []
-        return replanned(done.plan, done.contacts, trees[0])
+        plan, changes = replanned(done.plan, done.contacts, trees[0], keep=True)
+        before, after = (self.simulator.judge(tried.model) for tried in (done.plan, plan))
+        return (plan, changes) if _severities(after) < _severities(before) else (done.plan, [])
 
     def _record(self, history: History) -> dict[str, Any]:
         """The history as JSON values, with that of an earlier refinement if there was one."""
@@ -324,6 +339,8 @@ class _Loop:
 
 
 _BLAMED = (Blame.KINEMATICS, Blame.TASK)
+_OF_PARENTS = (FeedbackRow.OTHER_PARENT, FeedbackRow.NOT_CARRIED)
+"""Failures that speak of what carries a part, before they speak of its joint."""
 
 
 def _severities(verdict: MotionVerdict) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""The dear tiers: finalists are written, validated in engines, and pulled by an arm."""
+"""The dear tiers: a plan is written as a model folder has it, run in engines, and pulled at by an arm."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.manipulation.request import PULL, TaskRequest
-from kinematify.model.urdf import write_urdf
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model
 from kinematify.refinement.simulate import MotionVerdict
+from kinematify.validation.checks import checks_of
+from kinematify.validation.failure_rates import ENGINES, GEOMETRY, TASK
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -16,18 +19,17 @@ if TYPE_CHECKING:
     from kinematify.refinement.plan import Plan
     from kinematify.validation.report import ValidationReport
 
-GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"
 TIERS = (GEOMETRY, ENGINES, TASK)
 """From cheap to dear; each includes those before it."""
 
 _TRIED = " tried"
 """After the name of a joint, in what KV705 measures."""
-_OWN = ("KV30", "KV31", "KV32")
-"""Checks that the cheap tier has told already."""
+_RUN = {ENGINES: ("KV34", "KV4", "KV5", "KV8"), TASK: ("KV34", "KV4", "KV5", "KV7", "KV8")}
+"""Families of checks that a dear tier runs beside those of geometry, which the cheap tier has told already."""
 
 
 def dear_verdict(plan: Plan, cheap: MotionVerdict, *, tier: str, settings: ValidationSettings) -> MotionVerdict:
-    """Validate a plan in engines, and with a task if the tier asks for it.
+    """Run a plan as it would be written, in engines, and with a task if the tier asks for it.
 
     Args:
         plan: The finalist.
@@ -35,12 +37,14 @@ def dear_verdict(plan: Plan, cheap: MotionVerdict, *, tier: str, settings: Valid
         tier: ``engines`` or ``task``.
         settings: Of the validation.
     """
+    selected = [check.id for check in checks_of(*_RUN[tier])]
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
-        urdf = write_urdf(plan.model, Path(folder))
-        report = validate(urdf, settings=settings, task=TaskRequest(kind=PULL) if tier == TASK else None)
-    told = tuple(finding for finding in report.counted if not finding.check.startswith(_OWN))
+        urdf = write_model(simulable_model(plan.model, plan.config).robot, Path(folder))
+        task = TaskRequest(kind=PULL) if tier == TASK else None
+        report = validate(urdf, settings=settings, selected=selected, task=task)
     if report.environment.get("interrupted"):
         raise KeyboardInterrupt
+    told = tuple(finding for finding in report.counted if finding.check in selected)
     return MotionVerdict(
         findings=(*cheap.findings, *told),
         joints=cheap.joints,

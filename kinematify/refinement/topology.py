@@ -71,13 +71,21 @@ def search_again(
     return find_trees(assembly, contacts.graph, contacts.bearings, config, base=base, simulated=simulated, warm=warm)
 
 
-def replanned(plan: Plan, contacts: SearchedContacts, tree: KinematicTree) -> tuple[Plan, list[PlanChange]]:
-    """The plan on another tree: joints of edges that stay are kept where nothing about them changed.
+def replanned(
+    plan: Plan, contacts: SearchedContacts, tree: KinematicTree, *, keep: bool
+) -> tuple[Plan, list[PlanChange]]:
+    """The plan on another tree, with the joints that the inference would choose there.
 
-    A joint depends on what hangs on both of its parts, so that all joints are chosen as the inference would, and those
-    of equal edges with equal surroundings come out equal.
+    Args:
+        plan: On the tree before.
+        contacts: That the new tree was found on.
+        tree: The new one.
+        keep: Joints stay where neither the parent of a part nor what hangs on it has changed, nor the contacts.
     """
-    joints = choose_joints(plan.assembly, contacts.graph, tree, contacts.bearings, plan.config)
+    chosen = choose_joints(plan.assembly, contacts.graph, tree, contacts.bearings, plan.config)
+    known = {(joint.parent, joint.child): joint for joint in plan.joints if keep}
+    carries = [set(here) == set(before) for here, before in zip(tree.children, plan.tree.children, strict=True)]
+    joints = tuple(known.get((joint.parent, joint.child), joint) if carries[joint.child] else joint for joint in chosen)
     names = plan.assembly.names
     new = Plan(assembly=plan.assembly, config=plan.config, tree=tree, joints=joints)
     changes = [

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kinematify.refinement.hints import HINTED
 from kinematify.refinement.history import PlanChange
 from kinematify.refinement.words import described
 from kinematify.robot.joint_type import JointType
@@ -72,7 +73,7 @@ def _follow(
     plan: Plan, joint: JointEstimate, *, turns: bool, chooser: Chooser, votes: int, others: float
 ) -> tuple[Plan, PlanChange | None]:
     """The best candidate of the type that the twins agree on, unless the simulation is against it."""
-    if joint.kind.turns == turns:
+    if joint.kind.turns == turns or HINTED in joint.evidence:
         return plan, None
     candidate = max((item for item in joint.alternatives if item.kind.turns == turns), key=lambda item: item.score)
     trial = chooser.trial(plan, chooser.candidates.realise(plan.tree, joint, candidate), 0.0)

@@ -28,9 +28,12 @@ from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.refinement import loop, refine
 from kinematify.refinement.folder import open_model_folder
+from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
+from kinematify.topology.tree import KinematicTree
+from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
 from kinematify.validation.inferred import round_rows
 from tests.objects import BUILDERS
@@ -102,9 +105,55 @@ def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_repla
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
 
 
-@pytest.mark.parametrize("lead", [50.0, 1.5])
-def test_evidence_of_shape_can_outweigh_the_simulation(lead: float) -> None:
-    """Blocked both ways weighs 2.5; what lets another direction lead by 1.0 only does not overrule the geometry."""
+def test_a_hint_is_kept_against_failures_and_both_are_told() -> None:
+    start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    told = with_hints(start, parse_hints(["drawer:axis=x"], start.assembly.names))
+    blocked = with_joint(told, "drawer", lower=-0.2, upper=0.2)
+    refinement = refine(blocked, seconds=60.0)
+    assert abs(float(joint_above(refinement.inference, "drawer").axis[0])) == pytest.approx(1.0)
+    assert any("a hint asked for" in refused for item in refinement.history.rounds for refused in item.refused)
+
+
+def double_door() -> Inference:
+    """A carcass with two doors that stand in it side by side and touch each other."""
+
+    def block(lower: tuple[float, float, float], upper: tuple[float, float, float]) -> trimesh.Trimesh:
+        low, high = np.array(lower), np.array(upper)
+        return trimesh.creation.box(extents=high - low).apply_translation((low + high) / 2)
+
+    walls = [
+        block((-0.42, 0.0, 0.0), (-0.4, 0.4, 0.6)), block((0.4, 0.0, 0.0), (0.42, 0.4, 0.6)),
+        block((-0.4, 0.0, 0.0), (0.4, 0.4, 0.02)), block((-0.4, 0.0, 0.58), (0.4, 0.4, 0.6)),
+        block((-0.4, 0.38, 0.02), (0.4, 0.4, 0.58)),
+    ]  # fmt: skip
+    meshes = {
+        "carcass": trimesh.util.concatenate(walls),
+        "left": block((-0.399, 0.0, 0.021), (-0.0005, 0.01, 0.579)),
+        "right": block((0.0005, 0.0, 0.021), (0.399, 0.01, 0.579)),
+    }
+    parts = (Part(name=name, vertices=mesh.vertices, faces=mesh.faces) for name, mesh in meshes.items())
+    return infer(Assembly(parts=tuple(parts), source="cabinet"), config=CONFIG)
+
+
+def test_a_wrong_parent_among_right_contacts_is_found_by_the_search() -> None:
+    right = double_door()
+    assert right.trees[0].parents == (-1, 0, 0)
+    hung = KinematicTree(parents=(-1, 0, 1))
+    joints = (right.joints[0], replace(right.joints[1], parent=1))
+    refinement = refine(replace(right, trees=(hung,), joints=joints), seconds=60.0)
+    assert refinement.inference.trees[0].parents == (-1, 0, 0)
+    assert [(change.part, change.what, change.after) for change in refinement.history.changed] == [
+        ("right", "parent", "carcass")
+    ]
+    assert refinement.inference.graph is right.graph, "the contacts were right"
+    assert np.allclose(joint_above(refinement.inference, "right").axis, right.joints[1].axis)
+
+
+@pytest.mark.parametrize("short", [-50.0, CONFIG.refine.lead_elsewhere - 0.2])
+def test_evidence_of_shape_can_outweigh_the_simulation(short: float) -> None:
+    """Blocked both ways is not enough for another direction to lead by less than it has to."""
+    blocked = max(shipped_rates().weight("KV310", wrong) for wrong in (LINE, TYPE))
+    lead = blocked - short
     sure = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=lead)
     refinement = refine(sure, seconds=60.0)
     assert joint_above(refinement.inference, "drawer").kind is JointType.PRISMATIC

@@ -11,6 +11,8 @@ import pytest
 from kinematify.config import load_config
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.failure_rates import CLASSES, LINE, PARENT, TYPE, FailureRates, shipped_rates, tier_of
 from kinematify.validation.feedback import Feedback, feedback_from
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity
 from kinematify.validation.stage import Recorder
@@ -23,6 +25,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 CONFIG = load_config().refine.feedback
+RATES = FailureRates(
+    joints={tier: {"right": 100, "line": 10, "type": 10, "parent": 10} for tier in ("geometry", "engines", "task")},
+    failures={check: {"right": 5, "line": 6, "type": 4, "parent": 3} for check in CHECKS},
+    provenance={},
+)
 
 
 def declared(model: Model) -> dict[str, Joint]:
@@ -49,7 +56,7 @@ def fed_back(model: Model, folder: Path, *more: Finding, tried: int = 0) -> Feed
     findings = [finding for item in told if isinstance(item, CheckResult) for finding in item.findings]
     summaries = [item for item in told if isinstance(item, JointSummary)]
     places = {"drawer_joint": float(tried)}
-    return feedback_from([*findings, *more], summaries, declared(model), CONFIG, placements=places)
+    return feedback_from([*findings, *more], summaries, declared(model), CONFIG, placements=places, rates=RATES)
 
 
 def engine(check: str, joint: str = "drawer_joint", **changes: object) -> Finding:
@@ -71,7 +78,7 @@ def test_blocked_to_both_sides_blames_line_and_type_and_no_range(tmp_path: Path)
     assert {signal.child for signal in feedback.lines} == {"drawer"}
     assert {(signal.child, signal.kind) for signal in feedback.types} == {("drawer", "prismatic")}
     assert feedback.ranges == ()
-    assert feedback.against("drawer") == pytest.approx(CONFIG.blocked_line + CONFIG.blocked_type)
+    assert feedback.against("drawer") == pytest.approx(RATES.weight("KV310", LINE))
 
 
 def test_blocked_to_one_side_turns_the_joint_round_and_blames_no_line(tmp_path: Path) -> None:
@@ -101,7 +108,7 @@ def test_what_runs_into_a_stranger_blames_its_parent_for_that_stranger(tmp_path:
     feedback = fed_back(beam(slider, post), tmp_path)
     (signal,) = feedback.edges
     assert (signal.parent, signal.child, signal.better) == ("beam", "slider", "post")
-    assert signal.weight == pytest.approx(CONFIG.warning_share * CONFIG.sibling_edge)
+    assert signal.weight == pytest.approx(RATES.weight("KV311", PARENT))
     assert feedback.lines == ()
 
 
@@ -182,13 +189,45 @@ def test_explosions_blame_masses_first_and_the_line_only_after_that(tmp_path: Pa
     unstable = engine("KV407", blame=Blame.PHYSICS)
     first = fed_back(cabinet(), tmp_path, unstable, engine("KV205", blame=Blame.PHYSICS, engine=None))
     assert first.lines == ()
-    (signal,) = fed_back(cabinet(), tmp_path, unstable).lines
-    assert 0.0 < signal.weight < CONFIG.blocked_line / 2
+    assert [signal.check for signal in fed_back(cabinet(), tmp_path, unstable).lines] == ["KV407"]
 
 
-def test_sinking_speaks_only_weakly(tmp_path: Path) -> None:
-    (signal,) = fed_back(cabinet(), tmp_path, engine("KV404", blame=Blame.PHYSICS)).lines
-    assert 0.0 < signal.weight <= CONFIG.blocked_line / 5
+@pytest.mark.parametrize("check", ["KV803", "KV804"])
+def test_what_fails_as_loaded_in_two_engines_counts_once(tmp_path: Path, check: str) -> None:
+    jams = engine(check, blame=Blame.PHYSICS)
+    feedback = fed_back(cabinet(), tmp_path, jams, replace(jams, engine="pybullet"))
+    assert {signal.check for signal in (*feedback.lines, *feedback.types, *feedback.edges)} == {check}
+    assert feedback.against("drawer") == pytest.approx(RATES.weight(check, LINE))
+
+
+def test_what_its_carrier_moves_into_another_body_blames_that_carrier(tmp_path: Path) -> None:
+    meets = engine("KV311", joint="door_joint", pair=("drawer", "cabinet"), engine=None)
+    hung = cabinet().with_part("drawer", parent="door")
+    (signal,) = [item for item in fed_back(hung, tmp_path, meets).edges if item.reason.startswith("what carries it")]
+    assert (signal.parent, signal.child, signal.better) == ("door", "drawer", "cabinet")
+
+
+def test_a_failure_weighs_the_ratio_of_its_rates_and_chance_weighs_nothing() -> None:
+    rare = FailureRates(
+        joints={"geometry": {"right": 300, "line": 300, "parent": 2}},
+        failures={"KV310": {"right": 3, "line": 240}, "KV312": {"right": 30, "line": 30}},
+        provenance={},
+    )
+    assert rare.weight("KV310", LINE) == pytest.approx(np.log(240 / 3), rel=0.15)
+    assert rare.weight("KV312", LINE) == pytest.approx(0.0, abs=1e-9)
+    assert rare.weight("KV320", LINE) == pytest.approx(0.0, abs=1e-2), "never seen on any joint"
+    assert rare.weight("KV312", PARENT) < 0.5, "two joints say little"
+
+
+def test_the_shipped_rates_are_of_known_checks_and_no_failure_is_counted_twice() -> None:
+    shipped = shipped_rates()
+    assert shipped.joints["geometry"]["right"] > 0
+    assert set(shipped.joints) == set(shipped.provenance)
+    for check, counts in shipped.failures.items():
+        assert check in CHECKS
+        assert set(counts) <= set(CLASSES)
+        assert all(counts[what] <= shipped.joints[tier_of(check)][what] for what in counts), check
+    assert min(shipped.weight("KV310", LINE), shipped.weight("KV310", TYPE)) > 0.0
 
 
 @pytest.mark.parametrize(("placements", "blamed"), [(1, False), (CONFIG.placements, True)])

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinematify.simulation.engines import ENGINES
 from kinematify.simulation.loaded_file import MovesFreely, Unloadable
-from kinematify.validation.check import OpenCheck, Shared, check
+from kinematify.validation.check import FeedbackRow, OpenCheck, Shared, check
 from kinematify.validation.checks.engine_rest import FLOOR_OF_ENERGY, find_growth
 from kinematify.validation.checks.follow import IN_ENGINES, NOT_A_BODY
 from kinematify.validation.checks.needs import late
@@ -149,6 +149,7 @@ def no_overlap(result: OpenCheck, context: AsLoadedContext) -> None:
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_RUNNING,
+    feedback=FeedbackRow.AS_LOADED,
     follows={**IN_ENGINES, "KV802": Shared.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )
@@ -232,6 +233,7 @@ def _find_leaving(result: OpenCheck, context: AsLoadedContext, travel: Travel) -
     severity=Severity.ERROR,
     blame=Blame.PHYSICS,
     engines=_RUNNING,
+    feedback=FeedbackRow.AS_LOADED,
     follows={**IN_ENGINES, "KV802": Shared.CONTACT, "KV803": Shared.CONTACT},
     needs=(not_loaded, nothing_moves, late),
 )

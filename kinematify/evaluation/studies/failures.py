@@ -1,0 +1,198 @@
+"""How often does each failure occur on right joints, and how often on wrong ones?
+
+Wrong joints are planted in true mechanisms as `kinematify bench refine` does, and nothing is refined. *Line*: an axis
+turned by 90 deg, a moved pivot, or the second-best hypothesis where it is of the right type; *type*, *parent*: the
+other type, another parent. A joint failed a check that found an error or a warning about it. The logarithm of the ratio
+of a rate to that on right joints is what the failure weighs in `kinematify refine`; `--write FILE` writes the counts as
+`validation/failure_rates.json` has them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from kinematify import __version__
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.errors import OutputError
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
+from kinematify.evaluation.job import erased_item
+from kinematify.evaluation.planted import AXIS, NOTHING, PARENT, PIVOT, SECOND, TYPE, planted_faults, true_mechanism
+from kinematify.evaluation.record import table
+from kinematify.evaluation.study import Options, Study, among, explained
+from kinematify.refinement.plan import Plan
+from kinematify.refinement.simulate import Simulator
+from kinematify.refinement.tiers import TIERS, dear_verdict
+from kinematify.validation import failure_rates
+from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
+from kinematify.validation.finding import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kinematify.evaluation.record import Report
+    from kinematify.evaluation.study import Measured, Record, Work
+    from kinematify.pipeline import Inference
+    from kinematify.validation.finding import Finding
+
+SAMPLE = (
+    "bigym_base_doors", "bigym_base_drawers", "bigym_dishwasher", "bigym_wall_cabinet", "drake_cupboard",
+    "fs_boxcabinet", "gz_hinged_door", "gz_scanse_sweep", "gz_src_doorway", "gz_wooden_case", "habitat_fridge",
+    "jsk_fridge", "koki_handle_door", "lb_white_cabinet", "robel_valve3", "src_solar_panel", "tz_button",
+    "urdformer_13", "urdformer_55",
+)  # fmt: skip
+"""Objects of other hands whose licence lets us fit to them; none of them is measured by `kinematify bench refine`."""
+_FAULTS = (AXIS, PIVOT, TYPE, PARENT, SECOND)
+_CLASS = {AXIS: failure_rates.LINE, PIVOT: failure_rates.LINE, TYPE: failure_rates.TYPE, PARENT: failure_rates.PARENT}
+
+
+class FailuresOptions(Options):
+    """Which objects, how far they are simulated, where the counts go."""
+
+    data: str = Field("everyday2", description="Folder or set of objects.")
+    objects: tuple[str, ...] = Field(SAMPLE, description="Names or patterns of objects; * for all.")
+    tiers: Annotated[tuple[str, ...], among(TIERS)] = Field(
+        ("geometry",), description="Some of geometry, engines, task."
+    )
+    seed: int = Field(0, description="Draws the joints.")
+    write: str | None = Field(None, description="File for the counts; a tier that was not simulated keeps its own.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Watched:
+    """One object whose joints are watched in one tier."""
+
+    item: BenchObject
+    tier: str
+    seed: int
+
+
+def measure(options: FailuresOptions, work: Work) -> Measured:
+    """Simulate every object as it is and with each fault, and count."""
+    asked = {
+        f"{item.name}, {tier}": Watched(item=item, tier=tier, seed=options.seed)
+        for tier in options.tiers
+        for item in matching(find_objects(options.data), options.objects)
+    }
+    records = [joint for record in work.each(watched, asked, timeout=7200.0).values() for joint in record["joints"]]
+    if options.write is not None:
+        provenance = {
+            **options.model_dump(mode="json", exclude={"write"}),
+            "objects": sorted({record["object"] for record in records}),
+            "made": datetime.now(UTC).date().isoformat(),
+            "kinematify": __version__,
+        }
+        _write(rates_of(records, provenance), Path(options.write))
+    return records, {}
+
+
+def watched(asked: Watched) -> Record:
+    """The joints of one object, right and wrong, with the checks that each failed in one tier."""
+    mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config())
+    if mechanism is None:
+        return {"joints": []}
+    right = _failed(mechanism.inference, asked.tier)
+    joints = [_record(asked, part, RIGHT, NOTHING, checks) for part, checks in right.items()]
+    for planted in planted_faults(mechanism, asked.seed, _FAULTS):
+        checks = _failed(planted.inference, asked.tier)[planted.part]
+        what = _CLASS.get(planted.fault) or _class_of_second(mechanism.inference, planted.inference, planted.part)
+        joints.append(_record(asked, planted.part, what, planted.fault, checks))
+    return {"joints": joints}
+
+
+def _class_of_second(right: Inference, wrong: Inference, part: str) -> str:
+    child = right.assembly.names.index(part)
+    kinds = [next(joint.kind for joint in item.joints if joint.child == child).turns for item in (right, wrong)]
+    return failure_rates.LINE if kinds[0] == kinds[1] else failure_rates.TYPE
+
+
+def _record(asked: Watched, part: str, what: str, fault: str, checks: Iterable[str]) -> Record:
+    return {
+        "object": asked.item.name,
+        "tier": asked.tier,
+        "part": part,
+        "class": what,
+        "fault": fault,
+        "failed": sorted(checks),
+    }
+
+
+def _failed(inference: Inference, tier: str) -> dict[str, set[str]]:
+    """Checks of a tier that found fault with the joint above each part."""
+    plan = Plan(assembly=inference.assembly, config=inference.config, tree=inference.trees[0], joints=inference.joints)
+    settings = load_settings()
+    verdict = Simulator(plan.model, settings.geometry).judge(plan.model)
+    if tier != GEOMETRY:
+        verdict = dear_verdict(plan, verdict, tier=tier, settings=settings)
+    told = [item for item in verdict.findings if item.severity is not Severity.NOTE and tier_of(item.check) == tier]
+    carrier = {joint.child: joint.name for joint in plan.model.joints}
+    return {part: {item.check for item in told if _blamed(item, carrier) == name} for part, name in carrier.items()}
+
+
+def _blamed(finding: Finding, carrier: dict[str, str]) -> str | None:
+    """The joint that a finding is about: of KV311 that of the part which is brought into another body."""
+    parts = [carrier[part] for part in finding.pair or () if part in carrier]
+    if finding.check == "KV311" and finding.joint not in parts and parts:
+        return parts[0]
+    return finding.joint
+
+
+def rates_of(records: Iterable[Record], provenance: Record) -> FailureRates:
+    """Count joints and failures by class."""
+    joints: dict[str, Counter[str]] = {}
+    failures: dict[str, Counter[str]] = {}
+    for record in records:
+        joints.setdefault(record["tier"], Counter())[record["class"]] += 1
+        for check in record["failed"]:
+            failures.setdefault(check, Counter())[record["class"]] += 1
+    return FailureRates(
+        joints={tier: dict(counts) for tier, counts in joints.items()},
+        failures={check: dict(failures[check]) for check in sorted(failures)},
+        provenance=dict.fromkeys(joints, provenance),
+    )
+
+
+def _write(rates: FailureRates, path: Path) -> None:
+    """Write counts; those of tiers that were not simulated stay as the file has them."""
+    try:
+        old = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        kept = {check: item for check, item in old.get("failures", {}).items() if tier_of(check) not in rates.joints}
+        facts = {
+            "joints": {**old.get("joints", {}), **rates.joints},
+            "failures": dict(sorted({**kept, **rates.failures}.items())),
+            "provenance": {**old.get("provenance", {}), **rates.provenance},
+        }
+        path.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise OutputError(
+            f"The counts cannot be written to {path}: {error}. Give another file with --write."
+        ) from error
+
+
+def report(found: Report[Record]) -> list[str]:
+    """Rates and weights of every check."""
+    rates = rates_of(found.records, {})
+    wrong = [what for what in CLASSES if what != RIGHT]
+    rows = [
+        (
+            check,
+            *(_rate(counts.get(what, 0), rates.joints[tier_of(check)].get(what, 0)) for what in CLASSES),
+            *(f"{rates.weight(check, what):.2f}" for what in wrong),
+        )
+        for check, counts in rates.failures.items()
+    ]
+    return [explained(__doc__), table(("check", *CLASSES, *(f"weight, {what}" for what in wrong)), rows)]
+
+
+def _rate(failed: int, joints: int) -> str:
+    return f"{failed} of {joints}"
+
+
+STUDY = Study(title="How often failures occur", options=FailuresOptions, measure=measure, report=report)
