@@ -233,6 +233,5 @@ def _known(joint: JointEstimate, score: float, against: float, tier: str) -> Tri
 
 def _failed_in(feedback: Feedback, child: str) -> str:
     """The dearest tier in which the joint of a part failed."""
-    signals = [*feedback.lines, *feedback.types]
-    failed = {tier_of(signal.check) for signal in signals if signal.child == child}
-    return max(failed, key=TIERS.index, default=GEOMETRY)
+    signals = ((signal.child, signal.check) for group in (feedback.lines, feedback.types) for signal in group)
+    return max((tier_of(check) for blamed, check in signals if blamed == child), key=TIERS.index, default=GEOMETRY)
