@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
+from kinematify.robot.appearance import joined as joined_appearances
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion
@@ -162,6 +163,7 @@ class Blueprint:
             base,
             vertices=np.concatenate([base.vertices + step for _, step in steps]),
             faces=np.concatenate([base.faces + k * len(base.vertices) for k, _ in steps]),
+            appearance=joined_appearances([base.appearance] * count, [len(base.faces)] * count),
         )
 
         def name(given: str, k: int) -> str:

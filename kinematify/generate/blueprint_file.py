@@ -39,7 +39,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
 from kinematify.generate.blueprint import Blueprint, BlueprintJoint
-from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_material, surface_of
 from kinematify.generate.procedural.solids import SEGMENTS, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
@@ -289,7 +289,7 @@ class PartDescription(_Described):
     subtract: tuple[Shape, ...] = Field((), max_length=MOST_SHAPES)
     """Taken away from the union."""
     material: str = "plastic"
-    """Of `MATERIALS`: density, and colour where none is given."""
+    """Of `MATERIALS`: density and looks; glass is transparent, wood shows its grain where no colour is given."""
     color: str | tuple[float, float, float] | None = None
     """Of `COLORS`, or red, green and blue in [0, 1]."""
 
@@ -328,14 +328,14 @@ class PartDescription(_Described):
             raise InputError(
                 f"Nothing is left of the part {self.name}. Give it shapes with a volume, and subtract less."
             )
-        material = MATERIALS[self.material]
-        color = COLORS[self.color] if isinstance(self.color, str) else self.color
+        vertices, faces = mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int64)
         return Part(
             name=self.name,
-            vertices=mesh.vert_properties[:, :3],
-            faces=mesh.tri_verts,
-            color=color or material.color,
-            density=material.density,
+            vertices=vertices,
+            faces=faces,
+            color=surface_of(self.material, self.color).color[:3],
+            appearance=of_one_material(surface_of(self.material, self.color), vertices, faces),
+            density=MATERIALS[self.material].density,
         )
 
 

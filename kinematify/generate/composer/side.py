@@ -95,17 +95,17 @@ class SideWorkshop(Workshop):
         self._whole = whole
         self._place = T_world_side
         self._made_of = material
-        self._painted = color
+        self._color_of_all = color
 
     def turned(self, turn: FloatArray, origin: Point) -> SideWorkshop:
         """The same from a frame that is turned by `turn`, shape (3, 3), and moved to `origin` in this one."""
         frame = np.column_stack([self._place[:, :3] @ turn, self._point(origin)])
-        return SideWorkshop(self._whole, frame, material=self._made_of, color=self._painted)
+        return SideWorkshop(self._whole, frame, material=self._made_of, color=self._color_of_all)
 
     def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | None = None) -> str:
         """See `Workshop.body`."""
         made_of = self._made_of or material
-        return self._whole.body(name, *self._placed(solids), material=made_of, color=self._painted or color)
+        return self._whole.body(name, *self._placed(solids), material=made_of, color=self._color_of_all or color)
 
     def add(self, name: str, *solids: Manifold) -> None:
         """See `Workshop.add`."""
@@ -114,6 +114,14 @@ class SideWorkshop(Workshop):
     def cut(self, name: str, *solids: Manifold) -> None:
         """See `Workshop.cut`."""
         self._whole.cut(name, *self._placed(solids))
+
+    def painted(self, *solids: Manifold, material: str, color: str | None = None) -> Sequence[Manifold]:
+        """See `Workshop.painted`."""
+        return self._whole.painted(*solids, material=material, color=color)
+
+    def as_handle(self, *solids: Manifold) -> Sequence[Manifold]:
+        """See `Workshop.as_handle`."""
+        return self._whole.as_handle(*solids)
 
     def turns(
         self,

@@ -43,6 +43,8 @@ class Parameter:
     """How people call what is counted, measured or chosen, singular; the name itself and its singular count anyway."""
     choice_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """How people call a choice, besides its own name."""
+    drawn: bool = True
+    """False: a seed draws no value, and no number either, so that what else it draws stays the same without it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,11 +109,22 @@ COMMON = (
     Parameter(name="material", default="", choices=("", *MATERIALS), help="What the base is made of."),
     Parameter(name="color", default="", choices=("", *COLORS), help="Colour of what names no material of its own."),
     Parameter(
+        name="handle_material",
+        default="metal",
+        choices=tuple(MATERIALS),
+        help="What handles are made of.",
+        drawn=False,
+    ),
+    Parameter(
+        name="handle_color", default="", choices=("", *COLORS), help="Colour of handles, if painted.", drawn=False
+    ),
+    Parameter(
         name="open_angle",
         default=0.0,
         unit="rad",
         bounds=(0.0, math.pi),
         help="How far hinges stand open instead of a share; slides stay closed.",
+        drawn=False,
     ),
     Parameter(
         name="open_distance",
@@ -119,12 +132,12 @@ COMMON = (
         unit="m",
         bounds=(0.0, 5.0),
         help="How far slides stand open instead of a share; hinges stay closed.",
+        drawn=False,
     ),
 )
 """Parameters of every family."""
 
 _NOT_DRAWN = ("material", "color")
-_ONLY_ASKED_FOR = ("open_angle", "open_distance")  # no number is drawn for them either, which would change the rest
 
 
 _FAR = {JointType.REVOLUTE: "open_angle", JointType.PRISMATIC: "open_distance"}
@@ -145,13 +158,13 @@ def build(family: Family, given: Mapping[str, Value], *, seed: int | None = None
     """
     rng = np.random.default_rng(seed)
     asked = {key: checked(family, key, value) for key, value in given.items()}
-    values = {
-        p.name: _drawn(p, rng) if seed is not None and p.name not in _ONLY_ASKED_FOR else p.default
-        for p in family.all_parameters
-    }
+    values = {p.name: _drawn(p, rng) if seed is not None and p.drawn else p.default for p in family.all_parameters}
     values.update(asked)
     workshop = Workshop(
-        family.name, material=str(values["material"]) or family.material, color=str(values["color"]) or None
+        family.name,
+        material=str(values["material"]) or family.material,
+        color=str(values["color"]) or None,
+        handles=(str(values["handle_material"]), str(values["handle_color"]) or None),
     )
     far = {kind: float(values[key]) for kind, key in _FAR.items() if values[key]}
     # What opens at all is asked of the family by opening it; how far, is set on the joints.

@@ -1,8 +1,18 @@
-"""What bodies are made of: a density for the mass and a colour for the eye."""
+"""What bodies are made of: a density for the mass, a colour and a surface for the eye."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.generate.procedural.grain import grain_coordinates, wood_grain
+from kinematify.robot.appearance import Appearance, Material
+
+if TYPE_CHECKING:
+    from kinematify.robot.arrays import FloatArray, IntArray
 
 RGB = tuple[float, float, float]
 
@@ -16,28 +26,46 @@ class Substance:
     color: RGB
     words: tuple[str, ...]
     """How people call it."""
+    roughness: float = 0.5
+    """As in `kinematify.robot.appearance.Material`."""
+    metallic: float = 0.0
+    opacity: float = 1.0
+    grain: bool = False
+    """Its own colour shows the grain of wood."""
 
 
 MATERIALS = {
-    "wood": Substance(density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "timber", "mdf")),
-    "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken")),
-    "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",)),
-    "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",)),
-    "steel": Substance(density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless")),
+    "wood": Substance(
+        density=650.0, color=(0.72, 0.53, 0.34), words=("wood", "wooden", "timber", "mdf"), roughness=0.7, grain=True
+    ),
+    "oak": Substance(density=710.0, color=(0.76, 0.60, 0.39), words=("oak", "oaken"), roughness=0.7, grain=True),
+    "pine": Substance(density=510.0, color=(0.86, 0.71, 0.48), words=("pine",), roughness=0.7, grain=True),
+    "walnut": Substance(density=640.0, color=(0.36, 0.24, 0.16), words=("walnut",), roughness=0.7, grain=True),
+    "steel": Substance(
+        density=7850.0, color=(0.62, 0.64, 0.67), words=("steel", "iron", "stainless"), roughness=0.35, metallic=1.0
+    ),
     "metal": Substance(
         density=2700.0,
         color=(0.70, 0.72, 0.75),
         words=("metal", "metallic", "aluminium", "aluminum"),
+        roughness=0.35,
+        metallic=1.0,
     ),
-    "brass": Substance(density=8500.0, color=(0.78, 0.62, 0.26), words=("brass",)),
-    "copper": Substance(density=8960.0, color=(0.72, 0.45, 0.30), words=("copper",)),
-    "chrome": Substance(density=7850.0, color=(0.82, 0.84, 0.86), words=("chrome", "chromed")),
-    "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon")),
-    "glass": Substance(density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent")),
-    "mirror": Substance(density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored")),
-    "rubber": Substance(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",)),
-    "ceramic": Substance(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain")),
-    "cardboard": Substance(density=700.0, color=(0.76, 0.62, 0.45), words=("cardboard", "paper")),
+    "brass": Substance(density=8500.0, color=(0.78, 0.62, 0.26), words=("brass",), roughness=0.3, metallic=1.0),
+    "copper": Substance(density=8960.0, color=(0.72, 0.45, 0.30), words=("copper",), roughness=0.3, metallic=1.0),
+    "chrome": Substance(
+        density=7850.0, color=(0.82, 0.84, 0.86), words=("chrome", "chromed"), roughness=0.1, metallic=1.0
+    ),
+    "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon"), roughness=0.45),
+    "glass": Substance(
+        density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent"), roughness=0.05, opacity=0.35
+    ),
+    "mirror": Substance(
+        density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored"), roughness=0.02, metallic=1.0
+    ),
+    "rubber": Substance(density=1100.0, color=(0.15, 0.15, 0.16), words=("rubber",), roughness=0.95),
+    "ceramic": Substance(density=2400.0, color=(0.95, 0.95, 0.93), words=("ceramic", "porcelain"), roughness=0.15),
+    "cardboard": Substance(density=700.0, color=(0.76, 0.62, 0.45), words=("cardboard", "paper"), roughness=0.95),
 }
 """Keyed by name."""
 
@@ -73,6 +101,35 @@ COLORS: dict[str, RGB] = _PLAIN | {
 """Keyed by name, `red` or `dark red`."""
 COLOR_WORDS = {name: name for name in COLORS} | {"golden": "gold", "gray": "grey"}
 """Every word for a colour -> its name."""
+
+
+_BARE_COLORS = ("gold", "silver")
+"""Colours that are of metal, not of paint."""
+_PAINT_ROUGHNESS = 0.4
+
+
+@cache
+def surface_of(material: str, color: str | RGB | None) -> Material:
+    """Return what a material looks like: bare, or painted where a colour is named; the same object every time."""
+    substance = MATERIALS[material]
+    red, green, blue = substance.color if color is None else COLORS[color] if isinstance(color, str) else color
+    bare = color is None or color in _BARE_COLORS
+    return Material(
+        name=material if color is None else f"{color if isinstance(color, str) else 'painted'} {material}",
+        color=(red, green, blue, substance.opacity),
+        roughness=substance.roughness if bare or substance.opacity < 1.0 else _PAINT_ROUGHNESS,
+        metallic=1.0 if color in _BARE_COLORS else substance.metallic if color is None else 0.0,
+        texture=wood_grain() if substance.grain and color is None else None,
+    )
+
+
+def of_one_material(material: Material, vertices: FloatArray, faces: IntArray) -> Appearance:
+    """Return the appearance of a mesh, vertices (V, 3) [m] and faces (F, 3), that is of one material all over."""
+    return Appearance(
+        materials=(material,),
+        material_of_face=np.zeros(len(faces), dtype=np.int64),
+        uv=None if material.texture is None else grain_coordinates(vertices, faces),
+    )
 
 
 def color_of(material: str, color: str | None) -> RGB:

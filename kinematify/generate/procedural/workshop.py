@@ -10,22 +10,25 @@ import numpy as np
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
 from kinematify.generate.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
-from kinematify.generate.procedural.materials import MATERIALS, color_of
+from kinematify.generate.procedural.grain import grain_coordinates
+from kinematify.generate.procedural.materials import MATERIALS, color_of, surface_of
 from kinematify.generate.procedural.solids import union
 from kinematify.generate.procedural.styles import styled
+from kinematify.robot.appearance import Appearance
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from typing import Any
 
     from manifold3d import Manifold
 
-    from kinematify.generate.procedural.materials import RGB
     from kinematify.generate.procedural.solids import Point
     from kinematify.robot.robot import Mimic
 
 
+Look = tuple[str, str | None]
+"""Material, and colour where it is not the material's own."""
 _MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
 
 
@@ -35,19 +38,25 @@ class Workshop:
     Everything is built closed, at zero; `rest` values say where it stands when it is shown.
     """
 
-    def __init__(self, family: str, *, material: str, color: str | None = None) -> None:
+    def __init__(
+        self, family: str, *, material: str, color: str | None = None, handles: Look = ("metal", None)
+    ) -> None:
         """Begin an object.
 
         Args:
             family: Name of the family.
             material: Of bodies that name none.
             color: Of bodies that name none; the material's own if absent.
+            handles: Material and colour of handles.
         """
         self._family = family
         self._material = material
         self._color = color
         self._solids: dict[str, Manifold] = {}
-        self._looks: dict[str, tuple[str, RGB]] = {}
+        self._handles = handles
+        self._looks: dict[str, Look] = {}
+        self._painted: dict[int, Look] = {}
+        """By the number that a solid keeps through all that is done to it."""
         self._joints: list[BlueprintJoint] = []
         self._rest: dict[str, float] = {}
         self._loops: list[BlueprintLoop] = []
@@ -58,8 +67,18 @@ class Workshop:
             raise ValueError(f"The family {self._family} makes two bodies named {name}.")
         made_of = material or self._material
         self._solids[name] = union(*solids)
-        self._looks[name] = made_of, color_of(made_of, color or (None if material else self._color))
+        self._looks[name] = made_of, color or (None if material else self._color)
         return name
+
+    def painted(self, *solids: Manifold, material: str, color: str | None = None) -> Sequence[Manifold]:
+        """Let solids look other than the body that they become part of; returns them."""
+        for solid in solids:
+            self._painted.update(dict.fromkeys(solid.to_mesh64().run_original_id, (material, color)))
+        return solids
+
+    def as_handle(self, *solids: Manifold) -> Sequence[Manifold]:
+        """Let solids look like the handles of this object; returns them."""
+        return self.painted(*solids, material=self._handles[0], color=self._handles[1])
 
     @property
     def moves(self) -> bool:
@@ -190,11 +209,22 @@ class Workshop:
     def _made(self, name: str) -> Part:
         mesh = self._solids[name].to_mesh64()
         material, color = self._looks[name]
+        vertices, faces = mesh.vert_properties[:, :3], mesh.tri_verts.astype(np.int64)
+        looks = [self._painted.get(number, self._looks[name]) for number in mesh.run_original_id]
+        kinds = list(dict.fromkeys([self._looks[name], *looks]))  # what it is made of comes first
+        runs = np.diff(mesh.run_index) // 3
+        materials = tuple(surface_of(*look) for look in kinds)
+        shift = 0.37 * list(self._solids).index(name)
         return Part(
             name=name,
-            vertices=mesh.vert_properties[:, :3],
-            faces=mesh.tri_verts,
-            color=color,
+            vertices=vertices,
+            faces=faces,
+            color=color_of(material, color),
+            appearance=Appearance(
+                materials=materials,
+                material_of_face=np.repeat([kinds.index(look) for look in looks], runs),
+                uv=grain_coordinates(vertices, faces, shift=shift) if any(item.texture for item in materials) else None,
+            ),
             density=MATERIALS[material].density,
         )
 

@@ -16,7 +16,7 @@ from kinematify.errors import InputError
 from kinematify.generate.blueprint import BlueprintJoint
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.words import STOP_WORDS, UNITS, singular
-from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS, color_of
+from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS, of_one_material, surface_of
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ PLACES = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "top": (0, 0, 1), "upper": (0, 0, 1), "uppermost": (0, 0, 1),
     "bottom": (0, 0, -1), "lower": (0, 0, -1), "lowest": (0, 0, -1), "front": (0, -1, 0), "rear": (0, 1, 0),
 }  # fmt: skip
+_HANDLES = ("handle", "knob", "pull", "grip")
+"""Words for handles, which are no parts of their own."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
 _LINKS = ("that", "which", "whose", "is", "are", "to", "can", "the", "in", "on", "at")  # between a noun and its verb
@@ -242,6 +244,11 @@ class PartReader:
 
     def _look_taken(self, k: int, end: int, material: str, color: str) -> None:
         where = range(k, end)
+        if self.reading.text(end) in _HANDLES and self.reading.parameter("handle") and self.noun_at(end) is None:
+            for name, value in (("handle_material", material), ("handle_color", color)):
+                if value:
+                    self.reading.take(name, value, f"handles: {value}", *where)
+            return
         stems = self._looked_at(k, end)
         if stems:
             self.require(
@@ -312,10 +319,25 @@ def _goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
 
 
 def _looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
-    rgb = color_of(material, color or None)
+    """Paint parts, or make them of another material; handles keep their own look."""
 
     def look(part: Part) -> Part:
-        return replace(part, color=rgb, density=MATERIALS[material].density if material else part.density)
+        appearance = part.appearance
+        assert appearance is not None, "what is generated has an appearance"
+        own = appearance.materials[0].name.split()[-1]  # behind its colour
+        surface = surface_of(material or own, color or None)
+        new = of_one_material(surface, part.vertices, part.faces)
+        return replace(
+            part,
+            color=surface.color[:3],
+            density=MATERIALS[material].density if material else part.density,
+            appearance=replace(
+                new,
+                materials=(surface, *appearance.materials[1:]),
+                material_of_face=appearance.material_of_face,
+                uv=appearance.uv if new.uv is None else new.uv,
+            ),
+        )
 
     return replace(blueprint, parts=tuple(look(part) if part.name in names else part for part in blueprint.parts))
 

@@ -95,7 +95,7 @@ def add_drawer(workshop: Workshop, name: str, parent: str, opening: Opening, fit
     workshop.add(parent, *_kickers(opening, rim + clearance, edge + wall))
     front = -clearance - opening.wall
     middle = (0.5 * (opening.left + opening.right), front, 0.5 * (opening.bottom + opening.top))
-    solids = handle(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width))
+    solids = workshop.as_handle(*handle(fitting.grip, middle, along="x", length=min(0.16, 0.5 * opening.width)))
     workshop.body(name, panel(opening, clearance), inner, *solids)
     travel = 0.8 * (opening.depth - opening.wall)
     workshop.slides(name, parent, (0, -1, 0), middle, (0.0, travel), rest=fitting.rest)
@@ -148,7 +148,8 @@ def add_door(
     free = at_hinge + sign * (opening.width - 0.05)
     level = 0.5 * (opening.bottom + opening.top)
     length = min(0.2, 0.4 * opening.height)
-    solids = [panel(opening, clearance), *handle(fitting.grip, (free, front, level), along="z", length=length)]
+    grip = handle(fitting.grip, (free, front, level), along="z", length=length)
+    solids = [panel(opening, clearance), *workshop.as_handle(*grip)]
     pivot = (
         at_hinge if outermost else at_hinge + sign * 0.5 * (clearance + _REVEAL),
         back if outermost else front,
@@ -185,7 +186,8 @@ def add_flap(workshop: Workshop, name: str, parent: str, opening: Opening, fitti
     front, back = -clearance - opening.wall, -clearance
     middle = 0.5 * (opening.left + opening.right)
     grip = (middle, front, opening.top - min(0.05, 0.15 * opening.height))
-    solids = [panel(opening, clearance), *handle(fitting.grip, grip, along="x", length=0.7 * opening.width)]
+    bar = handle(fitting.grip, grip, along="x", length=0.7 * opening.width)
+    solids = [panel(opening, clearance), *workshop.as_handle(*bar)]
     pivot = (middle, back, opening.bottom)
     if hinge == "barrel":
         pivot = (middle, 0.5 * (front + back), opening.bottom - _BARREL[0] - clearance)
