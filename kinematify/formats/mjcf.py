@@ -171,9 +171,14 @@ def _add_contact(document: _Element, content: Content) -> None:
 
 def _add_followers(document: _Element, content: Content) -> None:
     followers = [joint for joint in content.robot.joints if joint.mimic is not None and _moves(joint)]
-    if not followers:
+    if not followers and not content.robot.loops:
         return
     equality = etree.SubElement(document, "equality")
+    for loop in content.robot.loops:
+        (first, second), (anchor, _) = loop.links, loop.points
+        etree.SubElement(
+            equality, "connect", name=loop.name, body1=body_name(first), body2=body_name(second), anchor=numbers(anchor)
+        )
     for joint in followers:
         mimic = joint.mimic
         assert mimic is not None

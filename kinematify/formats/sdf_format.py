@@ -40,6 +40,12 @@ def write_sdf(content: Content, out: Path, *, free: bool) -> tuple[str, ...]:
         _add_link(model, link, poses[link.name], meshes)
     for joint in content.robot.joints:
         _add_joint(model, joint)
+    for loop in content.robot.loops:
+        (first, second), (_, point) = loop.links, loop.points
+        closing = etree.SubElement(model, "joint", name=loop.name, type="ball")
+        etree.SubElement(closing, "pose").text = f"{numbers(point)} 0 0 0"  # in the frame of the child
+        etree.SubElement(closing, "parent").text = body_name(first)
+        etree.SubElement(closing, "child").text = body_name(second)
     etree.ElementTree(document).write(out, pretty_print=True, xml_declaration=True, encoding="utf-8")
     return tuple(told_renaming(content))
 

@@ -54,18 +54,14 @@ class BlueprintJoint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BlueprintLoop:
-    """A pin that two parts share besides the joints of the tree; world frame. It closes a chain of joints."""
+    """A pin that two parts share besides the joints of the tree: it closes a chain of joints."""
 
     one: str
     other: str
-    axis: FloatArray
-    """Unit direction, shape (3,). Read-only."""
     pivot: FloatArray
-    """A point on the pin [m], shape (3,). Read-only."""
+    """A point on the pin, world frame [m], shape (3,). Read-only."""
 
     def __post_init__(self) -> None:
-        axis = np.asarray(self.axis, dtype=np.float64)
-        object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
         object.__setattr__(self, "pivot", read_only(np.asarray(self.pivot), np.float64))
 
 
@@ -127,9 +123,7 @@ class Blueprint:
             )
         parts = tuple(_placed(part, T_new_old[part.name]) for part in self.parts)
         loops = tuple(
-            replace(loop, axis=T[:3, :3] @ loop.axis, pivot=T[:3, :3] @ loop.pivot + T[:3, 3])
-            for loop in self.loops
-            for T in (T_new_old[loop.one],)
+            replace(loop, pivot=(T_new_old[loop.one] @ np.append(loop.pivot, 1.0))[:3]) for loop in self.loops
         )
         return replace(self, parts=parts, joints=tuple(joints), loops=loops)
 

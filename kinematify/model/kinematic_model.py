@@ -14,7 +14,7 @@ from kinematify.robot.robot import Link, Robot
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Inertial, Joint
+    from kinematify.robot.robot import Inertial, Joint, LoopJoint
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,6 +50,8 @@ class KinematicModel:
     name: str
     links: tuple[ModelLink, ...]
     joints: tuple[Joint, ...]
+    loops: tuple[LoopJoint, ...] = ()
+    """What closes chains of joints besides."""
 
     @cached_property
     def link_by_name(self) -> dict[str, ModelLink]:
@@ -60,7 +62,7 @@ class KinematicModel:
     def robot(self) -> Robot:
         """The tree with its masses, without shapes: for forward kinematics and whatever else needs no mesh."""
         links = tuple(Link(name=link.name, inertial=link.inertial) for link in self.links)
-        return Robot(name=self.name, links=links, joints=self.joints)
+        return Robot(name=self.name, links=links, joints=self.joints, loops=self.loops)
 
     @property
     def root(self) -> str:

@@ -65,6 +65,7 @@ def model_robot(model: KinematicModel) -> Robot:
         name=model.name,
         links=tuple(_link(link, np.round(colors[link.name], 4), taken) for link in model.links),
         joints=model.joints,
+        loops=model.loops,
     )
 
 

@@ -13,13 +13,14 @@ from kinematify.model.output import SOURCE_FILE
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.robot.obj_file import write_obj
+from kinematify.robot.robot import LoopJoint
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import Config
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.blueprint import Blueprint, BlueprintLoop
     from kinematify.model.kinematic_model import KinematicModel
 
 PARTS_FOLDER = "parts"
@@ -52,7 +53,17 @@ def true_model(blueprint: Blueprint, config: Config) -> KinematicModel:
     followers = {
         joint.child: replace(joint.mimic, joint=names[joint.mimic.joint]) for joint in blueprint.joints if joint.mimic
     }
-    return replace(model, joints=tuple(replace(j, mimic=followers.get(j.child)) for j in model.joints))
+    return replace(
+        model,
+        joints=tuple(replace(j, mimic=followers.get(j.child)) for j in model.joints),
+        loops=tuple(_closed(loop, model) for loop in blueprint.loops),
+    )
+
+
+def _closed(loop: BlueprintLoop, model: KinematicModel) -> LoopJoint:
+    links = loop.one, loop.other
+    one, other = (loop.pivot - model.link_by_name[link].T_world_link[:3, 3] for link in links)
+    return LoopJoint(name=f"{loop.other}_loop", links=links, points=(one, other))
 
 
 def write_parts(blueprint: Blueprint, folder: Path) -> None:

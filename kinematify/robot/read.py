@@ -10,7 +10,7 @@ import numpy as np
 
 from kinematify.errors import DescriptionError
 from kinematify.robot.joint_type import FREE_KINDS, JointType
-from kinematify.robot.robot import Inertial, Joint, Link, Mimic, Robot
+from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Mimic, Robot
 from kinematify.robot.up_axis import upright_reading
 from kinematify.robot.urdf_geometry import geometry_source
 from kinematify.robot.urdf_numbers import line_of, number, optional_number, origin_transform, vector
@@ -74,6 +74,7 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
         name=element.get("name") or path.stem,
         links=_links(element, source, geometry),
         joints=joints,
+        loops=tuple(_loop(item) for item in element.findall("loop_joint")),
         path=path.resolve(),
         notes=tuple(note for joint in joints if (note := _note(joint))),
     )
@@ -153,6 +154,20 @@ def _joint(element: _Element) -> Joint:
         friction=optional_number(element, "dynamics", "friction", where),
         line=line_of(element),
     )
+
+
+def _loop(element: _Element) -> LoopJoint:
+    name = _name(element)
+    where = f"loop_joint {name}"
+    known = {link.get("name") for link in element.getparent().findall("link")}
+    ends = [element.find(tag) for tag in ("link1", "link2")]
+    first, second = (None if end is None else end.get("link") for end in ends)
+    if first not in known or second not in known or first is None or second is None:
+        raise DescriptionError(
+            f"The {where} joins {first} and {second}. Name two links of the file in link1 and link2."
+        )
+    one, other = (vector(end, "xyz", (0.0, 0.0, 0.0), where) for end in ends if end is not None)
+    return LoopJoint(name=name, links=(first, second), points=(one, other))
 
 
 def _kind(element: _Element, declared: str, where: str) -> JointType:

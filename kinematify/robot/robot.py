@@ -197,6 +197,19 @@ class Joint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class LoopJoint:
+    """Two links that share a point besides the joints of the tree: it closes a chain of joints.
+
+    In a URDF it is a `loop_joint`, which Isaac Sim reads; readers that know trees alone leave it out.
+    """
+
+    name: str
+    links: tuple[str, str]
+    points: tuple[FloatArray, FloatArray]
+    """The point in the frame of either link [m], each of shape (3,)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Robot:
     """A kinematic tree; links and joints in the order of the document."""
 
@@ -204,6 +217,8 @@ class Robot:
     links: tuple[Link, ...]
     joints: tuple[Joint, ...]
     """As many as links less one: one root, no cycle."""
+    loops: tuple[LoopJoint, ...] = ()
+    """What closes chains besides."""
     path: Path = Path()
     """The URDF file, absolute; the working directory for what was read from none."""
     notes: tuple[str, ...] = ()

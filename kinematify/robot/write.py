@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.robot import Inertial, Joint, Link, Robot, Shape
+    from kinematify.robot.robot import Inertial, Joint, Link, LoopJoint, Robot, Shape
 
 
 def write_robot(robot: Robot, path: Path) -> Path:
@@ -43,6 +43,8 @@ def robot_element(robot: Robot) -> _Element:
         _add_link(element, link)
     for joint in robot.joints:
         _add_joint(element, joint)
+    for loop in robot.loops:
+        _add_loop(element, loop)
     return element
 
 
@@ -106,6 +108,12 @@ def _add_joint(robot: _Element, joint: Joint) -> None:
     if joint.mimic is not None:
         rule = {"multiplier": numbers([joint.mimic.multiplier]), "offset": numbers([joint.mimic.offset])}
         etree.SubElement(element, "mimic", {"joint": joint.mimic.joint, **rule})
+
+
+def _add_loop(robot: _Element, loop: LoopJoint) -> None:
+    element = etree.SubElement(robot, "loop_joint", name=loop.name, type="spherical")
+    for tag, link, point in zip(("link1", "link2"), loop.links, loop.points, strict=True):
+        etree.SubElement(element, tag, link=link, xyz=numbers(point), rpy="0 0 0")
 
 
 def _add_values(parent: _Element, tag: str, values: dict[str, float | None]) -> None:

@@ -37,7 +37,7 @@ _CHILDREN = {
 }  # fmt: skip
 """What URDF defines; below `transmission`, `gazebo` and `sensor` anything may stand."""
 _EXTENSIONS = {
-    "robot": {"mujoco", "ros2_control", "deformable", "drake", "isaac_sim", "collision_filter"},
+    "robot": {"mujoco", "ros2_control", "deformable", "drake", "isaac_sim", "collision_filter", "loop_joint"},
     "link": {"contact", "self_filter", "audio_source", "gravity", "kinematic", "surface", "self_collision_checking"},
     "joint": {"hardwareInterface", "joint_properties"},
     "collision": {"verbose"},

@@ -157,7 +157,7 @@ def add_cantilever_tray(place: Place) -> None:
     frame.body(name, box_of_it - union(*holes))
     back = Mimic(joint=first, multiplier=-1.0, offset=0.0)
     frame.turns(name, first, (-sign, 0, 0), (0.0, *upper), (-turn, 0.0), follows=back)
-    frame.closes(second, name, (1, 0, 0), (0.0, *other))
+    frame.closes(second, name, (0.0, *other))
 
 
 def _bar(x: float, start: tuple[float, float], end: tuple[float, float]) -> Manifold:

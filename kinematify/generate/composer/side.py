@@ -152,9 +152,9 @@ class SideWorkshop(Workshop):
         """See `Workshop.slides`."""
         self._whole.slides(child, parent, self._place[:, :3] @ axis, self._point(pivot), limits, rest=rest)
 
-    def closes(self, one: str, other: str, axis: Point, pivot: Point) -> None:
+    def closes(self, one: str, other: str, pivot: Point) -> None:
         """See `Workshop.closes`."""
-        self._whole.closes(one, other, self._place[:, :3] @ axis, self._point(pivot))
+        self._whole.closes(one, other, self._point(pivot))
 
     def above_floor(self, point: Point) -> float:
         """Height of a point in the object [m]."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _PIXELS = 256
 _LENGTH, _WIDTH = 0.9, 0.3  # of the picture on a board, along and across the grain [m]
 _DARKEST = 0.62
-_RINGS = 5  # dark lines across the picture
+_RINGS = 8  # dark lines across the picture
 _FIBRES = 40.0  # how much longer fibres are than wide, in pixels
 
 
@@ -25,7 +25,7 @@ def wood_grain() -> Texture:
     ticks = 2.0 * np.pi * np.arange(_PIXELS) / _PIXELS
     u, v = np.meshgrid(ticks, ticks)
     # All waves have whole numbers of periods, so that the picture has no seam.
-    bent = v + 0.5 * np.sin(u + 0.6 * np.sin(v)) + 0.2 * np.sin(2.0 * u - 3.0 * v) + 0.3 * np.sin(2.0 * v)
+    bent = v + 0.35 * np.sin(u + 0.6 * np.sin(v)) + 0.12 * np.sin(2.0 * u - 3.0 * v) + 0.3 * np.sin(2.0 * v)
     rings = (0.5 + 0.5 * np.sin(_RINGS * bent)) ** 3
     waves = np.fft.fft2(np.random.default_rng(0).normal(size=(_PIXELS, _PIXELS)))
     along = np.fft.fftfreq(_PIXELS)[None, :]

@@ -155,9 +155,9 @@ class Workshop:
             rest,
         )
 
-    def closes(self, one: str, other: str, axis: Point, pivot: Point) -> None:
-        """Say that two bodies share a pin besides the joints of the tree, along `axis` through `pivot` [m]."""
-        self._loops.append(BlueprintLoop(one=one, other=other, axis=np.asarray(axis), pivot=np.asarray(pivot)))
+    def closes(self, one: str, other: str, pivot: Point) -> None:
+        """Say that two bodies share a pin at `pivot` [m] besides the joints of the tree."""
+        self._loops.append(BlueprintLoop(one=one, other=other, pivot=np.asarray(pivot)))
 
     def _join(self, joint: BlueprintJoint, rest: float) -> None:
         self._joints.append(joint)

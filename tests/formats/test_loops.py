@@ -1,0 +1,70 @@
+"""Closed chains of joints in every format: told in a URDF, closed where the format can close them."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+from lxml import etree
+
+from kinematify.config import load_config
+from kinematify.errors import DescriptionError
+from kinematify.formats.export import export
+from kinematify.generate.procedural.request import from_text
+from kinematify.pipeline.generate import write_blueprint
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import forward_kinematics
+
+
+@pytest.fixture(scope="module")
+def toolbox(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("toolbox")
+    write_blueprint(from_text("a toolbox with two cantilever trays").build(), folder, load_config())
+    return folder / "model.urdf"
+
+
+def test_both_links_of_a_loop_meet_at_every_value_of_the_leader(toolbox):
+    robot = read_robot(toolbox, geometry="none")
+    assert len(robot.loops) == 2
+    for share in (0.0, 0.4, 1.0):
+        q = {joint.name: share * joint.upper for joint in robot.joints if joint.leads}
+        poses = forward_kinematics(robot, q)
+        for loop in robot.loops:
+            ends = [
+                (poses[link] @ np.append(point, 1.0))[:3] for link, point in zip(loop.links, loop.points, strict=True)
+            ]
+            np.testing.assert_allclose(*ends, atol=1e-6)
+
+
+def test_mujoco_closes_the_loop_by_itself(toolbox, tmp_path):
+    export(toolbox, "mjcf", tmp_path / "toolbox.xml")
+    document = etree.parse(tmp_path / "toolbox.xml")
+    assert len(document.findall(".//equality/connect")) == 2
+    # Without the followers' equations the pins alone must hold the parallelogram.
+    for follows in document.findall(".//equality/joint"):
+        follows.getparent().remove(follows)
+    (tmp_path / "alone.xml").write_bytes(etree.tostring(document))
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "alone.xml"))
+    data = mujoco.MjData(model)
+    leader, follower = (model.joint(f"cantilever_tray_1_arm_{k}_joint") for k in (1, 2))
+    for _ in range(3000):
+        data.qfrc_applied[leader.dofadr[0]] = 3.0
+        mujoco.mj_step(model, data)
+    moved = float(data.qpos[leader.qposadr[0]])
+    assert moved > 0.5
+    assert float(data.qpos[follower.qposadr[0]]) == pytest.approx(moved, abs=0.05)
+
+
+def test_sdf_has_a_ball_joint(toolbox, tmp_path):
+    export(toolbox, "sdf", tmp_path / "toolbox.sdf")
+    joints = etree.parse(tmp_path / "toolbox.sdf").findall(".//joint[@type='ball']")
+    assert {joint.findtext("child") for joint in joints} == {"cantilever_tray_1", "cantilever_tray_2"}
+
+
+def test_a_loop_of_a_link_that_is_not_there_is_refused(toolbox, tmp_path):
+    document = etree.parse(toolbox)
+    document.find("loop_joint/link2").set("link", "nowhere")
+    broken = toolbox.with_name("broken.urdf")
+    document.write(broken)
+    with pytest.raises(DescriptionError, match="nowhere"):
+        read_robot(broken)
