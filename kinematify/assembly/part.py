@@ -42,6 +42,8 @@ class Part:
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))
         object.__setattr__(self, "faces", read_only(self.faces, np.int64))
+        if self.appearance is not None and len(self.appearance.material_of_face) != len(self.faces):
+            object.__setattr__(self, "appearance", None)  # it is of other faces than those that replaced them
 
     @cached_property
     def mesh_hash(self) -> str:

@@ -36,6 +36,8 @@ _SKY, _LAMP, _GLOSS = 0.80, 0.46, 0.07  # shares of the light; above 1 in all, s
 _UNDERSIDE = 0.58  # light of the sky on faces that look down, relative to those that look up
 _LAMP_IN_DARK = 0.35  # share of the lamp that reaches where the sky does not
 _DEPTH_STEP = 0.004  # of the scene's size: a larger step in depth from pixel to pixel is an edge
+_PANES = 6  # a pane of glass has two surfaces
+_BEHIND = 1e-5  # of the scene's size: where a ray goes on behind a surface
 _OUTLINE_DIRECTIONS = 240
 _OUTLINE_VERTICES = 30000
 
@@ -51,7 +53,7 @@ class PosedMesh:
     color: FloatArray
     """sRGB in [0, 1], shape (3,)."""
     appearance: Appearance | None = None
-    """Of the faces, in place of the colour; opacity is not shown."""
+    """Of the faces, in place of the colour."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -147,7 +149,10 @@ class _Painter:
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
     def _view(self, pixels: FloatArray) -> _View:
-        origins, directions = self.camera.rays(pixels)
+        return self._seen(pixels, *self.camera.rays(pixels))
+
+    def _seen(self, pixels: FloatArray, origins: FloatArray, directions: FloatArray) -> _View:
+        """What rays meet that need not begin at the camera."""
         hits = self.rays.first_hits(origins, directions)
         met = hits.met
         face = hits.face[met]
@@ -157,8 +162,11 @@ class _Painter:
         normals[met] = np.where(away[:, None], -smooth, smooth)
         return _View(pixels, origins, directions, hits, normals)
 
-    def _colors(self, view: _View, light: FloatArray) -> FloatArray:
-        """Linear colour of what each ray meets: a mesh, the floor or the background, shape (n, 3)."""
+    def _colors(self, view: _View, light: FloatArray, panes: int = _PANES) -> FloatArray:
+        """Linear colour of what each ray meets: a mesh, the floor or the background, shape (n, 3).
+
+        What is not opaque shows what is behind it, through `panes` surfaces at most.
+        """
         shadow = self.floor.seen(view.origins, view.directions, view.pixels, self.camera)
         colors = linear_of(BACKGROUND) * (1.0 - _FLOOR_SHADOW * shadow)[:, None]
         met = view.hits.met
@@ -169,20 +177,36 @@ class _Painter:
         cosine = np.einsum("ij,ij->i", normal, halfway) / np.sqrt(np.einsum("ij,ij->i", halfway, halfway))
         matt = _SKY * upward * sky + _LAMP * lamp * (_LAMP_IN_DARK + (1.0 - _LAMP_IN_DARK) * sky)
         gloss = _GLOSS * np.clip(cosine, 0.0, 1.0) ** 40 * sky
-        colors[met] = self._surface_colors(view) * matt[:, None] + gloss[:, None]
+        surfaces, opacity = self._surfaces(view)
+        colors[met] = surfaces * matt[:, None] + gloss[:, None]
+        clear = opacity < 1.0
+        if panes and clear.any():
+            share, at = opacity[clear, None], np.flatnonzero(met)[clear]
+            colors[at] = share * colors[at] + (1.0 - share) * self._behind(view, at, panes)
         return colors
 
-    def _surface_colors(self, view: _View) -> FloatArray:
-        """Linear colour of the surfaces that rays meet, without light, shape (number met, 3)."""
+    def _behind(self, view: _View, at: IntArray, panes: int) -> FloatArray:
+        """Linear colour of what is seen through the surfaces that some rays meet, shape (len(at), 3)."""
+        along = view.directions[at]
+        behind = self._seen(view.pixels[at], view.points[at] + _BEHIND * self.rays.size * along, along)
+        light, met = np.ones(len(at)), np.flatnonzero(behind.hits.met)
+        sets = met % len(self.sky.sets)
+        light[met] = self.sky.open_share(behind.points[met], behind.normals[met], sets)
+        return self._colors(behind, light, panes - 1)
+
+    def _surfaces(self, view: _View) -> tuple[FloatArray, FloatArray]:
+        """Linear colour and opacity of what rays meet, without light, shapes (number met, 3) and (number met,)."""
         met = view.hits.met
         mesh = view.hits.mesh[met]
         colors: FloatArray = self.colors[mesh]
+        opacity = np.ones(len(mesh))
         for index, posed in enumerate(self.meshes):
             at = np.flatnonzero(mesh == index)
             if posed.appearance is not None and len(at):
                 face = view.hits.face[met][at] - self.first_faces[index]
-                colors[at] = linear_of(posed.appearance.colors_at(face, view.hits.barycentric[met][at])[:, :3])
-        return colors
+                seen = posed.appearance.colors_at(face, view.hits.barycentric[met][at])
+                colors[at], opacity[at] = linear_of(seen[:, :3]), seen[:, 3]
+        return colors, opacity
 
     @cached_property
     def _lamp(self) -> FloatArray:

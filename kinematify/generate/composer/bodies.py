@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kinematify.generate.composer.side import side_of
 from kinematify.generate.procedural.pieces.fronts import Opening
-from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.generate.procedural.solids import box, cylinder, rounded_box
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -48,7 +48,7 @@ def _block(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     """A closed body; rooms are cut where something closes them."""
     width, depth, height = size
     foot = min(0.3 * height, 0.04)  # solid, for what is screwed in from below
-    workshop.body(BODY, box((-0.5 * width, 0, 0), (0.5 * width, depth, height)))
+    workshop.body(BODY, rounded_box((-0.5 * width, 0, 0), (0.5 * width, depth, height), 0.8 * wall))
     low = Opening(left=-0.4 * depth, right=0.4 * depth, bottom=0.0, top=foot, depth=foot, wall=wall)
     upright, flat = _area(width, foot, height, depth, wall), _area(width, 0.0, depth, height, wall)
     beside = _area(depth, foot, height, min(0.4 * width, wall), wall)
@@ -80,11 +80,12 @@ def _table(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     width, depth, height = size
     leg, apron = max(0.05, wall), 0.28 * height
     legs = [
-        box((x, y, 0), (x + leg, y + leg, height))
+        rounded_box((x, y, 0), (x + leg, y + leg, height), 0.5 * wall)
         for x in (-0.5 * width, 0.5 * width - leg)
         for y in (0.0, depth - leg)
     ]
-    workshop.body(BODY, box((-0.5 * width, 0, height - apron), (0.5 * width, depth, height)), *legs)
+    top = rounded_box((-0.5 * width, 0, height - apron), (0.5 * width, depth, height), 0.5 * wall)
+    workshop.body(BODY, top, *legs)
     return {
         "front": side_of("front", (0, 0, 0), _area(width - 2 * leg, height - apron, height, depth, wall)),
         "top": side_of("top", (0, 0, height), _area(width, 0.0, depth, 2 * wall, wall), hollow=False),
@@ -98,7 +99,7 @@ def _top(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     """A board at its height, which stands on what is folded out below it."""
     width, depth, height = size
     thick = max(wall, 0.025)
-    workshop.body(BODY, box((-0.5 * width, 0, height - thick), (0.5 * width, depth, height)))
+    workshop.body(BODY, rounded_box((-0.5 * width, 0, height - thick), (0.5 * width, depth, height), 0.04))
     return {
         "top": side_of("top", (0, 0, height), _area(width, 0.0, depth, thick, 0.5 * thick), hollow=False),
         "bottom": side_of("bottom", (0, depth, height - thick), _area(width, 0.0, depth, thick, 0.02), hollow=False),

@@ -260,7 +260,7 @@ def _bail(place: Place) -> None:
         place.workshop.cut(place.parent, bore(pin, gap, (low - 1e-3, -rise, z), (top + 1e-3, -rise, z)))
         solids.append(rod(pin, (outer, -rise, z), (outer, -high, z)))
         solids.append(cylinder(pin, (inner - sign * ear, -rise, z), (outer, -rise, z)))
-    place.workshop.body(place.name, *solids)
+    place.workshop.body(place.name, *place.workshop.as_handle(*solids))
     place.workshop.turns(place.name, place.parent, (1, 0, 0), (x, -rise, z), (-1.3, 1.3), rest=place.fitting.rest)
 
 
@@ -270,8 +270,9 @@ def _push_handle(place: Place) -> None:
     low = max(place.area.bottom + 0.02, place.area.top - 0.08)
     ends = [(sign * 0.42 * place.area.width, out, top) for sign in (-1.0, 1.0)]
     for x, _, _ in ends:
-        place.workshop.add(BODY, rod(0.012, (x, 0.002, low), (x, out, low)), rod(0.012, (x, out, low), (x, out, top)))
-    place.workshop.add(BODY, rod(0.014, *ends))
+        posts = rod(0.012, (x, 0.002, low), (x, out, low)), rod(0.012, (x, out, low), (x, out, top))
+        place.workshop.add(BODY, *place.workshop.as_handle(*posts))
+    place.workshop.add(BODY, *place.workshop.as_handle(rod(0.014, *ends)))
 
 
 def _angles(count: int) -> list[float]:

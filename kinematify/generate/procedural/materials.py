@@ -58,7 +58,7 @@ MATERIALS = {
     ),
     "plastic": Substance(density=1050.0, color=(0.90, 0.90, 0.88), words=("plastic", "abs", "nylon"), roughness=0.45),
     "glass": Substance(
-        density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent"), roughness=0.05, opacity=0.35
+        density=2500.0, color=(0.70, 0.85, 0.90), words=("glass", "glazed", "transparent"), roughness=0.05, opacity=0.3
     ),
     "mirror": Substance(
         density=2500.0, color=(0.80, 0.86, 0.88), words=("mirror", "mirrored"), roughness=0.02, metallic=1.0
