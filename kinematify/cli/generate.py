@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     "--gallery",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Make a page with a picture and the parameters of every category.",
+    help="Make a page with pictures of composed objects and of every category with its parameters.",
 )
 @click.option(
     "--image",
@@ -301,11 +301,12 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, compose
 
 
 def _write_gallery(folder: Path) -> None:
+    from kinematify.generate.composer.examples import SENTENCES
     from kinematify.generate.procedural.families import FAMILIES
     from kinematify.pipeline.gallery import write_gallery
 
     with progress_reporter() as progress:
         page = write_gallery(
-            folder, FAMILIES, command=f"kinematify generate --gallery {folder.as_posix()}", progress=progress
+            folder, FAMILIES, SENTENCES, command=f"kinematify generate --gallery {folder.as_posix()}", progress=progress
         )
-    click.echo(f"{len(FAMILIES)} categories: {page}")
+    click.echo(f"{len(SENTENCES)} sentences, {len(FAMILIES)} categories: {page}")

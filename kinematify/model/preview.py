@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -84,6 +84,26 @@ def draw_pair(model: KinematicModel, config: PreviewConfig) -> Image.Image:
     for index, image in enumerate(images):
         sheet.paste(image, (index * size[0], 0))
     return sheet
+
+
+def draw_steps(model: KinematicModel, groups: Sequence[Sequence[str]], config: PreviewConfig) -> list[Image.Image]:
+    """Return one picture of the model at rest and one more after each group of joints, which has then been moved too.
+
+    Args:
+        model: What to show.
+        groups: Names of joints; each group is moved at once and shown with its arrows.
+        config: Size and quality.
+    """
+    opened = opened_configuration(model, config)
+    scenes, q = [replace(_scene(model, {}, config), glyphs=())], {}
+    for group in groups:
+        q |= {name: opened[name] for name in group}
+        arrows = joint_glyphs(model, q, config)
+        scenes.append(replace(_scene(model, q, config), glyphs=tuple(arrows[name] for name in group)))
+    azimuth = best_azimuth(model, [scenes[0], scenes[-1]], config)
+    size = _panel_size([scenes], azimuth, config)
+    camera = camera_for(scenes, azimuth, config, size=size, margin=_MARGIN)
+    return [render_scene(scene, camera, config) for scene in scenes]
 
 
 def render_story(model: KinematicModel, path: Path, config: PreviewConfig) -> None:

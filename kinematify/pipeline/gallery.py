@@ -1,4 +1,4 @@
-"""A page with every family of the generator: one picture, at rest and moved, and what can be asked for."""
+"""A page with composed objects and every family of the generator: pictures at rest and moved, what can be asked for."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
+from kinematify.generate.procedural.request import from_text
 from kinematify.model.preview import draw_pair
 from kinematify.pipeline.generate import true_model
 
@@ -28,13 +29,19 @@ _BAR = r"\|"  # in a cell of a Markdown table
 
 
 def write_gallery(
-    folder: Path, families: Mapping[str, Family], *, command: str, progress: Callable[[str, float], None]
+    folder: Path,
+    families: Mapping[str, Family],
+    sentences: Sequence[str],
+    *,
+    command: str,
+    progress: Callable[[str, float], None],
 ) -> Path:
     """Write the page and its pictures; what an earlier call wrote is replaced.
 
     Args:
-        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per family.
+        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per sentence and family.
         families: What to show, in this order.
+        sentences: Each becomes a picture, before the families.
         command: What the reader types to make the page again.
         progress: Told the family and the share done.
 
@@ -47,16 +54,23 @@ def write_gallery(
     config = load_config()
     config = config.model_copy(update={"preview": config.preview.model_copy(update=_PANEL)})
     sections = []
+
+    def draw(blueprint: Blueprint, name: str) -> None:
+        picture = draw_pair(true_model(blueprint, config), config.preview)
+        picture.save(folder / PICTURES / f"{name}.webp", quality=_QUALITY, method=6)
+
     try:
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
+        for number, sentence in enumerate(sentences):
+            progress(sentence, 0.5 * number / len(sentences))
+            draw(from_text(sentence).build(), f"composed_{number + 1}")
         for number, (name, family) in enumerate(families.items()):
-            progress(name, number / len(families))
+            progress(name, 0.5 + 0.5 * number / len(families))
             blueprint = build(family, {})
-            picture = draw_pair(true_model(blueprint, config), config.preview)
-            picture.save(folder / PICTURES / f"{name}.webp", quality=_QUALITY, method=6)
+            draw(blueprint, name)
             sections.append(_section(family, blueprint))
         page = folder / PAGE
-        page.write_text("\n".join([_head(families, command), *sections]), encoding="utf-8")
+        page.write_text("\n".join([_head(families, sentences, command), *sections]), encoding="utf-8")
     except OSError as error:
         raise OutputError(
             f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a folder that you may write "
@@ -65,15 +79,24 @@ def write_gallery(
     return page
 
 
-def _head(families: Mapping[str, Family], command: str) -> str:
+def _head(families: Mapping[str, Family], sentences: Sequence[str], command: str) -> str:
     return f"""# Gallery
 
-The {len(families)} families of `kinematify generate`, each with its defaults, at rest and with every joint moved. Red
-arrows turn, blue ones slide. A sentence (`--text`) may use any of the words and say any of the parameters;
-`--category NAME --set KEY=VALUE` takes them as they stand here, and `--seed N` draws those that are not given. The
-joints are those of the object shown; in brackets stands how many {len(_SEEDS)} seeds gave.
+Made by `{command}`. All pictures show an object at rest and with every joint moved. Red arrows turn, blue ones slide.
 
-Made by `{command}`.
+## From a sentence
+
+A sentence asks for an object of a family with what is said of it, or for mechanisms on a body, which are then composed;
+every word is understood, or the sentence is refused.
+
+{_pictures(sentences)}
+
+## Families
+
+The {len(families)} families of `kinematify generate`, each with its defaults. A sentence (`--text`) may use any
+of the words and say any of the parameters; `--category NAME --set KEY=VALUE` takes them as they stand here, and
+`--seed N` draws those that are not given. The joints are those of the object shown; in brackets stands how many
+{len(_SEEDS)} seeds gave.
 
 {", ".join(f"[{name}](#{name})" for name in families)}
 
@@ -81,6 +104,15 @@ Every family has these parameters:
 
 {_table(COMMON)}
 """
+
+
+def _pictures(sentences: Sequence[str]) -> str:
+    """Two sentences in a row of a table, each under its picture."""
+    cells = [
+        f"![{text}]({PICTURES}/composed_{number}.webp)<br>{text}" for number, text in enumerate(sentences, start=1)
+    ]
+    rows = [cells[k : k + 2] for k in range(0, len(cells), 2)]
+    return "\n".join(["| | |", "| --- | --- |", *(f"| {' | '.join(row)} |" for row in rows)])
 
 
 def _section(family: Family, blueprint: Blueprint) -> str:

@@ -10,12 +10,14 @@ import pytest
 from PIL import Image
 
 from kinematify.errors import OutputError
+from kinematify.generate.composer.examples import SENTENCES
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.pipeline.gallery import write_gallery
 from tests.places import ROOT
 
 DOCS = ROOT / "docs"
 LARGEST, LARGEST_IN_ALL = 60_000, 2_500_000  # bytes
+TOLD = ("a cart with two wheels",)
 
 
 def pictures_of(page: str) -> dict[str, str]:
@@ -23,11 +25,18 @@ def pictures_of(page: str) -> dict[str, str]:
     return dict(re.findall(r"^## (\w+)\n\n!\[[^\]]+\]\(([^)]+)\)$", page, flags=re.MULTILINE))
 
 
+def told_of(page: str) -> dict[str, str]:
+    """Picture of each sentence of a page."""
+    return {
+        text: link for text, link, under in re.findall(r"!\[([^\]]+)\]\(([^)]+)\)<br>([^|]+) \|", page) if text == under
+    }
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("gallery")
     shown = {name: FAMILIES[name] for name in ("gripper", "laptop")}
-    return write_gallery(folder, shown, command="make it", progress=lambda name, done: None)
+    return write_gallery(folder, shown, TOLD, command="make it", progress=lambda name, done: None)
 
 
 def test_each_family_has_a_section_with_its_words_and_parameters(made):
@@ -42,7 +51,9 @@ def test_each_family_has_a_section_with_its_words_and_parameters(made):
 
 
 def test_pictures_are_small_and_show_two_states(made):
-    for link in pictures_of(made.read_text("utf-8")).values():
+    page = made.read_text("utf-8")
+    assert list(told_of(page)) == list(TOLD)
+    for link in [*pictures_of(page).values(), *told_of(page).values()]:
         picture = made.parent / link
         assert picture.stat().st_size <= LARGEST
         image = np.asarray(Image.open(picture).convert("RGB")).astype(float)
@@ -54,14 +65,18 @@ def test_pictures_are_small_and_show_two_states(made):
 def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
-        write_gallery(tmp_path / "file", {}, command="", progress=lambda name, done: None)
+        write_gallery(tmp_path / "file", {}, (), command="", progress=lambda name, done: None)
 
 
 def test_the_committed_page_shows_every_family():
     page = (DOCS / "gallery.md").read_text("utf-8")
     pictures = pictures_of(page)
     assert list(pictures) == list(FAMILIES), "run: kinematify generate --gallery docs"
+    told = told_of(page)
+    assert tuple(told) == SENTENCES
+    assert len(SENTENCES) >= 30
+    pictures |= told
     sizes = {name: (DOCS / link).stat().st_size for name, link in pictures.items()}
     assert max(sizes.values()) <= LARGEST
     assert sum(sizes.values()) <= LARGEST_IN_ALL
-    assert {path.stem for path in (DOCS / "gallery").iterdir()} == set(FAMILIES)
+    assert set((DOCS / "gallery").iterdir()) == {DOCS / link for link in pictures.values()}

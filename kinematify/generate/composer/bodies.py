@@ -131,6 +131,22 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         box((sheet - half, sheet, deck), (half - sheet, cab - sheet, 0.6 * height - sheet)),
         box((sheet - half, cab + sheet, deck), (half - sheet, bed - sheet, height - sheet)),
     )
+    workshop.add(
+        BODY,
+        *workshop.painted(
+            box((-0.85 * half, cab - 4e-3, 0.66 * height), (0.85 * half, cab + 1e-3, 0.94 * height)),
+            box((-0.8 * half, bed - 1e-3, 0.7 * height), (0.8 * half, bed + 4e-3, 0.92 * height)),
+            material="plastic",
+            color="dark grey",
+        ),
+        *workshop.painted(
+            *(
+                cylinder(0.05 * height, (x, 1e-3, 0.5 * height), (x, -0.01, 0.5 * height))
+                for x in (-0.7 * half, 0.7 * half)
+            ),
+            material="ceramic",
+        ),
+    )
     doorway = Opening(
         left=-0.45 * (bed - cab),
         right=0.45 * (bed - cab),

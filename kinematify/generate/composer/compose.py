@@ -73,6 +73,8 @@ class Composition:
     """Width, depth and height [m]; as large as is needed where None."""
     material: str | None = None
     color: str | None = None
+    handles: tuple[str | None, str | None] = (None, None)
+    """Material and colour of the handles of doors and drawers; metal if nothing is said."""
     rest: float = 0.0
     """Share of the way that moving parts stand open."""
 
@@ -153,7 +155,10 @@ def _laid_out(composition: Composition, seed: int | None) -> _Layout:
     size: Size = (width, depth, height)
     while True:
         workshop = Workshop(
-            composition.title.replace(" ", "_"), material=composition.material or body.material, color=composition.color
+            composition.title.replace(" ", "_"),
+            material=composition.material or body.material,
+            color=composition.color,
+            handles=(composition.handles[0] or "metal", composition.handles[1]),
         )
         sides = body.build(workshop, size, min(_WALL, 0.08 * min(size)))
         try:

@@ -308,6 +308,8 @@ class Mechanism:
     most: int = 60
     """On one body."""
     moves: bool = True
+    has_grip: bool = False
+    """A handle of its own, which may be of another look."""
     halves: bool = False
     """On the left or the right is said of the half of a side that it covers."""
 
@@ -322,8 +324,17 @@ MECHANISMS = (
         weight=3.0,
         least=(0.12, 0.15),
         needs="opening",
+        has_grip=True,
     ),
-    Mechanism(words=("drawer",), sides=("front",), build=_drawer, arranged="stack", least=(0.12, 0.07), needs="room"),
+    Mechanism(
+        words=("drawer",),
+        sides=("front",),
+        build=_drawer,
+        arranged="stack",
+        least=(0.12, 0.07),
+        needs="room",
+        has_grip=True,
+    ),
     Mechanism(
         words=("flap", "tailgate", "drop door", "flap door", "tilting flap"),
         sides=("front", "back"),
@@ -332,6 +343,7 @@ MECHANISMS = (
         weight=1.5,
         least=(0.12, 0.1),
         needs="opening",
+        has_grip=True,
     ),
     Mechanism(
         words=("lid", "hatch", "cover", "scanner lid"),
@@ -341,6 +353,7 @@ MECHANISMS = (
         weight=3.0,
         least=(0.12, 0.12),
         needs="opening",
+        has_grip=True,
     ),
     Mechanism(
         words=("sliding door", "shutter", "sliding panel"),

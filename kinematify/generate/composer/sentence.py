@@ -29,6 +29,7 @@ _MOVING = ("opening", "movable", "moving", "working")
 _OPENNESS = {("half", "open"): 0.5, ("open",): 1.0, ("closed",): 0.0}
 _AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
 _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
+_HANDLES = ("handle",)
 _BARE = 2  # words of a length: number and unit
 _SHORTEST, _LONGEST = 0.05, 20.0  # [m]
 
@@ -60,6 +61,8 @@ def read_composition(sentence: str) -> Composition:
             f"The text {sentence[:80]!r} names no body that mechanisms can be placed on. There are "
             f"{', '.join(body.words[0] for body in BODIES)}."
         )
+    if reader.handles is not None and not any(item.mechanism.has_grip for item in reader.wanted):
+        reader.left.append("handles")
     if reader.left:
         raise InputError(
             f"Not understood: {', '.join(map(repr, reader.left))}. Nothing else is built in its place. Bodies are "
@@ -82,6 +85,7 @@ def read_composition(sentence: str) -> Composition:
         size=(width, depth, height),
         material=reader.of_body.material,
         color=reader.of_body.color,
+        handles=(reader.handles.material, reader.handles.color) if reader.handles else (None, None),
         rest=reader.rest,
     )
 
@@ -129,6 +133,7 @@ class _Reader:
         self.of_body = _Look()
         self.wanted: list[Wanted] = []
         self.excluded: list[Mechanism] = []
+        self.handles: _Look | None = None
         self.size: list[float | None] = [None, None, None]
         self.bare: float | None = None
         """A length of the body of which is not said what it is [m]."""
@@ -189,6 +194,11 @@ class _Reader:
             return 0
         words, mechanism = named
         look, end = self._described_so_far(), k + len(words)
+        noun = self._tokens[end - 1]
+        plural = noun.given != noun.text and noun.given.endswith("s")
+        if words == _HANDLES and plural and look.count is None:
+            self.handles = look  # those of doors and drawers, which are not counted
+            return len(words)
         again = look.count is None and any(item.mechanism is mechanism for item in self.wanted)
         if (self.body is None and not self._stands_on(end)) or again:
             self.left.append(" ".join(words))  # a part of something else, or one that was named before
@@ -196,8 +206,6 @@ class _Reader:
         if look.count == 0:
             self.excluded.append(mechanism)
             return len(words)
-        noun = self._tokens[end - 1]
-        plural = noun.given != noun.text and noun.given.endswith("s")
         side, taken = self._side(end)
         self.wanted.append(
             Wanted(
