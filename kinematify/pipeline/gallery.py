@@ -10,18 +10,25 @@ from kinematify.errors import OutputError
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.procedural.request import from_text
-from kinematify.model.preview import draw_pair
+from kinematify.model.preview import draw_pair, draw_steps
+from kinematify.model.scene import moving_joints
 from kinematify.pipeline.generate import true_model
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from kinematify.config import PreviewConfig
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family, Parameter
+    from kinematify.model.kinematic_model import KinematicModel
 
 PAGE = "gallery.md"
 PICTURES = "gallery"
+OPENING = "opening.webp"
+"""Moving picture of the first sentence's object, opened joint by joint."""
+_STEP_MS = 900
 _PANEL = {"panel_width": 420, "panel_height": 360, "openness_rays": 6}  # two fill a page, in seconds
 _QUALITY = 82  # of WebP: 5 to 30 kB each, and no blocks beside thin arrows
 _SEEDS = range(8)  # enough to meet the usual numbers of joints
@@ -39,7 +46,7 @@ def write_gallery(
     """Write the page and its pictures; what an earlier call wrote is replaced.
 
     Args:
-        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per sentence and family.
+        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per sentence and family, and one that moves.
         families: What to show, in this order.
         sentences: Each becomes a picture, before the families.
         command: What the reader types to make the page again.
@@ -63,7 +70,10 @@ def write_gallery(
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
         for number, sentence in enumerate(sentences):
             progress(sentence, 0.5 * number / len(sentences))
-            draw(from_text(sentence).build(), f"composed_{number + 1}")
+            blueprint = from_text(sentence).build()
+            draw(blueprint, f"composed_{number + 1}")
+            if number == 0:
+                _draw_opening(true_model(blueprint, config), folder / PICTURES / OPENING, config.preview)
         for number, (name, family) in enumerate(families.items()):
             progress(name, 0.5 + 0.5 * number / len(families))
             blueprint = build(family, {})
@@ -77,6 +87,15 @@ def write_gallery(
             "to, on a disk with space."
         ) from error
     return page
+
+
+def _draw_opening(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
+    """Open one joint after the other, then turn all that turns without end at once."""
+    moving = moving_joints(model)
+    endless = [joint.name for joint in moving if joint.kind is JointType.CONTINUOUS]
+    groups = [[joint.name] for joint in moving if joint.name not in endless]
+    first, *others = draw_steps(model, [*groups, *([endless] if endless else [])], config)
+    first.save(path, save_all=True, append_images=others, duration=_STEP_MS, loop=0, quality=_QUALITY, method=6)
 
 
 def _head(families: Mapping[str, Family], sentences: Sequence[str], command: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +13,12 @@ from PIL import Image
 from kinematify.errors import OutputError
 from kinematify.generate.composer.examples import SENTENCES
 from kinematify.generate.procedural.families import FAMILIES
-from kinematify.pipeline.gallery import write_gallery
+from kinematify.pipeline.gallery import OPENING, PICTURES, write_gallery
 from tests.places import ROOT
 
 DOCS = ROOT / "docs"
 LARGEST, LARGEST_IN_ALL = 60_000, 2_500_000  # bytes
-TOLD = ("a cart with two wheels",)
+TOLD = ("a cart with two wheels and a drawer",)
 
 
 def pictures_of(page: str) -> dict[str, str]:
@@ -62,6 +63,16 @@ def test_pictures_are_small_and_show_two_states(made):
         assert np.abs(image[:, :half] - image[:, half : 2 * half]).max(axis=2).mean() > 2.0
 
 
+def test_the_first_object_is_opened_joint_by_joint(made):
+    with Image.open(made.parent / PICTURES / OPENING) as moving:
+        frames = []
+        for k in range(moving.n_frames):
+            moving.seek(k)
+            frames.append(np.asarray(moving.convert("RGB")).astype(float))
+    assert len(frames) == 3, "at rest, the drawer, both wheels"
+    assert all(np.abs(after - before).max(axis=2).mean() > 0.5 for before, after in pairwise(frames))
+
+
 def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match="cannot be written"):
@@ -79,4 +90,7 @@ def test_the_committed_page_shows_every_family():
     sizes = {name: (DOCS / link).stat().st_size for name, link in pictures.items()}
     assert max(sizes.values()) <= LARGEST
     assert sum(sizes.values()) <= LARGEST_IN_ALL
-    assert set((DOCS / "gallery").iterdir()) == {DOCS / link for link in pictures.values()}
+    assert set((DOCS / "gallery").iterdir()) == {
+        DOCS / PICTURES / OPENING,
+        *(DOCS / link for link in pictures.values()),
+    }
