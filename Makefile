@@ -31,7 +31,7 @@ help:
 	@echo "make format   let ruff mend what it can"
 	@echo "make types    mypy --strict"
 	@echo "make bench    accuracy table beside the paper's (DATA=FOLDER or pip)"
-	@echo "make pictures redraw docs/demo.png and docs/gallery.md with its pictures; takes minutes"
+	@echo "make pictures redraw docs/demo.png, docs/gallery.md with its pictures and the moving one; takes minutes"
 	@echo "make setup    create $(VENV) with everything; quick when nothing changed"
 	@echo "make clean    remove what was built, but not $(VENV)"
 

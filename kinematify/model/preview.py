@@ -95,7 +95,8 @@ def draw_steps(model: KinematicModel, groups: Sequence[Sequence[str]], config: P
         config: Size and quality.
     """
     opened = opened_configuration(model, config)
-    scenes, q = [replace(_scene(model, {}, config), glyphs=())], {}
+    scenes = [replace(_scene(model, {}, config), glyphs=())]
+    q: dict[str, float] = {}
     for group in groups:
         q |= {name: opened[name] for name in group}
         arrows = joint_glyphs(model, q, config)

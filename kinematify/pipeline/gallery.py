@@ -30,6 +30,7 @@ OPENING = "opening.webp"
 """Moving picture of the first sentence's object, opened joint by joint."""
 _STEP_MS = 900
 _PANEL = {"panel_width": 420, "panel_height": 360, "openness_rays": 6}  # two fill a page, in seconds
+_LARGE_PANEL = {"panel_width": 600, "panel_height": 500}
 _QUALITY = 82  # of WebP: 5 to 30 kB each, and no blocks beside thin arrows
 _SEEDS = range(8)  # enough to meet the usual numbers of joints
 _BAR = r"\|"  # in a cell of a Markdown table
@@ -94,7 +95,8 @@ def _draw_opening(model: KinematicModel, path: Path, config: PreviewConfig) -> N
     moving = moving_joints(model)
     endless = [joint.name for joint in moving if joint.kind is JointType.CONTINUOUS]
     groups = [[joint.name] for joint in moving if joint.name not in endless]
-    first, *others = draw_steps(model, [*groups, *([endless] if endless else [])], config)
+    larger = config.model_copy(update=_LARGE_PANEL)
+    first, *others = draw_steps(model, [*groups, *([endless] if endless else [])], larger)
     first.save(path, save_all=True, append_images=others, duration=_STEP_MS, loop=0, quality=_QUALITY, method=6)
 
 

@@ -68,13 +68,14 @@ def parse_robot(element: _Element, path: Path, source: GeometrySource, geometry:
         DescriptionError: As for `read_robot`.
     """
     joints = tuple(_joint(item) for item in element.findall("joint"))
-    _check_tree(path, [_name(item) for item in element.findall("link")], joints)
+    names = [_name(item) for item in element.findall("link")]
+    _check_tree(path, names, joints)
     _check_mimics(joints)
     robot = Robot(
         name=element.get("name") or path.stem,
         links=_links(element, source, geometry),
         joints=joints,
-        loops=tuple(_loop(item) for item in element.findall("loop_joint")),
+        loops=tuple(_loop(item, names) for item in element.findall("loop_joint")),
         path=path.resolve(),
         notes=tuple(note for joint in joints if (note := _note(joint))),
     )
@@ -156,10 +157,9 @@ def _joint(element: _Element) -> Joint:
     )
 
 
-def _loop(element: _Element) -> LoopJoint:
+def _loop(element: _Element, known: Sequence[str]) -> LoopJoint:
     name = _name(element)
     where = f"loop_joint {name}"
-    known = {link.get("name") for link in element.getparent().findall("link")}
     ends = [element.find(tag) for tag in ("link1", "link2")]
     first, second = (None if end is None else end.get("link") for end in ends)
     if first not in known or second not in known or first is None or second is None:
