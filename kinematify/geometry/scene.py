@@ -194,18 +194,19 @@ def judged_shapes(link: Link) -> tuple[Shape, ...]:
 
 
 def visible_shapes(link: Link) -> tuple[Shape, ...]:
-    """Visual geometry, or collision geometry where there is none."""
-    return link.visuals or link.collisions
+    """Visual geometry; frames, rotors and sensors that only collide are not seen."""
+    return link.visuals
 
 
 def simplified(model: Robot) -> bool:
-    """Whether the collision geometry of some link is not simply its visual geometry."""
+    """Whether the collision geometry of some link is not simply its visual geometry, where there is any."""
 
     def described(shapes: tuple[Shape, ...]) -> list[tuple[object, ...]]:
         return [(shape.kind, shape.file, shape.size, shape.T_link_shape.tobytes()) for shape in shapes]
 
-    both = [link for link in model.links if link.visuals and link.collisions]
-    return any(described(link.visuals) != described(link.collisions) for link in both)
+    colliding = [link for link in model.links if link.collisions]
+    differ = any(described(link.visuals) != described(link.collisions) for link in colliding)
+    return differ and any(link.visuals for link in model.links)
 
 
 def read_scene(
@@ -220,12 +221,12 @@ def read_scene(
     Args:
         model: The robot with its meshes.
         settings: How solids are made.
-        shapes_of: Which shapes of a link count.
+        shapes_of: Which shapes of a link count; a body without any is judged by all that it has.
         by_link: Links that fixed joints hold together are bodies of their own, in the frame of the link nearest the
             root.
     """
     parts = [
-        (index, links, _shapes(model, links, shapes_of))
+        (index, links, _shapes(model, links, shapes_of) or _shapes(model, links, judged_shapes))
         for index, group in enumerate(rigid_groups(model))
         for links in _apart(placed_links(model, group), by_link=by_link)
     ]

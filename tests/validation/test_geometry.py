@@ -235,6 +235,17 @@ def test_a_joint_that_only_fat_collision_geometry_blocks_is_not_blamed(tmp_path:
     assert all(finding.severity is Severity.WARNING for finding in findings)
 
 
+def test_a_rotor_that_only_collides_is_not_seen(tmp_path: Path) -> None:
+    leg = Part(name="leg", parent="beam", kind="revolute", boxes=(Box(size=(0.3, 0.1, 0.01), at=(0.15, 0.0, 0.0)),),
+               at=(0.508, 0.0, 0.0), axis=(0.0, 1.0, 0.0), limits=(-1.5, 1.5))  # fmt: skip
+    rotor = Part(name="rotor", parent="leg", boxes=(), collision=(Box(size=(0.05, 0.05, 0.05)),), at=(0.0, 0.0, 0.12))
+    finding = only(found(beam(leg, rotor), tmp_path), "KV312")
+    assert (finding.pair, finding.severity, finding.blame) == (("beam", "rotor"), Severity.WARNING, Blame.PHYSICS)
+    fin = Part(name="fin", parent="leg", boxes=(Box(size=(0.05, 0.05, 0.05)),), collision=(), at=(0.0, 0.0, -0.12))
+    blames = {finding.pair: finding.blame for finding in found(beam(leg, rotor, fin), tmp_path)["KV312"]}
+    assert blames == {("beam", "rotor"): Blame.PHYSICS, ("beam", "fin"): Blame.KINEMATICS}, "each side by itself"
+
+
 def test_a_door_about_a_far_line_leaves_its_frame(tmp_path: Path) -> None:
     model = cabinet().with_part(
         "door", at=(0.205, 1.0, 0.0), boxes=(Box(size=(0.02, 0.3, 0.4), at=(0.01, -0.83, 0.0)),), axis=(0.0, 0.0, 1.0)

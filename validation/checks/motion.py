@@ -65,9 +65,9 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
                 motion,
                 meeting,
                 f"{where} The other way it meets it at {_value(motion, opposite.first)}: blocked to both "
-                "sides at once, the axis or its place is wrong, or the type.",
-                "Move the joint's <origin> onto the hinge or guide and align <axis> with it; if the part slides, or "
-                "turns, write that type."
+                "sides at once.",
+                "The axis or its place is wrong, or the type: move the joint's <origin> onto the hinge or guide and "
+                "align <axis> with it; if the part slides, or turns, write that type."
                 if motion.has_stops
                 else "Give the joint the limits that the contacts show; or correct its axis, place or type.",
                 severity=None if motion.has_stops else Severity.WARNING,  # without limits a file claims no free range

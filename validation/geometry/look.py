@@ -287,10 +287,10 @@ class JointMotion:
         return self.sweep.sides[0 if sign < 0 else 1]
 
     def seen(self, meeting: Meeting) -> float:
-        """How deep the visible geometry of the two gets into each other [m], 0 where it stays clear."""
+        """How deep the visible geometry of the two gets into each other on that side [m], 0 where it stays clear."""
         if self.as_seen is self:
             return meeting.depth
-        found = [seen for side in self.as_seen.sweep.sides for seen in side.meetings]
+        found = self.as_seen.side(meeting.at - self.sweep.travel.rest).meetings
         return max((seen.depth for seen in found if seen.pair == meeting.pair and seen.inside), default=0.0)
 
     def clearable(self, meeting: Meeting) -> bool:
