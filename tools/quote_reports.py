@@ -1,4 +1,4 @@
-"""Write the reports that docs/validate.md quotes anew: `python -m tools.quote_reports FOLDER` with NAME/model.urdf in it."""
+"""Write the reports that docs/validate.md quotes anew: `python -m tools.quote_reports FOLDER`, of NAME/model.urdf."""
 
 from __future__ import annotations
 

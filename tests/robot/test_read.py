@@ -84,13 +84,14 @@ def test_mirroring_scale_keeps_the_outside_outside(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("up", ["X_UP", "Y_UP", "Z_UP"])
-@pytest.mark.parametrize("unit", [1.0, 0.0254])
-def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit: float) -> None:
+@pytest.mark.parametrize("unit", [1.0, 0.0254, 0.001, None])
+def test_collada_unit_counts_and_up_axis_does_not(tmp_path: Path, up: str, unit: float | None) -> None:
     text = trimesh.creation.box(bounds=[[0, 0, 0], [1, 2, 3]]).export(file_type="dae").decode()
-    asset = f'<unit name="u" meter="{unit}"/><up_axis>{up}</up_axis>'
+    stated = "" if unit is None else f'<unit name="u" meter="{unit}"/>'
+    asset = f"{stated}<up_axis>{up}</up_axis>"
     (tmp_path / "m.dae").write_text(text.replace("<up_axis>Y_UP</up_axis>", asset))
     found = bounds(urdf(tmp_path, link("a", visual('<mesh filename="m.dae"/>'))))
-    np.testing.assert_allclose(found, np.multiply(unit, [[0, 0, 0], [1, 2, 3]]), atol=1e-6)
+    np.testing.assert_allclose(found, np.multiply(unit or 1.0, [[0, 0, 0], [1, 2, 3]]), atol=1e-6)
 
 
 def test_collada_geometry_is_read_without_the_material_that_the_file_does_not_hold(tmp_path: Path) -> None:
