@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import threading
-from contextlib import redirect_stdout
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +12,8 @@ from kinematify.cli.help import examples
 from kinematify.cli.options import package_dirs_option
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping
 
-    from kinematify.view.alternatives import Alternative
-    from kinematify.view.scene import ViewScene
     from kinematify.view.server import Sight
 
 _SHOWN_TITLE = 60
@@ -60,43 +55,36 @@ def command(
 ) -> int:
     """Show MODEL, a URDF or a model folder, until Ctrl-C.
 
-    Sliders move the joints; axes and limits are drawn; what collides is red. Candidates of each joint can be tried
-    where inference.json lies beside the model. Over SSH, forward the port that is printed: ssh -L 8080:localhost:8080.
+    Sliders move the joints; axes and limits are drawn; what collides is red. Where inference.json lies beside the
+    model, the candidates of each joint are named, can be tried, and "Keep this" writes the model with one of them and
+    shows the command that does the same. Over SSH, forward the port that is printed: ssh -L 8080:localhost:8080.
     """
     from kinematify.errors import InputError
+    from kinematify.view.window import Window
 
     if len(joints) != len(values):
         raise InputError(f"There are {len(joints)} --joint and {len(values)} --q. Give one value for each joint.")
     urdf = model / "model.urdf" if model.is_dir() else model
-    scene = _scene(urdf, package_dirs)
-    known = {joint.name for joint in scene.leaders}
-    unknown = [name for name in joints if name not in known]
-    if unknown:
-        raise InputError(
-            f"{urdf} has no joint {unknown[0]} that can be set. It has {', '.join(sorted(known)) or 'none'}."
-        )
-    record, told = urdf.parent / "inference.json", report or urdf.parent / "validation.json"
-    alternatives = _alternatives(record) if record.is_file() else {}
-    sights = _sights(told) if report is not None or told.is_file() else []
-    _serve(scene, alternatives, sights, dict(zip(joints, values, strict=True)), host=host, port=port)
-    return 0
-
-
-def _scene(urdf: Path, package_dirs: Sequence[Path]) -> ViewScene:
-    from kinematify.config.validation import load_settings
-    from kinematify.errors import InputError
-    from kinematify.robot.read import read_robot
-    from kinematify.view.scene import ViewScene
-
     if not urdf.is_file():
         raise InputError(f"There is no file {urdf}. Give a URDF, or a model folder that `kinematify infer` wrote.")
-    return ViewScene(read_robot(urdf, package_dirs=package_dirs), load_settings())
-
-
-def _alternatives(record: Path) -> dict[tuple[str, str], tuple[Alternative, ...]]:
-    from kinematify.view.alternatives import load_alternatives
-
-    return load_alternatives(record)
+    told = report or urdf.parent / "validation.json"
+    sights = _sights(told) if report is not None or told.is_file() else []
+    window = Window(urdf, package_dirs=package_dirs, sights=sights, host=host, port=port)
+    try:
+        known = window.viewer.values
+        unknown = [name for name in joints if name not in known]
+        if unknown:
+            raise InputError(
+                f"{urdf} has no joint {unknown[0]} that can be set. It has {', '.join(sorted(known)) or 'none'}."
+            )
+        window.viewer.set(dict(zip(joints, values, strict=True)))
+        click.echo(f"{window.url} shows {urdf.resolve()}; Ctrl-C ends it.")
+        window.run()
+    except KeyboardInterrupt:
+        click.echo("Closed.")
+    finally:
+        window.close()
+    return 0
 
 
 def _sights(report: Path) -> list[Sight]:
@@ -104,8 +92,10 @@ def _sights(report: Path) -> list[Sight]:
     from kinematify.errors import InputError
 
     try:
-        findings = json.loads(report.read_text(encoding="utf-8"))["findings"]
-        return [_sight(finding) for finding in findings if finding["q"] or finding["pair"] or finding["link"]]
+        stated = json.loads(report.read_text(encoding="utf-8"))
+        titles = {check["check"]: check["title"] for check in stated.get("checks", ())}
+        findings = stated["findings"]
+        return [_sight(finding, titles) for finding in findings if finding["q"] or finding["pair"] or finding["link"]]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{report} is no report of one model ({type(error).__name__}: {error}). Give the file that `kinematify "
@@ -113,49 +103,15 @@ def _sights(report: Path) -> list[Sight]:
         ) from error
 
 
-def _sight(finding: dict[str, Any]) -> Sight:
+def _sight(finding: dict[str, Any], titles: Mapping[str, str]) -> Sight:
     from kinematify.view.server import Sight
 
     place = finding["joint"] or " - ".join(finding["pair"] or ()) or finding["link"] or ""
     links = [*(finding["pair"] or ()), *([finding["link"]] if finding["link"] else [])]
+    title = titles.get(finding["check"], finding["check"])
     return Sight(
-        title=f"{finding['severity']} {finding['check']} {place}"[:_SHOWN_TITLE],
-        message=f"{finding['message']} {finding['remedy']}",
+        title=f"{place}: {title}"[:_SHOWN_TITLE],
+        message=f"{finding['message']} {finding['remedy']} *({finding['severity']} {finding['check']})*",
         q={name: float(value) for name, value in (finding["q"] or {}).items() if value is not None},
         links=tuple(links),
     )
-
-
-def _serve(
-    scene: ViewScene,
-    alternatives: dict[tuple[str, str], tuple[Alternative, ...]],
-    sights: list[Sight],
-    start: dict[str, float],
-    *,
-    host: str,
-    port: int,
-) -> None:
-    """Serve until Ctrl-C."""
-    try:
-        import viser
-    except ImportError as error:
-        from kinematify.errors import EnvironmentFault
-
-        raise EnvironmentFault(
-            "The viewer needs the package viser, which is not installed. Run `pip install kinematify[view]`."
-        ) from error
-    from kinematify.view.server import ModelViewer
-
-    with redirect_stdout(StringIO()):  # a banner of its own
-        server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
-    try:
-        viewer = ModelViewer(server, scene, alternatives=alternatives, sights=sights)
-        viewer.set(start)
-        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
-        click.echo(f"http://{shown}:{server.get_port()} shows {scene.robot.path}; Ctrl-C ends it.")
-        viewer.run(threading.Event())
-    except KeyboardInterrupt:
-        click.echo("Closed.")
-    finally:
-        with redirect_stdout(StringIO()):
-            server.stop()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +13,7 @@ import numpy as np
 from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.rest import Allowance
 from kinematify.geometry.scene import read_scene, relative
+from kinematify.robot.appearance import Material, joined, plain, surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import (
     forward_kinematics,
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import ValidationSettings
     from kinematify.geometry.scene import Scene
+    from kinematify.robot.appearance import Appearance, Rgba, Surface
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint, RigidGroup, Robot
     from kinematify.view.alternatives import Alternative
@@ -85,20 +88,83 @@ class ViewScene:
         corners = np.concatenate(points) if points else np.zeros((1, 3))
         center: FloatArray = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         turn = camera_turn(self.robot, self.groups, list(self.meshes.values()), self.rest) + 0.5 * np.pi
-        eye = center + 1.3 * self.size * np.array([np.cos(turn), np.sin(turn), 0.5])
+        eye = center + 1.0 * self.size * np.array([np.cos(turn), np.sin(turn), 0.5])
         return eye, center
 
     @cached_property
     def meshes(self) -> dict[str, tuple[FloatArray, IntArray]]:
         """Vertices (V, 3) and faces (F, 3) of every group, in the frame of its top link, keyed by that."""
-        zero = forward_kinematics(self.robot, {})
-        return {group.top: self._mesh(group, zero) for group in self.groups}
+        return {group.top: self._mesh(group)[:2] for group in self.groups}
+
+    @cached_property
+    def surfaces(self) -> dict[str, tuple[Surface, ...]]:
+        """What is seen of every group by material, in the frame of its top link, keyed by that.
+
+        Where the model states no colour at all, every group has one of its own.
+        """
+        found = {}
+        for index, group in enumerate(self.groups):
+            vertices, faces, appearance = self._mesh(group)
+            if len(faces):
+                invented = Material().color if self._states_colors else _color(index)
+                found[group.top] = surfaces(vertices, faces, appearance or plain(invented, len(faces)))
+        return found
+
+    @cached_property
+    def _states_colors(self) -> bool:
+        return any(mesh.appearance is not None for link in self.robot.links for mesh in link.meshes)
+
+    @cached_property
+    def bounds(self) -> dict[str, FloatArray]:
+        """Lower and upper corner of every group at zero, frame of the root link [m], shape (2, 3) each."""
+        zero = self.poses({})
+        found = {}
+        for top, (vertices, _) in self.meshes.items():
+            if len(vertices):
+                placed = vertices @ zero[top][:3, :3].T + zero[top][:3, 3]
+                found[top] = np.stack([placed.min(axis=0), placed.max(axis=0)])
+        return found
+
+    def group_of(self, link: str) -> str:
+        """Top link of the group that holds a link."""
+        return next(group.top for group in self.groups if link in group.links)
+
+    def apart(self, share: float) -> dict[str, FloatArray]:
+        """Return how far every group is moved from the middle of all when the model is taken apart [m], shape (3,).
+
+        Args:
+            share: 0 for not at all; at 1 the middle of a group is twice as far from that of all.
+        """
+        middles = {top: corners.mean(axis=0) for top, corners in self.bounds.items()}
+        middle = np.mean(list(middles.values()), axis=0) if middles else np.zeros(3)
+        return {top: share * (own - middle) for top, own in middles.items()}
+
+    @cached_property
+    def ground(self) -> float:
+        """Height of the lowest point at rest, frame of the root link [m]."""
+        poses = self.poses(self.rest)
+        heights = [
+            (vertices @ T[:3, :3].T + T[:3, 3])[:, 2].min() for T, (vertices, _) in self._placed(poses) if len(vertices)
+        ]
+        return float(min(heights, default=0.0))
 
     def range_of(self, joint: Joint) -> tuple[float, float]:
-        """Ends of a slider [rad or m]: the limits, or half a turn either way where there are none."""
+        """Ends of a slider [rad or m]: the limits, or half a turn either way where there are none.
+
+        A joint that is tried as another type may turn by a quarter, or slide by half of the model's size, either way.
+        """
+        tried = self._tried.get(joint.name)
+        if tried is not None and tried.kind.turns != joint.kind.turns:
+            reach = 0.5 * math.pi if tried.kind.turns else 0.5 * self.size
+            return -reach, reach
         if joint.kind is JointType.CONTINUOUS or not math.isfinite(joint.upper - joint.lower):
             return -math.pi, math.pi
         return joint.lower, joint.upper
+
+    def kind_of(self, joint: Joint) -> JointType:
+        """Type of a joint as it is tried, or as in the file."""
+        tried = self._tried.get(joint.name)
+        return joint.kind if tried is None else tried.kind
 
     def try_joint(self, joint: str, alternative: Alternative | None) -> None:
         """Move a joint as an alternative says; None: as the file says."""
@@ -143,6 +209,8 @@ class ViewScene:
     def glyph(self, joint: Joint) -> FloatArray:
         """Line segments of a joint's axis and range in the frame of the joint at zero, shape (n, 2, 3) [m]."""
         axis, pivot, kind = self._axis(joint)
+        if kind is JointType.FIXED:
+            return np.array([[pivot, pivot]])
         reach = 0.18 * self.size
         lower, upper = self.range_of(joint)
         line = np.array([[pivot - reach * axis, pivot + reach * axis]])
@@ -183,19 +251,28 @@ class ViewScene:
         overlap = Overlap(scene)
         return scene, overlap, Allowance(scene, overlap)
 
-    def _mesh(self, group: RigidGroup, zero: Mapping[str, FloatArray]) -> tuple[FloatArray, IntArray]:
+    def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
         vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0
-        T_top_root = np.linalg.inv(zero[group.top])
+        looks: list[Appearance | None] = []
+        T_top_root = np.linalg.inv(self._zero[group.top])
         for link in group.links:
-            T = T_top_root @ zero[link]
+            T = T_top_root @ self._zero[link]
             for mesh in self.robot.link_by_name[link].meshes:
                 vertices.append(mesh.vertices @ T[:3, :3].T + T[:3, 3])
                 faces.append(mesh.faces + start)
+                looks.append(mesh.appearance)
                 start += len(mesh.vertices)
-        return np.concatenate(vertices), np.concatenate(faces)
+        return np.concatenate(vertices), np.concatenate(faces), joined(looks, [len(item) for item in faces[1:]])
 
     def _placed(self, poses: Mapping[str, FloatArray]) -> list[tuple[FloatArray, tuple[FloatArray, IntArray]]]:
         return [(poses[top], mesh) for top, mesh in self.meshes.items()]
+
+
+def _color(index: int) -> Rgba:
+    """A light grey for the root, then hues that differ from one body to the next, sRGB and opacity."""
+    if index == 0:
+        return 0.78, 0.77, 0.75, 1.0
+    return *colorsys.hls_to_rgb((0.08 + 0.61803398875 * index) % 1.0, 0.62, 0.5), 1.0
 
 
 def _across(axis: FloatArray) -> FloatArray:

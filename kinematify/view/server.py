@@ -1,8 +1,9 @@
-"""The viewer itself: a web server with the model, a slider per joint, findings and alternatives (viser)."""
+"""The viewer itself: a web server with the model, its joints, findings and candidates (viser)."""
 
 from __future__ import annotations
 
-import colorsys
+import io
+import math
 import threading
 import time
 from dataclasses import dataclass, field
@@ -10,21 +11,28 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import trimesh
+from PIL import Image
 
+from kinematify.errors import KinematifyError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of
+from kinematify.view.alternatives import described, distinct
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import viser
 
+    from kinematify.robot.appearance import Surface
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
     from kinematify.view.alternatives import Alternative
+    from kinematify.view.keep import Kept, ModelFolder
     from kinematify.view.scene import Touch, ViewScene
 
-_TOUCHING, _WRONG = (214, 158, 46), (214, 40, 40)
+_CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
+"""Of the part whose joint is chosen, of what a finding is about, and of what collides."""
 _AXIS = (214, 26, 41)
 _SLIDE = (18, 84, 219)
 _AS_WRITTEN = "as in the file"
@@ -33,6 +41,13 @@ _SWEEP_SECONDS = 4.0
 _SLIDER_STEPS = 400
 _TOLD = 12
 """Touching pairs that are listed."""
+_SIGHTS = 40
+"""Findings that are listed; the report has all."""
+_POSES = ("At rest", "Opened", "Random")
+_GLOW = 0.45
+_SWOLLEN = 1.5e-3
+"""Of the model's size: how far the glow stands off the surface."""
+_PICTURE = (1600, 1200)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +70,8 @@ class ModelViewer:
         *,
         alternatives: Mapping[tuple[str, str], Sequence[Alternative]],
         sights: Sequence[Sight],
+        folder: ModelFolder | None = None,
+        reopen: Callable[[], tuple[ViewScene, Mapping[tuple[str, str], Sequence[Alternative]]]] | None = None,
     ) -> None:
         """Build the page.
 
@@ -63,31 +80,52 @@ class ModelViewer:
             scene: The model.
             alternatives: Candidates of joints by (parent, child) link.
             sights: Findings.
+            folder: Where a candidate that is kept is written; None: nothing can be kept.
+            reopen: Reads the folder again after it was written.
         """
-        self._server, self._scene = server, scene
+        self._server, self._folder, self._reopen = server, folder, reopen
         self._lock = threading.RLock()  # sliders, buttons and the sweep come from threads of their own
-        self._q = {joint.name: scene.rest[joint.name] for joint in scene.leaders}
-        self._marked: frozenset[str] = frozenset()
-        self._sweeping: str | None = None
-        self._meshes: dict[str, Any] = {}
-        self._colors: dict[str, tuple[int, int, int]] = {}
-        self._sliders: dict[str, Any] = {}
-        self._axes: dict[str, Any] = {}
-        self._add_bodies()
-        self._add_joints(alternatives)
-        self._add_findings(sights)
-        self._add_parts()
-        self._status = server.gui.add_markdown("")
-        self._place()
+        self._random = np.random.default_rng(0)
+        server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
+        self._open(scene, alternatives, sights)
+
+    def _open(
+        self,
+        scene: ViewScene,
+        alternatives: Mapping[tuple[str, str], Sequence[Alternative]],
+        sights: Sequence[Sight],
+        said: str = "",
+    ) -> None:
+        """Show a model from the beginning."""
+        with self._lock:
+            self._scene, self._alternatives = scene, alternatives
+            self._q = {joint.name: scene.rest[joint.name] for joint in scene.leaders}
+            self._marked: frozenset[str] = frozenset()
+            self._sweeping: str | None = None
+            self._chosen: str | None = None
+            self._apart = 0.0
+            self._stale = True
+            self._colliding: frozenset[str] = frozenset()
+            self._frames: dict[str, Any] = {}
+            self._glows: dict[str, Any] = {}
+            self._sliders: dict[str, Any] = {}
+            self._axes: dict[str, Any] = {}
+            self._server.scene.reset()
+            self._server.gui.reset()
+            self._server.gui.set_panel_label(scene.robot.name)
+            self._add_surroundings()
+            self._add_bodies()
+            self._add_panel(sights, said)
+            self._place()
 
     def set(self, values: Mapping[str, float]) -> None:
-        """Move joints, sliders included; names that are no leaders are passed over."""
+        """Move joints [rad or m], sliders included; names that are no leaders are passed over."""
         with self._lock:
             for name, value in values.items():
                 if name in self._sliders:
-                    slider = self._sliders[name]
-                    self._q[name] = float(np.clip(value, slider.min, slider.max))
-                    slider.value = self._q[name]
+                    slider, factor = self._sliders[name], self._factor(name)
+                    self._q[name] = float(np.clip(value, slider.min / factor, slider.max / factor))
+                    slider.value = float(np.clip(self._q[name] * factor, slider.min, slider.max))
             self._place()
 
     @property
@@ -103,161 +141,409 @@ class ModelViewer:
             return self._scene.touches(self._q)
 
     def run(self, stop: threading.Event) -> None:
-        """Sweep what is to be swept until told to stop."""
+        """Sweep what is to be swept and look for collisions until told to stop."""
         start, last = time.monotonic(), ""
         while not stop.wait(_FRAME):
             name = self._sweeping
-            if name is None:
-                last = ""
-                continue
-            if name != last:
-                start, last = time.monotonic(), name
-            slider = self._sliders[name]
-            share = 0.5 - 0.5 * np.cos(2.0 * np.pi * (time.monotonic() - start) / _SWEEP_SECONDS)
-            self.set({name: slider.min + share * (slider.max - slider.min)})
+            if name is not None:
+                if name != last:
+                    start = time.monotonic()
+                share = 0.5 - 0.5 * np.cos(2.0 * np.pi * (time.monotonic() - start) / _SWEEP_SECONDS)
+                lower, upper = self._scene.range_of(self._scene.robot.joint_by_name[name])
+                self.set({name: float(lower + share * (upper - lower))})
+            last = name or ""
+            if self._stale:
+                self._look_for_collisions()
 
-    def _add_bodies(self) -> None:
-        self._server.scene.set_up_direction("+z")
-        self._server.initial_camera.position, self._server.initial_camera.look_at = self._scene.camera
-        for index, (top, (vertices, faces)) in enumerate(self._scene.meshes.items()):
-            if not len(faces):
-                continue
-            self._colors[top] = _color(index)
-            self._meshes[top] = self._server.scene.add_mesh_simple(
-                f"/bodies/{top}",
-                vertices.astype(np.float32),
-                faces.astype(np.uint32),
-                color=self._colors[top],
-                flat_shading=True,
-                side="double",
-            )
-
-    def _add_joints(self, alternatives: Mapping[tuple[str, str], Sequence[Alternative]]) -> None:
-        with self._server.gui.add_folder("Joints"):
-            self._server.gui.add_button("Back to rest").on_click(lambda _: self._rest())
-            for joint in self._scene.leaders:
-                self._add_joint(joint, alternatives.get((joint.parent, joint.child), ()))
-
-    def _add_joint(self, joint: Joint, candidates: Sequence[Alternative]) -> None:
-        gui, (lower, upper) = self._server.gui, self._scene.range_of(joint)
-        unit = "m" if joint.kind is JointType.PRISMATIC else "rad"
-        step = max((upper - lower) / _SLIDER_STEPS, 1e-9)
-        slider = gui.add_slider(f"{joint.name} [{unit}]", lower, max(upper, lower + step), step, self._q[joint.name])
-        self._sliders[joint.name] = slider
-        slider.on_update(_ignoring_event(partial(self._slid, joint.name)))
-        gui.add_button(f"Sweep {joint.name}").on_click(_ignoring_event(partial(self._sweep, joint.name)))
-        if candidates:
-            titles = [_AS_WRITTEN, *(f"{k + 1}: {item.title}" for k, item in enumerate(candidates))]
-            choice = gui.add_dropdown(f"{joint.name} tried", titles, initial_value=_AS_WRITTEN)
-            choice.on_update(lambda event: self._try(joint, candidates, titles.index(event.target.value)))
-        self._draw_axis(joint)
-
-    def _add_findings(self, sights: Sequence[Sight]) -> None:
-        if not sights:
-            return
-        with self._server.gui.add_folder("Findings"):
-            for sight in sights:
-                button = self._server.gui.add_button(sight.title, hint=sight.message)
-                button.on_click(_ignoring_event(partial(self.show, sight)))
-            self._told = self._server.gui.add_markdown("")
-
-    def _add_parts(self) -> None:
-        with self._server.gui.add_folder("Parts", expand_by_default=False):
-            for top in self._meshes:
-                self._add_part(top)
-
-    def _add_part(self, top: str) -> None:
-        box = self._server.gui.add_checkbox(top, True)
-        box.on_update(lambda event: self._toggle(top, visible=event.target.value))
+    def choose(self, joint: str) -> None:
+        """Let the part of a joint glow, and show what is known of the joint."""
+        with self._lock:
+            if self._chosen != joint and joint in self._sliders:
+                self._chosen, self._marked = joint, frozenset()
+                self._fill_joint(joint)
+                self._glow()
 
     def show(self, sight: Sight) -> None:
         """Bring the model where a finding was seen, and mark what it is about."""
         with self._lock:
-            self._sweeping = None
+            self._sweeping, self._chosen = None, None
             self._marked = frozenset(sight.links)
-            self._told.content = f"**{sight.title}**: {sight.message}"
             self.set({**self._scene.rest, **sight.q})
+            self._glow()
 
-    def _rest(self) -> None:
+    def try_candidate(self, joint: str, number: int) -> None:
+        """Move a joint as one of its candidates says, 0 for as in the file, and show that on the page."""
+        with self._lock:
+            candidates = self._candidates(self._scene.robot.joint_by_name[joint])
+            self._scene.try_joint(joint, candidates[number - 1] if number else None)
+            self._sweeping = None
+            item = self._scene.robot.joint_by_name[joint]
+            self._draw_axis(item)
+            self._refit_slider(item)
+            self._keep.visible = number > 0 and self._folder is not None
+            self._place()
+
+    def keep(self) -> Kept | None:
+        """Write the model with the candidate that is tried, and show it anew; None if it could not be written."""
+        assert self._folder is not None
+        with self._lock:
+            joint = None if self._chosen is None else self._scene.robot.joint_by_name[self._chosen]
+            number = 0 if joint is None else self._options.index(self._choice.value)
+        if joint is None or not number:
+            return None
+        chosen = self._candidates(joint)[number - 1]
+        return self._written(partial(self._folder.keep, joint.child, chosen), joint.name)
+
+    def _undo(self) -> None:
+        assert self._folder is not None
+        self._written(self._folder.undo, None)
+
+    def _written(self, write: Callable[[], Kept | None], joint: str | None) -> Kept | None:
+        """Change the folder, tell what came of it, and show what it holds."""
+        assert self._reopen is not None
+        self._keep.disabled = True
+        waiting = [
+            client.add_notification("Inferring again ...", "The model is written when it is done.", loading=True)
+            for client in self._server.get_clients().values()
+        ]
+        try:
+            kept = write()
+            scene, alternatives = self._reopen()
+        except KinematifyError as error:
+            self._tell("Nothing was changed", str(error))
+            return None
+        finally:
+            self._keep.disabled = False
+            for item in waiting:
+                item.remove()
+        self._open(scene, alternatives, (), "" if kept is None else _kept_words(kept))
+        if joint is not None and joint in self._sliders:
+            self.choose(joint)
+        return kept
+
+    def _tell(self, title: str, body: str) -> None:
+        for client in self._server.get_clients().values():
+            client.add_notification(title, body, color="red")
+
+    def _add_surroundings(self) -> None:
+        """Ground, light, and the first look: from the side towards which the parts move."""
+        scene, size = self._server.scene, self._scene.size
+        scene.set_up_direction("+z")
+        eye, target = self._scene.camera
+        camera = self._server.initial_camera
+        camera.position, camera.look_at, camera.up = tuple(eye), tuple(target), (0.0, 0.0, 1.0)
+        camera.near = 1e-3 * size
+        cell = 10.0 ** math.floor(math.log10(max(size, 1e-6)) - 0.5)
+        scene.add_grid(
+            "/ground",
+            width=4.0 * size,
+            height=4.0 * size,
+            cell_size=cell,
+            section_size=10.0 * cell,
+            cell_thickness=0.6,
+            cell_color=(224, 224, 228),
+            section_color=(196, 196, 204),
+            plane_color=(247, 247, 249),
+            plane_opacity=0.9,
+            shadow_opacity=0.2,
+            position=(float(target[0]), float(target[1]), self._scene.ground - 1e-3 * size),
+        )
+        scene.configure_default_lights(enabled=True, cast_shadow=True)
+
+    def _add_bodies(self) -> None:
+        for top, surfaces in self._scene.surfaces.items():
+            self._frames[top] = self._server.scene.add_frame(f"/parts/{top}", show_axes=False)
+            for number, surface in enumerate(surfaces):
+                handle = self._add_surface(f"/parts/{top}/{number}", surface)
+                handle.on_click(_ignoring_event(partial(self._clicked, top)))
+
+    def _add_surface(self, name: str, surface: Surface) -> Any:
+        material = surface.material
+        if material.texture is None or surface.uv is None:
+            red, green, blue, opacity = material.color
+            return self._server.scene.add_mesh_simple(
+                name,
+                surface.vertices.astype(np.float32),
+                surface.faces.astype(np.uint32),
+                color=(round(255 * red), round(255 * green), round(255 * blue)),
+                opacity=None if opacity >= 1.0 else opacity,
+                flat_shading=True,
+                side="double",
+            )
+        look: Any = trimesh.visual
+        picture = Image.fromarray(material.texture.pixels)
+        mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
+        shown = look.material.PBRMaterial(
+            baseColorTexture=picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True
+        )
+        mesh.visual = look.TextureVisuals(uv=surface.uv, material=shown)
+        return self._server.scene.add_mesh_trimesh(name, mesh)
+
+    def _add_panel(self, sights: Sequence[Sight], said: str) -> None:
+        gui = self._server.gui
+        poses = gui.add_button_group("Pose", _POSES)
+        poses.on_click(lambda event: self._pose(event.target.value))
+        self._status = gui.add_markdown("Looking for collisions ...")
+        tabs = gui.add_tab_group()
+        with tabs.add_tab("Joints"):
+            self._add_joints(said)
+        if sights:
+            with tabs.add_tab(f"Findings ({len(sights)})"):
+                self._add_findings(sights)
+        with tabs.add_tab("View"):
+            self._add_view()
+
+    def _add_joints(self, said: str) -> None:
+        gui = self._server.gui
+        for joint in self._scene.leaders:
+            self._add_slider(joint)
+            self._draw_axis(joint)
+        if not self._scene.leaders:
+            gui.add_markdown("No joint of this model moves.")
+        self._told = gui.add_markdown(said or "Touch a slider or click a part.")
+        self._play = gui.add_button("Play", visible=False)
+        self._play.on_click(_ignoring_event(self._sweep))
+        self._options = [_AS_WRITTEN]
+        self._choice: Any = gui.add_dropdown("It could also", (_AS_WRITTEN,), visible=False)
+        self._choice.on_update(_ignoring_event(self._tried))
+        self._keep = gui.add_button("Keep this", visible=False, color="green", hint="Writes the model with this joint.")
+        self._keep.on_click(_ignoring_event(self.keep))
+        can_undo = self._folder is not None and self._folder.can_undo
+        back = gui.add_button("Take the last choice back", visible=can_undo)
+        back.on_click(_ignoring_event(self._undo))
+
+    def _add_slider(self, joint: Joint) -> None:
+        lower, upper, step = self._ends(joint)
+        start = float(np.clip(self._q[joint.name] * self._factor(joint.name), lower, upper))
+        slider = self._server.gui.add_slider(f"{joint.name} [{self._unit(joint)}]", lower, upper, step, start)
+        slider.on_update(partial(self._slid, joint.name))
+        self._sliders[joint.name] = slider
+
+    def _ends(self, joint: Joint) -> tuple[float, float, float]:
+        """Lower end, upper end and step of a slider, in its unit."""
+        factor = self._factor(joint.name)
+        lower, upper = (factor * end for end in self._scene.range_of(joint))
+        decade = math.floor(math.log10(max((upper - lower) / _SLIDER_STEPS, 1e-9)))
+        step = 10.0**decade
+        return round(lower, -decade), round(max(upper, lower + step), -decade), step
+
+    def _refit_slider(self, joint: Joint) -> None:
+        """Give a slider the range and the unit of what is tried."""
+        self._q[joint.name] = float(np.clip(0.0, *self._scene.range_of(joint)))
+        slider = self._sliders[joint.name]
+        lower, upper, step = self._ends(joint)
+        slider.label = f"{joint.name} [{self._unit(joint)}]"
+        slider.min, slider.max, slider.step = lower, upper, step
+        slider.value = float(np.clip(0.0, lower, upper))
+
+    def _factor(self, name: str) -> float:
+        """Units of a slider per rad or m."""
+        turns = self._scene.kind_of(self._scene.robot.joint_by_name[name]).turns
+        return 180.0 / math.pi if turns else 1000.0
+
+    def _unit(self, joint: Joint) -> str:
+        return "deg" if self._scene.kind_of(joint).turns else "mm"
+
+    def _candidates(self, joint: Joint) -> tuple[Alternative, ...]:
+        bounds = self._scene.bounds.get(self._scene.group_of(joint.child))
+        size = self._scene.size if bounds is None else float(np.linalg.norm(bounds[1] - bounds[0]))
+        return distinct(self._alternatives.get((joint.parent, joint.child), ()), size)
+
+    def _fill_joint(self, name: str) -> None:
+        """What is known of the chosen joint, below the sliders."""
+        joint = self._scene.robot.joint_by_name[name]
+        self._told.content = f"**{name}** moves {joint.child} on {joint.parent} ({joint.kind.value})."
+        self._play.visible = True
+        self._play.label = f"Play {name}"
+        candidates = self._candidates(joint)
+        bounds = self._scene.bounds.get(self._scene.group_of(joint.child), np.zeros((2, 3)))
+        words = [f"{number}: {described(item, bounds)}" for number, item in enumerate(candidates, start=1)]
+        self._options = [_AS_WRITTEN, *words]
+        self._choice.options = tuple(self._options)
+        self._choice.value = _AS_WRITTEN
+        self._choice.visible = bool(candidates)
+        self._keep.visible = False
+
+    def _add_findings(self, sights: Sequence[Sight]) -> None:
+        gui = self._server.gui
+        for sight in sights[:_SIGHTS]:
+            with gui.add_folder(sight.title, expand_by_default=len(sights) <= 3):
+                gui.add_markdown(sight.message)
+                gui.add_button("Show the place").on_click(_ignoring_event(partial(self.show, sight)))
+        if len(sights) > _SIGHTS:
+            gui.add_markdown(f"{len(sights) - _SIGHTS} more stand in the report.")
+
+    def _add_view(self) -> None:
+        gui = self._server.gui
+        gui.add_slider("Taken apart [%]", 0, 100, 1, 0).on_update(lambda event: self._take_apart(event.target.value))
+        gui.add_checkbox("Axes", initial_value=True).on_update(lambda event: self._show_axes(event.target.value))
+        gui.add_button("Picture (PNG)").on_click(lambda event: self._send_picture(event.client))
+        with gui.add_folder("Parts", expand_by_default=False):
+            for top in self._frames:
+                box = gui.add_checkbox(top, initial_value=True)
+                box.on_update(partial(self._toggle, top))
+
+    def _pose(self, name: str) -> None:
         with self._lock:
             self._sweeping, self._marked = None, frozenset()
-            self.set(self._scene.rest)
+            values = dict(self._scene.rest)
+            for joint in self._scene.leaders:
+                lower, upper = self._scene.range_of(joint)
+                if name == "Opened":
+                    values[joint.name] = upper if abs(upper) >= abs(lower) else lower
+                elif name == "Random":
+                    values[joint.name] = float(self._random.uniform(lower, upper))
+            self.set(values)
+            self._glow()
 
-    def _slid(self, name: str) -> None:
+    def _clicked(self, top: str) -> None:
+        """Choose the joint that carries a part, or the one that leads it."""
+        robot = self._scene.robot
+        joint = robot.joint_above.get(top)
+        while joint is not None and joint.mimic is not None:
+            joint = robot.joint_by_name[joint.mimic.joint]
+        if joint is not None and joint.name in self._sliders:
+            self.choose(joint.name)
+
+    def _slid(self, name: str, event: Any) -> None:
+        if event.client is None:  # moved by the program, not by a hand
+            return
         with self._lock:
-            if self._q[name] != self._sliders[name].value:
-                self._q[name] = float(self._sliders[name].value)
-                self._place()
-
-    def _sweep(self, name: str) -> None:
-        with self._lock:
-            self._sweeping = None if self._sweeping == name else name
-
-    def _toggle(self, top: str, *, visible: bool) -> None:
-        self._meshes[top].visible = visible
-
-    def _try(self, joint: Joint, candidates: Sequence[Alternative], number: int) -> None:
-        with self._lock:
-            self._scene.try_joint(joint.name, candidates[number - 1] if number else None)
-            self._draw_axis(joint)
+            value = float(self._sliders[name].value) / self._factor(name)
+            self._q[name] = value
             self._place()
+            self.choose(name)
+
+    def _sweep(self) -> None:
+        with self._lock:
+            self._sweeping = None if self._sweeping == self._chosen else self._chosen
+
+    def _tried(self) -> None:
+        with self._lock:
+            if self._chosen is not None and self._choice.value in self._options:
+                self.try_candidate(self._chosen, self._options.index(self._choice.value))
+
+    def _toggle(self, top: str, event: Any) -> None:
+        self._frames[top].visible = event.target.value
+
+    def _show_axes(self, visible: bool) -> None:  # the value of a box
+        for handle in self._axes.values():
+            handle.visible = visible
+
+    def _take_apart(self, percent: float) -> None:
+        with self._lock:
+            self._apart = percent / 100.0
+            self._place()
+
+    def _send_picture(self, client: Any) -> None:
+        width, height = _PICTURE
+        pixels = client.get_render(height, width, transport_format="png")
+        content = io.BytesIO()
+        Image.fromarray(pixels).save(content, format="PNG")
+        client.send_file_download(f"{self._scene.robot.name}.png", content.getvalue())
 
     def _draw_axis(self, joint: Joint) -> None:
         """Draw the axis with the range; it stays with the parent while the joint moves."""
         points = self._scene.glyph(joint).astype(np.float32)
-        color = _SLIDE if joint.kind is JointType.PRISMATIC else _AXIS
+        color = _AXIS if self._scene.kind_of(joint).turns else _SLIDE
         colors = np.broadcast_to(np.array(color, dtype=np.uint8), points.shape)
         self._axes[joint.name] = self._server.scene.add_line_segments(
-            f"/axes/{joint.name}", points, colors, thickness=3.0, thickness_units="screen"
+            f"/axes/{joint.name}",
+            points,
+            colors,
+            thickness=3.0,
+            thickness_units="screen",
+            visible=self._scene.kind_of(joint) is not JointType.FIXED,
         )
 
     def _place(self) -> None:
-        """Put everything where the joints stand, and colour what touches."""
-        poses = self._scene.poses(self._q)
-        touches = self._scene.touches(self._q)
-        colors = dict(self._colors)
-        for touch in reversed(touches):  # the worst come first, and so last here
-            if not touch.tolerated:
-                colors.update(dict.fromkeys(touch.pair, _WRONG))
-        for group in self._scene.groups:
-            if self._marked & set(group.links):
-                colors[group.top] = _TOUCHING
+        """Put everything where the joints stand; collisions are looked for later, since that takes longer."""
+        poses, apart = self._scene.poses(self._q), self._scene.apart(self._apart)
         with self._server.atomic():
-            for top, mesh in self._meshes.items():
-                mesh.wxyz, mesh.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3]
-                if top in colors and mesh.color != colors[top]:
-                    mesh.color = colors[top]
+            for top, frame in self._frames.items():
+                offset = apart.get(top, np.zeros(3))
+                frame.wxyz, frame.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3] + offset
             for joint in self._scene.leaders:
-                self._place_axis(joint, poses)
-        self._status.content = _told(touches)
+                self._place_axis(joint, poses, apart)
+        self._stale = True
 
-    def _place_axis(self, joint: Joint, poses: Mapping[str, FloatArray]) -> None:
+    def _place_axis(self, joint: Joint, poses: Mapping[str, FloatArray], apart: Mapping[str, FloatArray]) -> None:
         T = poses[joint.parent] @ joint.T_parent_child
         handle = self._axes[joint.name]
-        handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3]
+        offset = apart.get(self._scene.group_of(joint.child), np.zeros(3))
+        handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3] + offset
+
+    def _look_for_collisions(self) -> None:
+        with self._lock:
+            self._stale = False
+            touches = self._scene.touches(self._q)
+            self._colliding = frozenset(top for touch in touches if not touch.tolerated for top in touch.pair)
+            self._status.content = _told(touches)
+            self._glow()
+
+    def _glow(self) -> None:
+        """Let parts glow that collide, that a finding is about, or whose joint is chosen."""
+        chosen = self._chosen and self._scene.group_of(self._scene.robot.joint_by_name[self._chosen].child)
+        for group in self._scene.groups:
+            color = None
+            if self._marked & set(group.links):
+                color = _MARKED
+            elif group.top in self._colliding:
+                color = _WRONG
+            elif group.top == chosen:
+                color = _CHOSEN
+            self._let_glow(group.top, color)
+
+    def _let_glow(self, top: str, color: tuple[int, int, int] | None) -> None:
+        handle = self._glows.get(top)
+        if color is None or top not in self._frames:
+            if handle is not None:
+                handle.visible = False
+            return
+        if handle is None:
+            vertices, faces = self._scene.meshes[top]
+            shell = trimesh.Trimesh(vertices, faces, process=False)
+            swollen = vertices + _SWOLLEN * self._scene.size * np.asarray(shell.vertex_normals)
+            handle = self._server.scene.add_mesh_simple(
+                f"/parts/{top}/glow",
+                swollen.astype(np.float32),
+                faces.astype(np.uint32),
+                color=color,
+                opacity=_GLOW,
+                side="double",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+            handle.on_click(_ignoring_event(partial(self._clicked, top)))
+            self._glows[top] = handle
+        if handle.color != color:
+            handle.color = color
+        handle.visible = True
 
 
-def _ignoring_event(action: Callable[[], None]) -> Callable[[Any], None]:
+def _ignoring_event(action: Callable[[], object]) -> Callable[[Any], None]:
     """A callback of the page that does not care what caused it."""
-    return lambda _: action()
+
+    def called(_: Any) -> None:
+        action()
+
+    return called
+
+
+def _kept_words(kept: Kept) -> str:
+    """What was written, and the command that does the same."""
+    warnings = "".join(f"\n\n{warning}" for warning in kept.warnings)
+    return f"Kept. The same from the command line:\n\n```\n{kept.command}\n```{warnings}"
 
 
 def _told(touches: Sequence[Touch]) -> str:
     """Collisions and contacts in words."""
-    if not touches:
-        return "Nothing touches."
+    bad = [touch for touch in touches if not touch.tolerated]
+    if not bad:
+        return "Nothing collides."
     lines = [
-        f"- {'touch as at rest' if touch.tolerated else '**collide**'}: {' - '.join(touch.pair)}, "
-        f"{1e3 * touch.depth:.3g} mm deep"
-        for touch in touches[:_TOLD]
+        f"- **{' and '.join(touch.pair)}** stand in each other, {1e3 * touch.depth:.3g} mm deep"
+        for touch in bad[:_TOLD]
     ]
-    more = [f"- and {len(touches) - _TOLD} more"] if len(touches) > _TOLD else []
+    more = [f"- and {len(bad) - _TOLD} more pairs"] if len(bad) > _TOLD else []
     return "\n".join([*lines, *more])
-
-
-def _color(index: int) -> tuple[int, int, int]:
-    """A light grey for the root, then hues that differ from one body to the next, sRGB."""
-    if index == 0:
-        return 200, 197, 190
-    red, green, blue = colorsys.hls_to_rgb((0.08 + 0.61803398875 * index) % 1.0, 0.62, 0.5)
-    return round(255 * red), round(255 * green), round(255 * blue)

@@ -17,7 +17,7 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import Alternative, load_alternatives
+from kinematify.view.alternatives import Alternative, described, distinct, load_alternatives
 from kinematify.view.scene import ViewScene
 
 _URDF = """<robot name="door">
@@ -60,17 +60,13 @@ def test_collisions_are_told_apart_from_contact(scene: ViewScene) -> None:
 
 
 def test_an_alternative_replaces_axis_place_and_type(scene: ViewScene) -> None:
-    slide = Alternative(
-        title="t", kind=JointType.PRISMATIC, axis=np.array([0.0, -1.0, 0.0]), pivot=np.array([3.0, 0.0, 0.0])
-    )
+    slide = Alternative(kind=JointType.PRISMATIC, axis=np.array([0.0, -1.0, 0.0]), pivot=np.array([3.0, 0.0, 0.0]))
     at_zero = scene.poses({"hinge": 0.0})["door"]
     scene.try_joint("hinge", slide)
     assert np.allclose(scene.poses({"hinge": 0.0})["door"], at_zero)
     moved = scene.poses({"hinge": 0.7})["door"]
     assert np.allclose(moved[:3, 3] - at_zero[:3, 3], [0.0, -0.7, 0.0])
-    other_edge = Alternative(
-        title="t", kind=JointType.REVOLUTE, axis=np.array([0.0, 0.0, 1.0]), pivot=np.array([0.4, -0.1, 0.0])
-    )
+    other_edge = Alternative(kind=JointType.REVOLUTE, axis=np.array([0.0, 0.0, 1.0]), pivot=np.array([0.4, -0.1, 0.0]))
     scene.try_joint("hinge", other_edge)
     still = np.array([0.4, -0.1, 0.5, 1.0])
     in_door = np.linalg.solve(at_zero, still)
@@ -93,9 +89,65 @@ def test_alternatives_of_a_record(tmp_path: Path) -> None:
     candidate = {"type": "revolute", "axis": [0, 0, 1], "pivot": [1, 2, 3], "score": 0.5, "source": "panel"}
     record = {"joints": [{"parent": "frame", "child": "door", "candidates": [candidate]}]}
     (tmp_path / "inference.json").write_text(json.dumps(record))
-    (found,) = load_alternatives(tmp_path / "inference.json")["frame", "door"]
+    found, fixed = load_alternatives(tmp_path / "inference.json")["frame", "door"]
     assert (found.kind, found.pivot.tolist()) == (JointType.REVOLUTE, [1.0, 2.0, 3.0])
-    assert "score 0.50, panel" in found.title
+    assert fixed.kind is JointType.FIXED
+
+
+_BOUNDS = np.array([[0.0, -0.02, 0.0], [0.6, 0.02, 1.0]])
+
+
+@pytest.mark.parametrize(
+    ("kind", "axis", "pivot", "words"),
+    [
+        (JointType.REVOLUTE, (0.0, 0.0, 1.0), (0.0, 0.0, 0.3), "turns about its left edge, axis upright"),
+        (JointType.REVOLUTE, (0.0, 0.0, -1.0), (0.6, 0.0, 0.3), "turns about its right edge, axis upright"),
+        (JointType.REVOLUTE, (1.0, 0.0, 0.0), (0.1, 0.0, 1.0), "turns about its upper edge, axis from left to right"),
+        (JointType.REVOLUTE, (0.0, 1.0, 0.0), (0.3, 0.0, 0.5), "turns about its middle, axis from front to back"),
+        (JointType.PRISMATIC, (0.0, -1.0, 0.0), (0.0, 0.0, 0.0), "slides out or in"),
+        (JointType.PRISMATIC, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), "slides up or down"),
+        (JointType.FIXED, (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), "fixed"),
+    ],
+)
+def test_candidates_are_said_in_words(
+    kind: JointType, axis: tuple[float, ...], pivot: tuple[float, ...], words: str
+) -> None:
+    item = Alternative(kind=kind, axis=np.array(axis), pivot=np.array(pivot), probability=0.224)
+    assert described(item, _BOUNDS) == f"{words}, 22 %"
+
+
+def test_candidates_that_look_the_same_are_one() -> None:
+    def turn(x: float, probability: float) -> Alternative:
+        place = np.array([x, 0.0, 0.0])
+        axis = np.array([0.0, 0.0, 1.0])
+        return Alternative(kind=JointType.REVOLUTE, axis=axis, pivot=place, probability=probability, score=probability)
+
+    fixed = Alternative(kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]), pivot=np.zeros(3), probability=0.05)
+    left, again, right = turn(0.0, 0.3), turn(0.02, 0.25), turn(0.6, 0.4)
+    found = distinct([right, left, again, fixed], size=1.2)
+    assert [item.probability for item in found] == pytest.approx([0.55, 0.4, 0.05])
+    assert found[-1].kind is JointType.FIXED
+
+
+def test_a_model_without_colours_gets_some_and_one_with_colours_keeps_them(urdf: Path, scene: ViewScene) -> None:
+    invented = {surfaces[0].material.color for surfaces in scene.surfaces.values()}
+    assert len(invented) == len(scene.surfaces)
+    red = _URDF.replace("</collision></link>", "</collision></link>", 1).replace(
+        '<link name="door"><collision>',
+        '<link name="door"><visual><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.04 1.8"/></geometry>'
+        '<material name="r"><color rgba="1 0 0 0.5"/></material></visual><collision>',
+    )
+    urdf.write_text(red)
+    shown = ViewScene(read_robot(urdf, appearance=True), load_settings()).surfaces
+    assert (1.0, 0.0, 0.0, 0.5) in {surface.material.color for surface in shown["door"]}
+
+
+def test_a_model_is_taken_apart_from_its_middle(scene: ViewScene) -> None:
+    assert all(np.allclose(offset, 0.0) for offset in scene.apart(0.0).values())
+    apart = scene.apart(1.0)
+    middles = {top: corners.mean(axis=0) for top, corners in scene.bounds.items()}
+    difference = middles["door"] - middles["frame"]
+    assert np.allclose(apart["door"] - apart["frame"], difference)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,114 @@
+"""A candidate of the viewer becomes the joint of the model folder, as a hint would make it."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.errors import InputError
+from kinematify.pipeline import infer
+from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
+from kinematify.refinement.hints import AXES, Hint, with_hints
+from kinematify.robot.joint_type import JointType
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kinematify.pipeline import Inference
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.view.alternatives import Alternative
+
+_ALONG = np.cos(np.radians(1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kept:
+    """What was written."""
+
+    hints: tuple[str, ...]
+    """Of the joint that was chosen, as they are typed behind ``--hint``."""
+    command: str
+    """That infers the same model from its parts."""
+    warnings: tuple[str, ...]
+    """What the geometry says against it, one sentence each."""
+
+
+class ModelFolder:
+    """A model folder in which joints are chosen again; the inference is made when the first one is."""
+
+    def __init__(self, folder: Path) -> None:
+        """Keep the place; nothing is read yet."""
+        self.folder = folder
+        self._steps: list[Inference] = []
+        """Models of the folder, the present one last."""
+
+    def keep(self, part: str, chosen: Alternative) -> Kept:
+        """Let a part move as a candidate says, and write the model.
+
+        Raises:
+            InputError: The folder holds no model of this version, or it was changed by hand.
+            OutputError: The folder cannot be written; it is as it was.
+        """
+        if not self._steps:
+            assembly, config = open_model_folder(self.folder)
+            record = read_record(self.folder)
+            inference = infer(assembly, config=config, base=record["trees"][0]["root"])
+            self._steps.append(as_left(inference, record))
+        before = self._steps[-1]
+        hint = hint_of(part, chosen, _kind_of(before, part))
+        after = with_hints(before, [hint])
+        write_refined(after, self.folder, preview=True)
+        self._steps.append(after)
+        new = tuple(warning for warning in after.warnings if warning not in before.warnings)
+        return Kept(hints=hint.texts, command=self._command(after), warnings=new)
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether a joint was chosen here."""
+        return len(self._steps) > 1
+
+    def undo(self) -> None:
+        """Write the model as it was before the last choice.
+
+        Raises:
+            InputError: Nothing was chosen.
+            OutputError: The folder cannot be written; it is as it was.
+        """
+        if not self.can_undo:
+            raise InputError("Nothing was chosen here that could be taken back. Choose a candidate first.")
+        write_refined(self._steps[-2], self.folder, preview=True)
+        self._steps.pop()
+
+    def _command(self, inference: Inference) -> str:
+        hints = [word for text in inference.hints for word in ("--hint", text)]
+        source, out = inference.assembly.source, str(self.folder)
+        return shlex.join(["kinematify", "infer", source, "-o", out, "--force", *hints])
+
+
+def hint_of(part: str, chosen: Alternative, before: JointType) -> Hint:
+    """Return the hint that says what a candidate is.
+
+    Args:
+        part: Name of the part that moves.
+        chosen: The candidate.
+        before: Type of the joint as it is: what turns without end goes on doing so.
+    """
+    if chosen.kind is JointType.FIXED:
+        return Hint(part=part, kind=JointType.FIXED)
+    axis = next((name for name, way in AXES.items() if abs(float(chosen.axis @ np.array(way))) > _ALONG), None)
+    if not chosen.kind.turns:
+        return Hint(part=part, kind=JointType.PRISMATIC, axis=axis or _numbers(chosen.axis))
+    kind = before if before.turns else JointType.REVOLUTE
+    return Hint(part=part, kind=kind, axis=axis or _numbers(chosen.axis), pivot=_numbers(chosen.pivot))
+
+
+def _numbers(values: FloatArray) -> str:
+    return ",".join(f"{value:.6g}" for value in values.round(6) + 0.0)
+
+
+def _kind_of(inference: Inference, part: str) -> JointType:
+    names = inference.assembly.names
+    return next((joint.kind for joint in inference.joints if names[joint.child] == part), JointType.FIXED)

@@ -1,0 +1,109 @@
+"""The page of a model: a server that shows it until it is closed."""
+
+from __future__ import annotations
+
+import html
+import threading
+from contextlib import redirect_stdout
+from io import StringIO
+from typing import TYPE_CHECKING
+
+from kinematify.config.validation import load_settings
+from kinematify.errors import EnvironmentFault
+from kinematify.model.output import MODEL_FILE, RECORD_FILE
+from kinematify.robot.read import read_robot
+from kinematify.view.alternatives import load_alternatives
+from kinematify.view.scene import ViewScene
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kinematify.view.alternatives import Alternative
+    from kinematify.view.server import ModelViewer, Sight
+
+_PAGE_HEIGHT = 620
+"""Of the frame in a notebook [pixels]."""
+
+
+def read_model(
+    urdf: Path, package_dirs: Sequence[Path]
+) -> tuple[ViewScene, dict[tuple[str, str], tuple[Alternative, ...]]]:
+    """Read a URDF with its colours, and the candidates of its joints where `inference.json` lies beside it.
+
+    Raises:
+        InputError: One of them cannot be read.
+    """
+    scene = ViewScene(read_robot(urdf, package_dirs=package_dirs, appearance=True), load_settings())
+    record = urdf.parent / RECORD_FILE
+    return scene, load_alternatives(record) if record.is_file() else {}
+
+
+class Window:
+    """A page that is being served."""
+
+    def __init__(
+        self,
+        urdf: Path,
+        *,
+        package_dirs: Sequence[Path] = (),
+        sights: Sequence[Sight] = (),
+        host: str = "127.0.0.1",
+        port: int = 8080,
+    ) -> None:
+        """Start to serve.
+
+        Args:
+            urdf: The model.
+            package_dirs: Where packages lie (``package://``).
+            sights: Findings about it.
+            host: ``0.0.0.0`` lets other machines in.
+            port: Another one is taken if it is not free.
+
+        Raises:
+            InputError: The model cannot be read.
+            EnvironmentFault: viser is not installed.
+        """
+        try:
+            import viser  # noqa: PLC0415  # an extra
+        except ImportError as error:
+            raise EnvironmentFault(
+                "The viewer needs the package viser, which is not installed. Run `pip install kinematify[view]`."
+            ) from error
+        from kinematify.view.keep import ModelFolder  # noqa: PLC0415  # loads the inference
+        from kinematify.view.server import ModelViewer  # noqa: PLC0415  # needs viser
+
+        scene, alternatives = read_model(urdf, package_dirs)
+        self._stop = threading.Event()
+        with redirect_stdout(StringIO()):  # a banner of its own
+            self._server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
+        self.viewer: ModelViewer = ModelViewer(
+            self._server,
+            scene,
+            alternatives=alternatives,
+            sights=sights,
+            folder=ModelFolder(urdf.parent) if urdf.name == MODEL_FILE and alternatives else None,
+            reopen=lambda: read_model(urdf, package_dirs),
+        )
+        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
+        self.url = f"http://{shown}:{self._server.get_port()}"
+        """Address of the page."""
+
+    def run(self) -> None:
+        """Serve until `close` is called."""
+        self.viewer.run(self._stop)
+
+    def run_aside(self) -> None:
+        """Serve in a thread of its own, until `close` is called or Python ends."""
+        threading.Thread(target=self.run, daemon=True, name="kinematify view").start()
+
+    def close(self) -> None:
+        """End the page."""
+        self._stop.set()
+        with redirect_stdout(StringIO()):
+            self._server.stop()
+
+    def _repr_html_(self) -> str:
+        """The page in a notebook."""
+        address = html.escape(self.url, quote=True)
+        return f'<iframe src="{address}" width="100%" height="{_PAGE_HEIGHT}" frameborder="0"></iframe>'

@@ -1,0 +1,70 @@
+"""A candidate that is kept in the viewer is the joint of the file from then on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from kinematify.errors import InputError
+from kinematify.pipeline import infer, write_inference
+from kinematify.refinement.folder import read_record
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.read import read_robot
+from kinematify.view.alternatives import load_alternatives
+from kinematify.view.keep import ModelFolder
+from tests.objects import BUILDERS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_inference(infer(BUILDERS["edge_door"]().assembly), tmp_path / "model", preview=False)
+    return tmp_path / "model"
+
+
+def test_keeping_writes_the_joint_the_hint_and_the_command_and_can_be_taken_back(folder: Path) -> None:
+    (joint,) = read_robot(folder / "model.urdf").joints
+    assert joint.kind is JointType.REVOLUTE
+    choices = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
+    slide = next(item for item in choices if item.kind is JointType.PRISMATIC)
+    kept = ModelFolder(folder)
+    told = kept.keep(joint.child, slide)
+    (found,) = read_robot(folder / "model.urdf").joints
+    assert found.kind is JointType.PRISMATIC
+    assert abs(float(found.axis @ slide.axis)) > 0.99
+    assert told.hints[0] == f"{joint.child}=prismatic"
+    assert tuple(read_record(folder)["hints"]) == told.hints
+    assert all(f"--hint {text}" in told.command for text in told.hints)
+    kept.undo()
+    (again,) = read_robot(folder / "model.urdf").joints
+    assert (again.kind, again.lower, again.upper) == (joint.kind, joint.lower, joint.upper)
+    assert np.allclose(again.axis, joint.axis)
+    with pytest.raises(InputError, match="Nothing was chosen"):
+        kept.undo()
+
+
+def test_fixed_is_a_choice_and_another_viewer_goes_on_from_it(folder: Path) -> None:
+    (joint,) = read_robot(folder / "model.urdf").joints
+    *_, fixed = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
+    ModelFolder(folder).keep(joint.child, fixed)
+    assert read_robot(folder / "model.urdf").joints[0].kind is JointType.FIXED
+    turn = replace(fixed, kind=JointType.REVOLUTE, pivot=joint.T_parent_child[:3, 3])
+    told = ModelFolder(folder).keep(joint.child, turn)
+    assert read_robot(folder / "model.urdf").joints[0].kind is JointType.REVOLUTE
+    assert f"{joint.child}=fixed" not in told.command, "the last word counts"
+
+
+def test_a_model_that_was_changed_by_hand_is_left_as_it_is(folder: Path) -> None:
+    path = folder / "model.urdf"
+    path.write_text(path.read_text().replace("<robot", "<!-- mine --><robot", 1))
+    changed = path.read_bytes()
+    (joint,) = read_robot(path).joints
+    *_, fixed = load_alternatives(folder / "inference.json")[joint.parent, joint.child]
+    with pytest.raises(InputError, match="was changed"):
+        ModelFolder(folder).keep(joint.child, fixed)
+    assert path.read_bytes() == changed
