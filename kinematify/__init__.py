@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.run import validate
+    from kinematify.view.loaded import LoadedModel, load
 
 __version__ = "0.1.0"
 
@@ -37,12 +38,14 @@ __all__ = [
     "KinematicModel",
     "KinematicTree",
     "KinematifyError",
+    "LoadedModel",
     "Part",
     "Refinement",
     "ValidationReport",
     "__version__",
     "export",
     "infer",
+    "load",
     "load_assembly",
     "load_config",
     "refine",
@@ -59,11 +62,13 @@ _HOMES = {
     "KinematicModel": "kinematify.model.kinematic_model",
     "KinematicTree": "kinematify.topology.tree",
     "KinematifyError": "kinematify.errors",
+    "LoadedModel": "kinematify.view.loaded",
     "Part": "kinematify.assembly.part",
     "Refinement": "kinematify.refinement",
     "ValidationReport": "kinematify.validation.report",
     "export": "kinematify.formats.export",
     "infer": "kinematify.pipeline",
+    "load": "kinematify.view.loaded",
     "load_assembly": "kinematify.assembly.load",
     "load_config": "kinematify.config",
     "refine": "kinematify.refinement",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -155,7 +155,7 @@ def command(
     from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
 
     if listing:
-        click.echo(_parameters(category) if category else _categories())
+        _list(category, json_to)
         return 0
     if gallery is not None:
         _write_gallery(gallery)
@@ -272,6 +272,47 @@ def _categories() -> str:
         "Parameters with units and ranges: kinematify generate --list --category NAME\n"
         "A page with a picture of each: kinematify generate --gallery DIR"
     )
+
+
+def _list(category: str | None, json_to: str | None) -> None:
+    if json_to:
+        write_answer(_listing(category), json_to)
+    if json_to != "-":
+        click.echo(_parameters(category) if category else _categories())
+
+
+def _listing(category: str | None) -> dict[str, Any]:
+    """Categories with their parameters, or one of them, as JSON values."""
+    from kinematify.generate.composer.bodies import BODIES
+    from kinematify.generate.composer.mechanisms import MECHANISMS
+    from kinematify.generate.procedural.families import FAMILIES
+    from kinematify.generate.procedural.request import find_family
+
+    families = [find_family(category)] if category else list(FAMILIES.values())
+    return {
+        "schema": 1,
+        "categories": [
+            {
+                "name": family.name,
+                "title": family.title,
+                "words": list(family.words),
+                "parameters": [
+                    {
+                        "name": item.name,
+                        "default": item.default,
+                        "unit": item.unit or None,
+                        "bounds": None if item.bounds is None else list(item.bounds),
+                        "choices": [choice for choice in item.choices if choice],
+                        "help": item.help,
+                    }
+                    for item in family.all_parameters
+                ],
+            }
+            for family in families
+        ],
+        "bodies": [kind.words[0] for kind in BODIES],
+        "mechanisms": [kind.words[0] for kind in MECHANISMS],
+    }
 
 
 def _named(kinds: Sequence[Body] | Sequence[Mechanism]) -> str:

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from kinematify.pipeline import Inference
     from kinematify.robot.robot import Joint
 
+_INFERRED, _REFINED, _WRITTEN = 0.5, 0.55, 0.8
+"""Shares of the whole time after the inference, the refinement, and the files with the picture."""
+
 
 @click.command(
     "infer",
@@ -134,23 +137,29 @@ def command(
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
         told = parse_hints(hints, given.names, base=base)
-        inference = infer(given, config=settings, base=base, progress=progress)
+        inference = infer(given, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
         inference, heard = _with_votes(inference, vlm, progress)
         status, loaded = 0, ""
         if rounds is not None:
-            inference, status = _refined(inference, rounds, tier, base, progress)
+            inference, status = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
         inference = with_hints(inference, told) if told else inference
-        progress("writing the model", 1.0)
+        progress("writing the model", _REFINED)
         write_inference(inference, out, overwrite=force, preview=not no_preview)
         if not no_validation:
-            progress("loading the model into engines", 1.0)
+            progress("loading the model into engines", _WRITTEN)
             loaded = as_loaded(out / MODEL_FILE)
+        progress("done", 1.0)
     if json_to:
         write_answer({**_as_answer(inference, out), "as_loaded": loaded or None}, json_to)
     if json_to != "-":
         blocks = (heard, describe_refinement(inference), describe(inference, out), loaded)
         click.echo("\n\n".join(block for block in blocks if block))
     return status
+
+
+def _share(progress: Callable[[str, float], None], start: float, end: float) -> Callable[[str, float], None]:
+    """Progress of a step that is a share of the whole; that it is done, only the whole says."""
+    return lambda stage, done: progress(stage, start + (end - start) * done) if done < 1.0 else None
 
 
 def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float], None]) -> tuple[Inference, str]:
@@ -162,7 +171,7 @@ def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float],
     oracle = oracle_of(vlm, inference.config.vision)
     if oracle is None:
         return inference, ""
-    progress("asking a vision model about the joints", 0.9)
+    progress("asking a vision model about the joints", _INFERRED)
     inference, heard = with_votes(inference, oracle)
     return inference, describe_votes(heard)
 

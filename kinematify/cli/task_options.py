@@ -74,9 +74,9 @@ class TaskOptions:
             raise InputError(f"--into {self.into} is no file. Give the URDF of the container that is poured into.")
         return None if self.into is None else self.into.absolute()
 
-    def _films(self, files: ReportFiles) -> Path:
-        beside = next((path.absolute().parent for path in files.paths.values()), Path.cwd())
+    def _films(self, files: ReportFiles) -> Path | None:
+        beside = next((path.absolute().parent for path in files.paths.values()), None)
         folder = beside if self.films is None else self.films.absolute()
-        if not folder.is_dir():
+        if folder is not None and not folder.is_dir():
             raise OutputError(f"--films {folder} is no folder. Give a folder that exists.")
         return folder

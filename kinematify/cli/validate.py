@@ -92,7 +92,7 @@ if TYPE_CHECKING:
     "--films",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Where films of the task go: beside the first report, or here, if not given.",
+    help="Where films of the task go: beside the first report if not given; without either none are made.",
 )
 @click.option(
     "--all", "everything", is_flag=True, help="Tell notes, every place and number, joints and what did not run."

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from kinematify.assembly.load import load_assembly
+from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
@@ -18,7 +21,6 @@ from kinematify.pipeline.stages import choose_joints, find_trees, with_doubt_of_
 from kinematify.pipeline.warnings import warnings_of
 
 if TYPE_CHECKING:
-    from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def infer(
-    assembly: Assembly,
+    assembly: Assembly | str | Path,
     *,
     config: Config | None = None,
     base: str | None = None,
@@ -36,7 +38,8 @@ def infer(
     """Infer the kinematic tree and all joints of an assembly (paper, Algorithm 1).
 
     Args:
-        assembly: Rigid parts in one configuration, world frame, z up, metres.
+        assembly: Rigid parts in one configuration, world frame, z up, metres; or the file or folder that
+            `kinematify.load_assembly` reads them from, whose arguments say what is up and how long the unit is.
         config: All stages, the default ones if absent; `config.seed` makes the answer reproducible.
         base: Name of the part that is the base link, where it is known.
         graph: The contacts, where they are known already.
@@ -44,8 +47,11 @@ def infer(
 
     Raises:
         InputError: `base` is no part of the assembly.
+        AssemblyError: The file or folder cannot become an assembly.
     """
     config = config or load_config()
+    if not isinstance(assembly, Assembly):
+        assembly = load_assembly(assembly, config=config.assembly)
     if base is not None and base not in assembly.names:
         raise InputError(f"There is no part {base} to be the base link. The parts are {', '.join(assembly.names)}.")
     clock = StageClock(progress)

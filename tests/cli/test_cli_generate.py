@@ -159,6 +159,11 @@ def test_several_processes_write_the_same_corpus_as_one(tmp_path):
 
 
 def test_the_categories_and_their_parameters_are_listed(capsys):
+    assert run(["generate", "--list", "--json", "-"]) == 0
+    stated = json.loads(capsys.readouterr().out)
+    (cabinet,) = [item for item in stated["categories"] if "wardrobe" in item["words"]]
+    assert next(item["bounds"] for item in cabinet["parameters"] if item["unit"] == "m") == [0.1, 5.0]
+    assert "caster" in " ".join(stated["mechanisms"])
     assert run(["generate", "--list"]) == 0
     assert "serial_arm" in capsys.readouterr().out
     assert run(["generate", "--list", "--category", "wardrobe"]) == 0

@@ -1,0 +1,171 @@
+"""A model opened in Python: `kinematify.load("robot.urdf")`."""
+
+from __future__ import annotations
+
+import importlib
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify.errors import DescriptionError, EnvironmentFault, InputError
+from kinematify.model.output import MODEL_FILE
+from kinematify.robot.read import read_robot
+from kinematify.robot.robot import forward_kinematics
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from trimesh import Trimesh
+
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Joint, Robot
+    from kinematify.view.window import Window
+
+
+def load(path: str | Path, *, package_dirs: Sequence[str | Path] = ()) -> LoadedModel:
+    """Open a URDF, or the model folder of `kinematify infer` or `generate`.
+
+    Args:
+        path: The file or the folder.
+        package_dirs: Where packages lie (``package://``).
+
+    Raises:
+        InputError: There is no such file, or it cannot be read.
+    """
+    urdf = Path(path) / MODEL_FILE if Path(path).is_dir() else Path(path)
+    if not urdf.is_file():
+        raise InputError(f"There is no file {urdf}. Give a URDF, or a model folder that `kinematify infer` wrote.")
+    return LoadedModel(urdf, tuple(map(Path, package_dirs)))
+
+
+class LoadedModel:
+    """A robot of a file, to pose, to look at, and to hand to an engine.
+
+    A configuration is given as joint name -> value [rad or m]. The name of a link may stand for the joint above it,
+    what is not named stands at zero, and followers follow.
+    """
+
+    def __init__(self, urdf: Path, package_dirs: tuple[Path, ...]) -> None:
+        """Read the file; see `load`."""
+        self.path = urdf.resolve()
+        """The URDF."""
+        self.robot: Robot = read_robot(urdf, package_dirs=package_dirs, appearance=True)
+        """Links, joints and meshes."""
+        self._package_dirs = package_dirs
+
+    def __repr__(self) -> str:
+        """Name, file and joints that move."""
+        return f"<{self.robot.name}: {len(self.robot.links)} links, joints {', '.join(self.joints)}>"
+
+    @property
+    def joints(self) -> dict[str, Joint]:
+        """Joints that move by themselves, by name, in the order of the file."""
+        return {joint.name: joint for joint in self.robot.leaders}
+
+    def pose(self, q: Mapping[str, float] | None = None) -> dict[str, FloatArray]:
+        """Return T_world_link of every link, shape (4, 4); the root link's frame is the world.
+
+        Args:
+            q: The configuration; all joints at zero if absent.
+
+        Raises:
+            InputError: `q` names neither a joint nor a link that a joint moves.
+        """
+        return forward_kinematics(self.robot, self._by_joint(q or {}))
+
+    def meshes(self, q: Mapping[str, float] | None = None) -> dict[str, Trimesh]:
+        """Return what is seen of every link that has geometry, world frame [m], with the mean colour of each triangle.
+
+        Args:
+            q: The configuration; all joints at zero if absent.
+
+        Raises:
+            InputError: As for `pose`.
+        """
+        import trimesh  # noqa: PLC0415  # takes longer than all else here
+
+        poses = self.pose(q)
+        found = {}
+        for link in self.robot.links:
+            parts = [_colored(trimesh, mesh) for mesh in link.meshes if len(mesh.faces)]
+            if parts:
+                whole: Any = trimesh.util.concatenate(parts)
+                whole.apply_transform(poses[link.name])
+                found[link.name] = whole
+        return found
+
+    def to_mujoco(self) -> Any:
+        """Return a `mujoco.MjModel` of this model, with its colours, and a motor for each joint that has an effort.
+
+        Raises:
+            EnvironmentFault: MuJoCo is not installed.
+            InputError: The model cannot be simulated.
+        """
+        mujoco = _engine("mujoco", "mujoco")
+        from kinematify.formats.export import export  # noqa: PLC0415  # loads the collision geometry
+
+        with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+            file = Path(folder, "model.xml")
+            export(self.path, "mjcf", file, package_dirs=self._package_dirs)
+            return mujoco.MjModel.from_xml_path(str(file))
+
+    def to_pinocchio(self) -> Any:
+        """Return a `pinocchio.Model` of this file, its root fixed to the world.
+
+        Raises:
+            EnvironmentFault: Pinocchio is not installed.
+        """
+        return _engine("pinocchio", "pin").buildModelFromUrdf(str(self.path))
+
+    def show(self, q: Mapping[str, float] | None = None, *, port: int = 8080) -> Window:
+        """Show the model in a browser, as `kinematify view` does; in a notebook the answer is the page itself.
+
+        Args:
+            q: The configuration to start from; at rest if absent.
+            port: Another one is taken if it is not free.
+
+        Returns:
+            The window; its `url` is the address, `close()` ends it.
+
+        Raises:
+            EnvironmentFault: viser is not installed.
+            InputError: As for `pose`.
+        """
+        from kinematify.view.window import Window  # noqa: PLC0415  # loads the collision geometry
+
+        values = self._by_joint(q or {})
+        window = Window(self.path, package_dirs=self._package_dirs, port=port)
+        window.viewer.set(values)
+        window.run_aside()
+        return window
+
+    def _by_joint(self, q: Mapping[str, float]) -> dict[str, float]:
+        """A configuration by the names of joints."""
+        above = {link: joint.name for link, joint in self.robot.joint_above.items()}
+        named = {name if name in self.robot.joint_by_name else above.get(name, name): q[name] for name in q}
+        unknown = sorted(set(named) - set(self.robot.joint_by_name))
+        if unknown:
+            raise DescriptionError(
+                f"{self.path} has no joint {unknown[0]}, and no link of that name hangs on one. Its joints are "
+                f"{', '.join(self.joints) or 'none'}."
+            )
+        return {name: float(value) for name, value in named.items()}
+
+
+def _colored(trimesh: Any, mesh: Any) -> Any:
+    """A mesh of a link with a colour for each of its triangles where any is known."""
+    built = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    if mesh.appearance is not None:
+        middle = np.full((len(mesh.faces), 3), 1.0 / 3.0)
+        colors = mesh.appearance.colors_at(np.arange(len(mesh.faces)), middle)
+        built.visual.face_colors = np.round(255.0 * colors).astype(np.uint8)
+    return built
+
+
+def _engine(module: str, package: str) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        raise EnvironmentFault(f"{module} is not installed. Run `pip install {package}`.") from error

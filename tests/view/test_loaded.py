@@ -1,0 +1,77 @@
+"""`kinematify.load`: a model of a file posed, shown and handed to engines from Python."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import kinematify
+
+_URDF = """<robot name="door">
+<link name="frame"><inertial><mass value="3"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><geometry><box size="1 0.1 2"/></geometry><material name="w"><color rgba="1 1 0 1"/></material></visual>
+<collision><geometry><box size="1 0.1 2"/></geometry></collision></link>
+<link name="door"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.04 1.8"/></geometry></visual>
+<collision><origin xyz="0.4 0 0"/><geometry><box size="0.8 0.04 1.8"/></geometry></collision></link>
+<joint name="hinge" type="revolute"><parent link="frame"/><child link="door"/><origin xyz="-0.4 -0.1 0"/>
+<axis xyz="0 0 -1"/><limit lower="0" upper="1.5" effort="1" velocity="1"/></joint>
+</robot>"""
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> Path:
+    file = tmp_path / "model.urdf"
+    file.write_text(_URDF)
+    return file
+
+
+def test_a_model_is_posed_by_the_name_of_the_joint_or_of_its_link(urdf: Path) -> None:
+    robot = kinematify.load(urdf.parent)
+    assert list(robot.joints) == ["hinge"]
+    assert "joints hinge" in repr(robot)
+    turned = robot.pose({"hinge": 0.5 * np.pi})["door"]
+    assert np.allclose(turned, robot.pose({"door": 0.5 * np.pi})["door"])
+    assert np.allclose(turned[:3, :3] @ [1.0, 0.0, 0.0], [0.0, -1.0, 0.0])
+    with pytest.raises(kinematify.KinematifyError, match=r"no joint lid.*hinge"):
+        robot.pose({"lid": 1.0})
+
+
+def test_meshes_stand_where_the_links_do_in_their_colours(urdf: Path) -> None:
+    robot = kinematify.load(str(urdf))
+    found = robot.meshes({"door": 0.5 * np.pi})
+    assert np.allclose(found["door"].bounds[:, 0], [-0.42, -0.38])
+    visual = found["frame"].visual
+    assert visual is not None
+    assert np.asarray(visual.face_colors)[0].tolist() == [255, 255, 0, 255]
+
+
+def test_engines_get_the_model(urdf: Path) -> None:
+    robot = kinematify.load(urdf)
+    mujoco_model = robot.to_mujoco()
+    assert (mujoco_model.njnt, mujoco_model.nu) == (1, 1)
+    assert robot.to_pinocchio().nq == 1
+
+
+def test_it_is_shown_until_it_is_closed(urdf: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    window = kinematify.load(urdf).show({"door": 0.5}, port=18091)
+    try:
+        assert window.viewer.values == {"hinge": 0.5}
+        assert f'<iframe src="{window.url}"' in window._repr_html_()
+    finally:
+        window.close()
+
+
+def test_what_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(kinematify.KinematifyError, match="There is no file"):
+        kinematify.load(tmp_path)
+
+
+def test_infer_takes_the_path_of_the_parts() -> None:
+    inference = kinematify.infer(Path(__file__).parents[2] / "examples" / "cabinet")
+    assert {joint.child for joint in inference.model.joints} == {
+        "door_left", "door_right", "drawer_left", "drawer_right", "knob",
+    }  # fmt: skip
