@@ -348,6 +348,10 @@ class ConfidenceConfig(StageConfig):
 
     cues_lead: float
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
+    fixed: float
+    """How likely a part must be fixed to be taken for it."""
+    name_weight: float
+    """Log odds that a part's name adds to the kind of joint that it speaks of."""
     parent_margin: float
     """Lead in reward over trees with another parent at which that parent is e times less likely."""
 

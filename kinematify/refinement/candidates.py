@@ -119,7 +119,7 @@ class CandidateJoints:
             config=self._config,
             given=[Line(axis=joint.axis, point=joint.pivot)],
         )
-        judged = judge(weighed, lead=self._config.confidence.cues_lead)
+        judged = judge(weighed, self._config.confidence)
         hypotheses = judged.hypotheses
         apart = 1.0 - np.abs(hypotheses.axes @ joint.axis)
         if joint.kind.turns:

@@ -78,7 +78,7 @@ def test_the_weights_are_those_of_the_committed_recipe() -> None:
 
 
 def test_the_choice_is_the_first_alternative() -> None:
-    judged = judge(weighed_joints("edge_door"), lead=CONFIG.joints.confidence.cues_lead)
+    judged = judge(weighed_joints("edge_door"), CONFIG.joints.confidence)
     first = judged.alternatives(CONFIG.joints.alternatives)[0]
     np.testing.assert_array_equal(first.axis, judged.hypotheses.axes[judged.best])
     assert 0.0 < judged.confidence <= 1.0

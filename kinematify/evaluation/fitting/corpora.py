@@ -6,7 +6,7 @@ import json
 import multiprocessing
 import zlib
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.config import load_config
 from kinematify.errors import InputError, KinematifyError
+from kinematify.evaluation.fitting.broken_off import with_pieces_broken_off
 from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
 from kinematify.evaluation.fitting.objects import OBJECTS, drawn_object
 from kinematify.generate.procedural.composed import compose
@@ -37,6 +38,8 @@ FAMILY, PROGRAMMED, COMPOSED = GENERATED = "family", "programmed", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
+_BROKEN_ROUNDS = 2
+_MOST_PARTS = 25  # of an object with pieces broken off
 _AJAR = 0.25  # of the generated objects
 
 
@@ -51,6 +54,8 @@ class Source:
     """Of a generated object."""
     folder: Path | None = None
     """Of a real one, with its ``model.urdf`` and ``source.json``."""
+    broken: bool = False
+    """With pieces broken off."""
 
 
 def generated_sources(rounds: int, composed: int) -> list[Source]:
@@ -73,6 +78,15 @@ def real_sources(folder: Path) -> list[Source]:
     if not found:
         raise InputError(f"{folder} holds no object: a folder with a model.urdf and a source.json. Give one that does.")
     return found
+
+
+def broken_sources(sources: Sequence[Source]) -> list[Source]:
+    """Of every real object, and of two of every recipe, the same with pieces broken off."""
+    return [
+        replace(source, broken=True)
+        for source in sources
+        if source.folder is not None or (source.origin == PROGRAMMED and source.number < _BROKEN_ROUNDS)
+    ]
 
 
 def gather_examples(
@@ -115,14 +129,21 @@ def _measure(source: Source, path: Path, seed: int) -> None:
         write_examples(path, [])
         return
     name = f"{source.name}_{source.number}" if source.folder is None else source.name
+    parts, truth = opened.parts, opened.truth
+    if source.broken:
+        parts, truth = with_pieces_broken_off(parts, truth, np.random.default_rng(zlib.crc32(name.encode())))
+        if not len(opened.parts) < len(parts) <= _MOST_PARTS:
+            write_examples(path, [])
+            return
     found = examples_of(
-        Assembly(parts=opened.parts, source=name),
-        opened.truth,
+        Assembly(parts=parts, source=name),
+        truth,
         load_config(),
         category=opened.category,
         origin=source.origin,
         source=opened.source,
         fits=opened.fits,
+        broken=source.broken,
     )
     write_examples(path, found)
 

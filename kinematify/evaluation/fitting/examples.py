@@ -66,6 +66,8 @@ class Example:
     """Position of what the weighted cues alone would choose."""
     alike: int
     """The same number for edges of an object that are alike (`twins.alike_edges`), -1 for all others."""
+    broken: bool = False
+    """The object has pieces broken off; such edges teach what is fixed, not which joint is right."""
 
     @property
     def kinds(self) -> IntArray:
@@ -79,9 +81,19 @@ class Example:
 
 
 def examples_of(
-    assembly: Assembly, truth: GroundTruth, config: Config, *, category: str, origin: str, source: str, fits: bool
+    assembly: Assembly,
+    truth: GroundTruth,
+    config: Config,
+    *,
+    category: str,
+    origin: str,
+    source: str,
+    fits: bool,
+    broken: bool = False,
 ) -> list[Example]:
     """Measure all hypotheses of the edges of the true tree of an object.
+
+    Of an object with pieces broken off, the edges above and below the pieces' parents alone: others are as they were.
 
     Args:
         assembly: The parts, in the order of the truth.
@@ -91,7 +103,9 @@ def examples_of(
         origin: Of which corpus it is.
         source: Whose work it is.
         fits: See `Example`.
+        broken: See `Example`.
     """
+    lessened = {joint.parent for joint in truth.joints if joint.kind is JointType.FIXED}
     surfaces = part_surfaces(assembly, config=config.surface)
     graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
     bearings = fit_bearings(assembly, surfaces, graph, config=config.bearing, seed=config.seed)
@@ -102,7 +116,7 @@ def examples_of(
     found = []
     for edge in tree.edges():
         joints = [joint for joint in truth.joints if (joint.parent, joint.child) == edge]
-        if not joints:
+        if not joints or (broken and joints[0].kind is not JointType.FIXED and edge[1] not in lessened):
             continue
         bearing = bearings.get((min(edge), max(edge)))
         weighed = weigh_joints(cache, tree, frames, edge, bearing, config=config.joints)
@@ -133,6 +147,7 @@ def examples_of(
                 types_right=same.astype(np.int64),
                 by_cues=0 if stuck else 1 + (len(weighed.turns.scores) if slides else 0),
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
+                broken=broken,
             )
         )
     return found
@@ -175,6 +190,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "origin": example.origin,
                 "source": example.source,
                 "fits": example.fits,
+                "broken": example.broken,
                 "by_cues": example.by_cues,
                 "size": example.size,
                 "groups": example.groups,

@@ -10,12 +10,14 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
-from kinematify.evaluation.fitting.trees import fit_scorer
+from kinematify.evaluation.fitting.trees import fit_rigidity, fit_scorer, is_fixed, rigidity_odds
 from kinematify.joints.choice.judge import Judgement
 from kinematify.joints.choice.twins import agreed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
 
     from kinematify.evaluation.fitting.examples import Example
     from kinematify.robot.arrays import FloatArray
@@ -92,6 +94,44 @@ def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -
         for k, given in zip(rows, agreed([examples[k].kinds for k in rows], [likely[k] for k in rows]), strict=True):
             found[k] = given
     return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidityRow:
+    """How well fixed and moving parts of a set are told apart, left out by category."""
+
+    moving: int
+    lost: float | None
+    """Share of the moving parts that are taken for fixed."""
+    fixed: int
+    found: float | None
+    """Share of the fixed parts that are taken for fixed."""
+
+
+def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRow]:
+    """What is fixed, by trees whose fit had nothing of the category; by set."""
+    odds = np.zeros(len(examples))
+    folds = np.array(folds_of(examples, lambda example: example.category))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
+        judged = np.flatnonzero(folds == fold).tolist()
+        scorer = fit_rigidity(fitted, seeds=(0,), provenance={})
+        odds[judged] = rigidity_odds(scorer, [examples[k] for k in judged])
+    taken = 1.0 / (1.0 + np.exp(-odds)) > load_config().joints.confidence.fixed
+    fixed = np.array([is_fixed(example) for example in examples])
+    return {
+        name: RigidityRow(
+            moving=int((~fixed[index]).sum()),
+            lost=_share(taken[index][~fixed[index]]),
+            fixed=int(fixed[index].sum()),
+            found=_share(taken[index][fixed[index]]),
+        )
+        for name, index in sets_of(examples).items()
+    }
+
+
+def _share(taken: NDArray[np.bool_]) -> float | None:
+    return float(taken.mean()) if len(taken) else None
 
 
 def folds_of(examples: Sequence[Example], group: Callable[[Example], str]) -> list[int]:

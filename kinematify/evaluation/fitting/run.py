@@ -13,27 +13,43 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify import __version__
-from kinematify.evaluation.fitting.corpora import GENERATED, gather_examples, generated_sources, real_sources
+from kinematify.evaluation.fitting.corpora import (
+    GENERATED,
+    broken_sources,
+    gather_examples,
+    generated_sources,
+    real_sources,
+)
 from kinematify.evaluation.fitting.judged import (
     CAUSES,
     agreed_examples,
     calibration_of,
     cause_of,
     judge_left_out,
+    judge_rigidity_left_out,
     picked,
     row_of,
     sets_of,
     surprise_of,
 )
-from kinematify.evaluation.fitting.trees import data_key, fit_scorer, recipe_key, write_scorer
+from kinematify.evaluation.fitting.trees import (
+    data_key,
+    fit_rigidity,
+    fit_scorer,
+    is_fixed,
+    recipe_key,
+    rigidity_recipe_key,
+    write_scorer,
+)
 from kinematify.evaluation.record import table
-from kinematify.joints.choice.scorer import WEIGHTS
+from kinematify.joints.choice.scorer import RIGID_WEIGHTS, WEIGHTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from kinematify.evaluation.fitting.examples import Example
+    from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
 
     Likely = Mapping[str, Sequence[FloatArray]]
@@ -76,6 +92,7 @@ def run_fit(
         EnvironmentFault: LightGBM is not installed.
     """
     sources = generated_sources(rounds, composed) + [source for folder in folders for source in real_sources(folder)]
+    sources += broken_sources(sources)
     examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
     drawn = {"seed": seed, "rounds": rounds, "composed": composed}
     return fit_and_judge(examples, out, drawn=drawn, ablation=ablation, progress=progress)
@@ -90,6 +107,7 @@ def fit_and_judge(
     progress: Callable[[str, float], None],
 ) -> dict[str, Any]:
     """What `run_fit` does of examples that are measured; `drawn` says how many were generated."""
+    everything, examples = examples, [example for example in examples if not example.broken]
     fitted = [example for example in examples if example.fits]
     provenance = {
         "kinematify": __version__,
@@ -105,6 +123,7 @@ def fit_and_judge(
     scorer = fit_scorer(fitted, seeds=_SEEDS, provenance=provenance)
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
+    write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
     likely = {"left out by category": judge_left_out(examples, lambda example: example.category, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
@@ -115,12 +134,25 @@ def fit_and_judge(
         "provenance": provenance,
         "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
         "calibration": _calibration(examples, likely["left out by category"]),
+        "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
     }
     if ablation:
         report |= _ablation(examples, progress)
     (out / "choice.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     (out / "choice.md").write_text(as_markdown(report), encoding="utf-8")
     return report
+
+
+def _rigidity(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
+    """What tells fixed parts from others, fitted to all that may enter weights."""
+    fitted = [example for example in examples if example.fits]
+    facts = {
+        "joints": len(fitted),
+        "fixed": sum(map(is_fixed, fitted)),
+        "data": data_key(fitted),
+        "recipe": rigidity_recipe_key(list({name for example in fitted for name in example.measured})),
+    }
+    return fit_rigidity(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
 
 
 def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
@@ -178,6 +210,10 @@ def _surprises(examples: Sequence[Example], progress: Callable[[str, float], Non
     }
 
 
+def _percent(share: float | None) -> str:
+    return "" if share is None else f"{share:.1%}"
+
+
 def _version() -> str:
     """Of LightGBM; empty where it is not installed, which the fit then says."""
     try:
@@ -220,6 +256,14 @@ def as_markdown(report: dict[str, Any]) -> str:
             f"{found['errors_in_least_sure']:.0%} of the errors. Mean confidence of each fifth, and share right: "
             f"{fifths}. Calibration error: {found['error']:.3f}."
         )
+    rigidity = report["rigidity"]
+    if any(row["fixed"] for row in rigidity.values()):
+        columns = ("set", "moving parts", "taken for fixed", "pieces broken off", "found to be fixed")
+        counted = [
+            (name, f"{row['moving']}", _percent(row["lost"]), f"{row['fixed']}", _percent(row["found"]))
+            for name, row in rigidity.items()
+        ]
+        blocks += ["Whether a part is fixed, left out by category:", table(columns, counted)]
     for key, title in (
         (
             "ablation",

@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.evaluation.fitting.examples import VERDICTS, content_key
+from kinematify.joints.choice.rigid import rigid_columns
 from kinematify.joints.choice.scorer import FORMAT, SUMMARIES, Scorer, base_columns, stacked
 
 if TYPE_CHECKING:
@@ -38,6 +39,10 @@ _PARAMETERS = {
     "verbosity": -1,
 }
 _ROUNDS, _ROUNDS_UNTOLD = 220, 280  # those who are not told what the cues say have more to find out
+_RIGIDITY = {"learning_rate": 0.06, "min_data_in_leaf": 30, "min_sum_hessian_in_leaf": 1e-3}
+_RIGIDITY_ROUNDS = 250
+_FIXED_SHARE = 0.5
+"""Weight of all fixed parts together beside all others."""
 _SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
 """Weight of an example of such an origin beside one of a real object."""
 
@@ -76,9 +81,49 @@ def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance:
     )
 
 
+def fit_rigidity(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
+    """Fit what tells fixed parts from others; trees of several seeds are averaged.
+
+    Raises:
+        EnvironmentFault: LightGBM is not installed.
+    """
+    names = tuple(sorted({name for example in examples for name in example.measured}))
+    columns = np.stack([rigid_columns(example.kinds, example.measured, names) for example in examples])
+    fixed = np.array([is_fixed(example) for example in examples])
+    weights = _weights(examples)
+    weights[fixed] *= _FIXED_SHARE * weights[~fixed].sum() / max(float(weights[fixed].sum()), 1e-12)
+    lightgbm = _lightgbm()
+    boosters = [
+        lightgbm.train(
+            {**_PARAMETERS, **_RIGIDITY, "objective": "binary", "seed": seed},
+            lightgbm.Dataset(columns, fixed, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
+            _RIGIDITY_ROUNDS,
+        )
+        for seed in seeds
+    ]
+    base = np.zeros(3)
+    return Scorer(measurements=names, base=base, temperature=1.0, provenance=dict(provenance), **_arrays(boosters))
+
+
+def is_fixed(example: Example) -> bool:
+    """The true joint is none."""
+    return bool(example.right[0] > 0.5)
+
+
 def recipe_key(measurements: Sequence[str]) -> str:
     """Hash of how weights are fitted: of what measurements, from which start, with which parameters."""
     return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, _ROUNDS_UNTOLD, _SHARE)
+
+
+def rigidity_recipe_key(measurements: Sequence[str]) -> str:
+    """The same of the weights of what is fixed."""
+    return content_key(sorted(measurements), FORMAT, _PARAMETERS, _RIGIDITY, _RIGIDITY_ROUNDS, _FIXED_SHARE, _SHARE)
+
+
+def rigidity_odds(scorer: Scorer, examples: Sequence[Example]) -> FloatArray:
+    """Log odds that the child of each edge is fixed, shape (n,)."""
+    names = scorer.measurements
+    return scorer.sums(np.stack([rigid_columns(example.kinds, example.measured, names) for example in examples]))
 
 
 def data_key(examples: Sequence[Example]) -> str:
@@ -147,12 +192,7 @@ def _boost(
     seed: int,
     rounds: int,
 ) -> Any:
-    try:
-        import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
-    except ImportError as error:
-        raise EnvironmentFault(
-            "The fit needs LightGBM, which is not installed. Install it with: pip install 'kinematify[fit]'"
-        ) from error
+    lightgbm = _lightgbm()
 
     def objective(scores: FloatArray, data: object) -> tuple[FloatArray, FloatArray]:
         likely, _ = _likelihood(scores, starts)
@@ -162,6 +202,16 @@ def _boost(
         columns, label=target, init_score=begun, params={"max_bin": _PARAMETERS["max_bin"], "verbosity": -1}
     )
     return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, rounds)
+
+
+def _lightgbm() -> Any:
+    try:
+        import lightgbm  # noqa: PLC0415 - an extra that only the fit needs
+    except ImportError as error:
+        raise EnvironmentFault(
+            "The fit needs LightGBM, which is not installed. Install it with: pip install 'kinematify[fit]'"
+        ) from error
+    return lightgbm
 
 
 _DTYPES = {

@@ -61,17 +61,21 @@ def estimate_joints(
         edge: weigh_joints(cache, tree, frames, edge, bearings.get((min(edge), max(edge))), config=config)
         for edge in tree.edges()
     }
-    judged = {edge: judge(joints, lead=config.confidence.cues_lead) for edge, joints in weighed.items()}
+    judged = {edge: judge(joints, config.confidence) for edge, joints in weighed.items()}
     for group in alike_edges(graph, tree):
         alike = [judged[edge] for edge in group]
         likely = agreed([item.hypotheses.kinds for item in alike], [item.likely for item in alike])
-        judged |= {edge: replace(judged[edge], likely=given) for edge, given in zip(group, likely, strict=True)}
+        fixed = float(np.mean([item.fixed for item in alike]))
+        judged |= {
+            edge: replace(judged[edge], likely=given, fixed=fixed) for edge, given in zip(group, likely, strict=True)
+        }
     return tuple(_estimate(weighed[edge], judged[edge], config=config) for edge in tree.edges())
 
 
 def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig) -> JointEstimate:
     scene, decision = weighed.scene, weighed.decision
-    kind = JointType.FIXED if decision.kind is JointType.FIXED else judged.kind(judged.best)
+    fixed = decision.kind is JointType.FIXED or judged.fixed > config.confidence.fixed
+    kind = JointType.FIXED if fixed else judged.kind(judged.best)
     axis, pivot = judged.hypotheses.axes[judged.best], judged.hypotheses.pivots[judged.best]
     found = find_range(scene, kind, axis, pivot, config)
     return JointEstimate(
@@ -82,12 +86,12 @@ def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig
         pivot=pivot,
         lower=found.lower,
         upper=found.upper,
-        confidence=judged.confidence,
+        confidence=judged.fixed if judged.fixed > config.confidence.fixed else judged.confidence,
         alternatives=judged.alternatives(config.alternatives),
         evidence={
             **decision.cues,
             "odds_prismatic": judged.odds_prismatic,
-            "probability_fixed": float(judged.believed[0]),
+            "probability_fixed": judged.fixed,
             "bearing_gate": float(scene.has_bearing),
             "smallness": scene.smallness,
             "mechanism": scene.mechanism,

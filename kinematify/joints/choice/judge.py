@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointCandidate, JointType
+from kinematify.joints.choice.part_names import kind_said
+from kinematify.joints.choice.rigid import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from kinematify.config import ConfidenceConfig
     from kinematify.joints.choice.weighed import WeighedJoints
     from kinematify.joints.measure.measurements import Values
     from kinematify.robot.arrays import FloatArray
@@ -39,6 +42,8 @@ class Judgement:
     """Diagonal of the child [m]."""
     lead: float
     """Log odds that what cues would choose keeps."""
+    fixed: float = 0.0
+    """How likely the child is fixed to its parent, whatever moves best."""
 
     @cached_property
     def believed(self) -> FloatArray:
@@ -121,18 +126,30 @@ class Judgement:
         )
 
 
-def judge(weighed: WeighedJoints, *, lead: float) -> Judgement:
-    """Measure every proposed joint of an edge and score them together; what cues would choose has a lead [log odds]."""
+def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
+    """Measure every proposed joint of an edge and score them together.
+
+    Args:
+        weighed: The proposed joints with what cues say of them.
+        config: How much cues and the child's name weigh, and from where on a part is fixed.
+    """
     hypotheses = hypotheses_of(weighed)
     measured = {**measure(weighed.scene, hypotheses), **cues_of(weighed), **verdicts_of(weighed)}
     slides = weighed.decision.kind is JointType.PRISMATIC
+    likely = shipped_scorer().probabilities(hypotheses.kinds, measured)
+    odds = rigid_odds(hypotheses.kinds, measured)
+    said = kind_said(weighed.scene.cache.assembly.parts[weighed.scene.child].name)
+    if said is not None:
+        likely = likely * np.exp(config.name_weight * (hypotheses.kinds == said))
+        odds += config.name_weight if said == FIXED else -config.name_weight
     return Judgement(
         hypotheses=hypotheses,
-        likely=shipped_scorer().probabilities(hypotheses.kinds, measured),
+        likely=likely / likely.sum(),
+        fixed=float(1.0 / (1.0 + np.exp(-odds))),
         by_cues=1 + (len(weighed.turns.scores) if slides else 0),
         support=measured["rules_score"],
         size=weighed.scene.frame.diagonal,
-        lead=lead,
+        lead=config.cues_lead,
     )
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 WEIGHTS = "weights.npz"
+RIGID_WEIGHTS = "rigid.npz"
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
 FORMAT = 1
 """Raised where the meaning of the file changes."""
@@ -82,11 +83,12 @@ class Scorer:
             Shape (h,), sum 1.
         """
         columns = stacked(kinds, measured, self.measurements)
-        scores = (base_columns(kinds, measured) @ self.base + self._trees(columns)) / self.temperature
+        scores = (base_columns(kinds, measured) @ self.base + self.sums(columns)) / self.temperature
         likely = np.exp(scores - scores.max())
         return np.asarray(likely / likely.sum())
 
-    def _trees(self, columns: NDArray[Any]) -> FloatArray:
+    def sums(self, columns: NDArray[Any]) -> FloatArray:
+        """What the trees say of each row of columns (n, f), shape (n,)."""
         trees = np.arange(len(self.feature))[None]
         node = np.zeros((len(columns), len(self.feature)), dtype=np.int64)
         rows = np.arange(len(columns))[:, None]
@@ -136,23 +138,37 @@ def _extreme(values: NDArray[Any], pick: np.ufunc) -> NDArray[Any]:
 
 @cache
 def shipped_scorer() -> Scorer:
-    """The scorer that comes with the package.
+    """The scorer of hypotheses that comes with the package.
 
     Raises:
         EnvironmentFault: Its file is missing, damaged or of another version.
     """
-    path = files("kinematify.joints.choice") / WEIGHTS
+    return _shipped(WEIGHTS, "the choice of joints")
+
+
+@cache
+def shipped_rigidity() -> Scorer:
+    """The scorer of whether a part is fixed that comes with the package.
+
+    Raises:
+        EnvironmentFault: Its file is missing, damaged or of another version.
+    """
+    return _shipped(RIGID_WEIGHTS, "what is fixed")
+
+
+def _shipped(name: str, of: str) -> Scorer:
+    path = files("kinematify.joints.choice") / name
     remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
     try:
         with path.open("rb") as file, np.load(file) as stored:
             facts = json.loads(str(stored["facts"]))
-            arrays = {name: stored[name] for name in _ARRAYS}
+            arrays = {key: stored[key] for key in _ARRAYS}
     except (OSError, ValueError, KeyError) as error:
-        raise EnvironmentFault(f"The weights of the choice of joints ({WEIGHTS}) cannot be read. {remedy}") from error
+        raise EnvironmentFault(f"The weights of {of} ({name}) cannot be read. {remedy}") from error
     if facts.get("format") != FORMAT:
         raise EnvironmentFault(
-            f"The weights of the choice of joints ({WEIGHTS}) have format {facts.get('format')}; this version of "
-            f"kinematify reads format {FORMAT}. {remedy}"
+            f"The weights of {of} ({name}) have format {facts.get('format')}; this version of kinematify reads format "
+            f"{FORMAT}. {remedy}"
         )
     return Scorer(
         measurements=tuple(facts["measurements"]),
