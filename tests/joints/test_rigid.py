@@ -59,7 +59,7 @@ def test_a_handle_is_fixed_to_its_door_and_the_door_is_not() -> None:
     door, handle = estimated(cupboard("part_001", "part_002"))
     assert door.kind is JointType.REVOLUTE
     assert handle.kind is JointType.FIXED
-    assert handle.confidence > CONFIG.joints.confidence.fixed > door.evidence["fixed"]
+    assert handle.confidence > CONFIG.joints.confidence.fixed > door.evidence["probability_fixed"]
     assert (handle.lower, handle.upper) == (0.0, 0.0)
     assert all(candidate.kind is not JointType.FIXED for candidate in handle.alternatives)
 
