@@ -28,6 +28,7 @@ from pydantic import Field
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
+from kinematify.evaluation.expectations import load_sentences
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.study import Options, Study, among, explained
@@ -36,6 +37,7 @@ from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.request import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline import infer
@@ -77,6 +79,7 @@ class AsLoadedOptions(Options):
     )
     inferred: int = Field(0, ge=0, description="Objects per family of the generator that are inferred.")
     composed: int = Field(0, ge=0, description="Objects composed of mechanisms on bodies.")
+    told: int = Field(0, ge=0, description="Seeds of each of the sixty sentences for composed objects.")
     engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
         ("mujoco", "pybullet"), description="Engines, separated by commas."
     )
@@ -94,6 +97,8 @@ class Case:
     """None for an object of the generator."""
     family: str = ""
     """Empty for a composed object."""
+    sentence: str = ""
+    """What a composed object is told by; empty for one that is drawn."""
     seed: int = 0
 
 
@@ -113,6 +118,9 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
         for family in options.families or FAMILIES:
             cases[f"{family} {seed} inferred"] = case(made="inferred", family=family, seed=seed)
     cases |= {f"composed {seed}": case(made="exact", seed=seed) for seed in range(options.composed)}
+    for seed in range(options.told):
+        for number, told in enumerate(load_sentences("composed"), start=1):
+            cases[f"told {number} {seed}"] = case(made="exact", sentence=told["text"], seed=seed)
     return list(work.each(tried_as_loaded, cases, timeout=1800.0, reuse=20).values()), {
         "versions": package_versions(ENGINES[engine].package for engine in options.engines)
     }
@@ -123,13 +131,10 @@ def tried_as_loaded(case: Case) -> Record:
     config = load_config()
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
     if case.item is None:
-        kind = case.family or "composed"
-        name = f"{kind}_{case.seed}"
-        if case.family:
-            blueprint = build(FAMILIES[case.family], {}, seed=case.seed, name=name)
-        else:
-            blueprint = compose(draw_composition(case.seed), seed=case.seed, name=name)
-        facts = {"set": f"{'generated' if case.family else 'composed'}, {case.made}", "object": f"{kind} {case.seed}"}
+        kind = case.family or case.sentence or "composed"
+        made_by = "generated" if case.family else "composed as told" if case.sentence else "composed"
+        facts = {"set": f"{made_by}, {case.made}", "object": f"{kind} {case.seed}"}
+        blueprint = _generated(case)
         if case.made == "exact":
             return {**facts, **_written(true_model(blueprint, config), config, case.engines)}
         inference = infer(blueprint.assembly, config=config)
@@ -157,6 +162,14 @@ def _joints_right(blueprint: Blueprint, inference: Inference) -> bool:
         joint.type_right and joint.angle_deg <= _RIGHT_DEG and (joint.line_m or 0.0) <= _RIGHT_LINE * diagonal
         for joint in score.joints
     )
+
+
+def _generated(case: Case) -> Blueprint:
+    if case.sentence:
+        return from_text(case.sentence).build(seed=case.seed)
+    if case.family:
+        return build(FAMILIES[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
+    return compose(draw_composition(case.seed), seed=case.seed, name=f"composed_{case.seed}")
 
 
 def _written(model: KinematicModel, config: Config, engines: Sequence[str]) -> Record:
