@@ -11,7 +11,9 @@ from kinematify.errors import InputError
 from kinematify.generate.blueprint import Blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.request import from_text
 from kinematify.generate.procedural.styles import STYLES
+from kinematify.robot.joint_type import JointType
 
 SEEDS = (None, 0)
 
@@ -124,3 +126,25 @@ def test_unknown_parameters_and_values_out_of_bounds_are_refused_with_a_hint():
         build(FAMILIES["cabinet"], {"width": 3000})
     with pytest.raises(InputError, match="bar, knob"):
         build(FAMILIES["cabinet"], {"handle": "rope"})
+
+
+@pytest.mark.parametrize(
+    ("sentence", "kind", "fingers"),
+    [
+        ("robot arm with seven joints and a three finger gripper", JointType.REVOLUTE, 3),
+        ("a robot arm with six joints and a parallel gripper", JointType.PRISMATIC, 2),
+        ("a robot arm with a two finger gripper", JointType.PRISMATIC, 2),
+    ],
+)
+def test_a_robot_arm_carries_the_gripper_that_is_asked_for(sentence, kind, fingers):
+    blueprint = from_text(sentence).build()
+    found = [joint for joint in blueprint.joints if joint.child.startswith("finger")]
+    assert [joint.kind for joint in found] == [kind] * fingers
+    links = [joint.child for joint in blueprint.joints if joint.child.startswith("link")]
+    assert {joint.parent for joint in found} == {links[-1]}
+
+
+def test_a_seed_draws_no_gripper():
+    assert not any(
+        "finger" in part.name for seed in range(5) for part in build(FAMILIES["serial_arm"], {}, seed=seed).parts
+    )

@@ -6,13 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.generate.composer.side import SideWorkshop
 from kinematify.generate.procedural.family import Family, Parameter
-from kinematify.generate.procedural.pieces.bearings import stub
+from kinematify.generate.procedural.pieces.bearings import at, stub
+from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
 from kinematify.generate.procedural.solids import box, cylinder, off
 
 if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Values
+    from kinematify.generate.procedural.solids import Point
     from kinematify.generate.procedural.workshop import Workshop
+
+
+_HALF, _FINGER = 0.06, 0.07  # of a gripper: half the way of its jaws, length of its fingers [m]
 
 
 def _build(values: Values, workshop: Workshop) -> None:
@@ -44,6 +50,21 @@ def _build(values: Values, workshop: Workshop) -> None:
         workshop.turns(name, parent, (0, 0, 1) if upright else (0, 1, 0), pivot, limits)
         tip, parent = end, name
     workshop.add(parent, box(tip - 0.8 * size, off(tip, 1.2 * size, 0.8 * size, 0.2 * size)))
+    _add_gripper(values, workshop, parent, off(tip, 0, 0, 0.2 * size - 1e-3))
+
+
+def _add_gripper(values: Values, workshop: Workshop, flange: str, place: Point) -> None:
+    kind, fingers = values.choice("gripper"), values.count("fingers")
+    if kind == "none":
+        return
+    frame = SideWorkshop(workshop, at(place))
+    clearance, rest = values.number("clearance"), values.number("open")
+    if kind == "jaws" or fingers == 2:
+        frame.add(flange, *jaw_rail(_HALF))
+        add_jaws(frame, "finger", flange, _HALF, _FINGER, clearance=clearance, rest=rest)
+    else:
+        frame.add(flange, *finger_palm(fingers))
+        add_fingers(frame, "finger", flange, fingers, _FINGER, clearance=clearance, rest=rest)
 
 
 FAMILY = Family(
@@ -77,6 +98,25 @@ FAMILY = Family(
             usual=(0.5, 1.5),
             words=("reach",),
             help="Sum of the links.",
+        ),
+        Parameter(
+            name="gripper",
+            default="none",
+            choices=("none", "jaws", "fingers"),
+            choice_words={
+                "jaws": ("gripper", "parallel gripper", "jaw gripper"),
+                "fingers": ("finger gripper", "fingered gripper"),
+            },
+            help="What is on its flange.",
+            drawn=False,
+        ),
+        Parameter(
+            name="fingers",
+            default=3,
+            bounds=(2, 6),
+            words=("finger",),
+            help="Of a gripper with fingers; two are jaws.",
+            drawn=False,
         ),
         Parameter(name="radius", default=0.04, unit="m", bounds=(0.01, 0.15), usual=(0.03, 0.06), help="Of joints."),
     ),
