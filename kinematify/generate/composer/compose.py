@@ -13,7 +13,7 @@ from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES, Body, Size
 from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
 from kinematify.generate.composer.place import Place
-from kinematify.generate.composer.side import SideWorkshop, columns, rows
+from kinematify.generate.composer.side import columns, rows
 from kinematify.generate.procedural.pieces.fronts import Fitting
 from kinematify.generate.procedural.workshop import Workshop
 
@@ -109,7 +109,7 @@ def compose(
         side, word = layout.sides[name_of_side], item.title.replace(" ", "_").replace("-", "_")
         numbers[word] += 1
         place = Place(
-            workshop=SideWorkshop(layout.workshop, side.T_world_side, material=item.material, color=item.color),
+            workshop=layout.workshop.from_frame(side.T_world_side, material=item.material, color=item.color),
             name=f"{word}_{numbers[word]}",
             area=area,
             hollow=side.hollow,

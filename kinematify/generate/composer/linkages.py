@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.generate.composer.place import Place
-    from kinematify.generate.composer.side import SideWorkshop
+    from kinematify.generate.procedural.workshop import Workshop
 
 _HEAD = 1.2  # radius of a stick's head in radii of its pin's knuckle
 _QUARTER = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
@@ -37,7 +37,7 @@ _STEEP = math.radians(55.0)  # and up
 
 def stick(
     parent: str,
-    frame: SideWorkshop,
+    frame: Workshop,
     name: str,
     width: float,
     clearance: float,

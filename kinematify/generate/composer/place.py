@@ -14,8 +14,8 @@ from kinematify.generate.procedural.solids import bore, cylinder
 if TYPE_CHECKING:
     from manifold3d import Manifold
 
-    from kinematify.generate.composer.side import SideWorkshop
     from kinematify.generate.procedural.pieces.fronts import Fitting, Opening
+    from kinematify.generate.procedural.workshop import Workshop
 
 OUTWARD = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns what is built to stand on z = 0 so that it stands on the side."""
@@ -29,7 +29,7 @@ UPSIDE_DOWN = np.diag([-1.0, 1.0, -1.0])
 class Place:
     """Where one mechanism goes."""
 
-    workshop: SideWorkshop
+    workshop: Workshop
     """In the frame of the side."""
     name: str
     """Of the body that moves; further ones add to it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,18 +25,21 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
     from kinematify.generate.procedural.solids import Point
+    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Mimic
 
 
 Look = tuple[str, str | None]
 """Material, and colour where it is not the material's own."""
+_UNMOVED = np.eye(3, 4)
 _MOVING = {JointType.REVOLUTE: "hinges", JointType.PRISMATIC: "slides"}
 
 
 class Workshop:
     """Collects bodies and joints; the first body is the base link, every other one is hung on an earlier one.
 
-    Everything is built closed, at zero; `rest` values say where it stands when it is shown.
+    Everything is built closed, at zero; `rest` values say where it stands when it is shown. Seen `from_frame`, the same
+    workshop takes everything in the coordinates of that frame.
     """
 
     def __init__(
@@ -60,14 +64,39 @@ class Workshop:
         self._joints: list[BlueprintJoint] = []
         self._rest: dict[str, float] = {}
         self._loops: list[BlueprintLoop] = []
+        self._frame: FloatArray | None = None
+        self._look_of_all: tuple[str | None, str | None] = None, None
+
+    def from_frame(self, T_frame: FloatArray, *, material: str | None = None, color: str | None = None) -> Workshop:
+        """Return the workshop as it is seen from a frame; what is built there stands there in the object.
+
+        Args:
+            T_frame: The frame in this workshop's own, shape (3, 4).
+            material: Of all bodies that are built there, whatever they name; their own if None.
+            color: The same.
+        """
+        seen = copy(self)
+        own = _UNMOVED if self._frame is None else self._frame
+        seen._frame = np.column_stack([own[:, :3] @ T_frame[:, :3], own @ np.append(T_frame[:, 3], 1.0)])
+        before = self._look_of_all
+        seen._look_of_all = material or before[0], color or before[1]
+        return seen
+
+    def turned(self, turn: FloatArray, origin: Point) -> Workshop:
+        """The same from a frame that is turned by `turn`, shape (3, 3), and moved to `origin` in this one [m]."""
+        return self.from_frame(np.column_stack([turn, np.asarray(origin, dtype=np.float64)]))
+
+    def above_floor(self, point: Point) -> float:
+        """Height of a point in the object [m]."""
+        return float(self._point(point)[2])
 
     def body(self, name: str, *solids: Manifold, material: str | None = None, color: str | None = None) -> str:
         """Add a rigid part made of solids that overlap or touch; returns its name."""
         if name in self._solids:
             raise ValueError(f"The family {self._family} makes two bodies named {name}.")
-        made_of = material or self._material
-        self._solids[name] = union(*solids)
-        self._looks[name] = made_of, color or (None if material else self._color)
+        material, color = self._look_of_all[0] or material, self._look_of_all[1] or color
+        self._solids[name] = union(*self._placed(solids))
+        self._looks[name] = material or self._material, color or (None if material else self._color)
         return name
 
     def painted(self, *solids: Manifold, material: str, color: str | None = None) -> Sequence[Manifold]:
@@ -87,11 +116,11 @@ class Workshop:
 
     def add(self, name: str, *solids: Manifold) -> None:
         """Add solids to a body that is there."""
-        self._solids[name] = union(self._solids[name], *solids)
+        self._solids[name] = union(self._solids[name], *self._placed(solids))
 
     def cut(self, name: str, *solids: Manifold) -> None:
         """Take solids away from a body that is there."""
-        self._solids[name] -= union(*solids)
+        self._solids[name] -= union(*self._placed(solids))
 
     def turns(
         self,
@@ -122,8 +151,8 @@ class Workshop:
                 parent=parent,
                 child=child,
                 kind=kind,
-                axis=np.asarray(axis),
-                pivot=np.asarray(pivot),
+                axis=self._direction(axis),
+                pivot=self._point(pivot),
                 lower=lower,
                 upper=upper,
                 mimic=follows,
@@ -147,8 +176,8 @@ class Workshop:
                 parent=parent,
                 child=child,
                 kind=JointType.PRISMATIC,
-                axis=np.asarray(axis),
-                pivot=np.asarray(pivot),
+                axis=self._direction(axis),
+                pivot=self._point(pivot),
                 lower=limits[0],
                 upper=limits[1],
             ),
@@ -157,7 +186,17 @@ class Workshop:
 
     def closes(self, one: str, other: str, pivot: Point) -> None:
         """Say that two bodies share a pin at `pivot` [m] besides the joints of the tree."""
-        self._loops.append(BlueprintLoop(one=one, other=other, pivot=np.asarray(pivot)))
+        self._loops.append(BlueprintLoop(one=one, other=other, pivot=self._point(pivot)))
+
+    def _placed(self, solids: Sequence[Manifold]) -> Sequence[Manifold]:
+        frame = self._frame
+        return solids if frame is None else [solid.transform(frame) for solid in solids]
+
+    def _point(self, point: Point) -> FloatArray:
+        return np.asarray(point if self._frame is None else self._frame @ np.append(point, 1.0))
+
+    def _direction(self, axis: Point) -> FloatArray:
+        return np.asarray(axis if self._frame is None else self._frame[:, :3] @ axis)
 
     def _join(self, joint: BlueprintJoint, rest: float) -> None:
         self._joints.append(joint)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.composer.side import SideWorkshop
 from kinematify.generate.procedural.family import Family, Parameter
 from kinematify.generate.procedural.pieces.bearings import at, stub
 from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
@@ -57,7 +56,7 @@ def _add_gripper(values: Values, workshop: Workshop, flange: str, place: Point) 
     kind, fingers = values.choice("gripper"), values.count("fingers")
     if kind == "none":
         return
-    frame = SideWorkshop(workshop, at(place))
+    frame = workshop.from_frame(at(place))
     clearance, rest = values.number("clearance"), values.number("open")
     if kind == "jaws" or fingers == 2:
         frame.add(flange, *jaw_rail(_HALF))
