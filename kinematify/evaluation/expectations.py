@@ -47,6 +47,8 @@ _CALLED = {
     "switch": ("rocker", "switch", "lever"), "tailgate": ("flap", "tailgate"),
 }  # fmt: skip
 """How a reader calls what the models call otherwise."""
+_HANDLES = ("handle", "knob")
+"""What may belong to a part instead of being one."""
 _KINDS = {
     "wood": ("wood", "oak", "pine", "walnut"),
     "metal": ("metal", "steel", "brass", "copper", "chrome"),
@@ -178,9 +180,18 @@ def _looks(made: Blueprint, wanted: dict[str, str], fits: Callable[[Part, str], 
     found = []
     for noun, name in wanted.items():
         parts = [made.parts[0]] if noun == "all" else _parts(made, noun)
-        if not parts or not all(fits(part, name) for part in parts):
+        if not parts and noun in _HANDLES:
+            if not _handles_look(made, COLOR_WORDS.get(name, name)):
+                found.append(f"{noun} not {name}")
+        elif not parts or not all(fits(part, name) for part in parts):
             found.append(f"{noun} not {name}")
     return found
+
+
+def _handles_look(made: Blueprint, name: str) -> bool:
+    """Whether all that is of another look than its part is of a material or colour."""
+    others = [item for part in made.parts if part.appearance for item in part.appearance.materials[1:]]
+    return bool(others) and all(item.name.startswith(name) for item in others)
 
 
 def _is_of_material(part: Part, name: str) -> bool:

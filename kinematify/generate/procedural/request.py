@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.parts import PartRequirement
 
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
+_DRAWS, _NEXT_DRAW = 20, 1_000_003
 _GAP = 0.05  # between several [m]
 
 
@@ -55,15 +56,28 @@ class Request:
         """
         if self.composition is not None:
             return compose(self.composition, seed=seed)
-        blueprint = build(FAMILIES[self.family], self.values, seed=seed)
-        if self.overall is not None:
-            blueprint = _scaled_to(blueprint, *self.overall)
-        for requirement in self.requirements:
-            blueprint = requirement.applied(blueprint)
+        blueprint = self._as_required(seed)
         if self.copies == 1:
             return blueprint
         width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
         return blueprint.repeated(self.copies, width + _GAP)
+
+    def _as_required(self, seed: int | None) -> Blueprint:
+        """The object as its parts are asked for; where what a seed draws has no such parts, the next draw is taken."""
+        for attempt in range(1 if seed is None else _DRAWS):
+            blueprint = build(
+                FAMILIES[self.family], self.values, seed=None if seed is None else seed + attempt * _NEXT_DRAW
+            )
+            if self.overall is not None:
+                blueprint = _scaled_to(blueprint, *self.overall)
+            try:
+                for requirement in self.requirements:
+                    blueprint = requirement.applied(blueprint)
+            except InputError as error:
+                reason = error
+            else:
+                return blueprint
+        raise reason
 
 
 def from_text(sentence: str, *, lenient: bool = False) -> Request:

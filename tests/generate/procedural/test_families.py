@@ -148,3 +148,11 @@ def test_a_seed_draws_no_gripper():
     assert not any(
         "finger" in part.name for seed in range(5) for part in build(FAMILIES["serial_arm"], {}, seed=seed).parts
     )
+
+
+def test_a_seed_draws_again_where_the_parts_that_are_asked_for_would_not_be_there():
+    request = from_text("a doorway with two walnut doors and brass handles")
+    for seed in range(3):
+        parts = {part.name: part for part in request.build(seed=seed).parts}
+        assert parts["handle_1"].appearance.materials[0].name == "brass"
+        assert request.build(seed=seed).parts[0].mesh_hash == parts["frame"].mesh_hash
