@@ -348,6 +348,8 @@ class ConfidenceConfig(StageConfig):
 
     cues_lead: float
     """Log odds that what the weighted cues would choose keeps over the fitted probabilities."""
+    fold_lead: float
+    """The same where they choose the fold of a rocker."""
     fixed: float
     """How likely a part must be fixed to be taken for it."""
     name_weight: float

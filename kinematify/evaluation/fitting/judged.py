@@ -11,7 +11,7 @@ import numpy as np
 from kinematify.config import load_config
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
 from kinematify.evaluation.fitting.trees import fit_rigidity, fit_scorer, is_fixed, rigidity_odds
-from kinematify.joints.choice.judge import Judgement
+from kinematify.joints.choice.judge import Judgement, lead_of
 from kinematify.joints.choice.twins import agreed
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kinematify.config import ConfidenceConfig
     from kinematify.evaluation.fitting.examples import Example
     from kinematify.robot.arrays import FloatArray
 
@@ -152,13 +153,14 @@ def surprise_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> fl
 
 def judgement_of(example: Example, probabilities: FloatArray) -> Judgement:
     """What the inference would make of these probabilities, shape (h,)."""
+    by_cues = max(example.by_cues, 1)
     return Judgement(
         hypotheses=example.hypotheses,
         likely=probabilities,
-        by_cues=max(example.by_cues, 1),
+        by_cues=by_cues,
         support=example.measured["rules_score"],
         size=example.size,
-        lead=_cues_lead(),
+        lead=lead_of(example.hypotheses.sources[by_cues], _confidence()),
     )
 
 
@@ -168,9 +170,9 @@ def picked(example: Example, probabilities: FloatArray) -> int:
 
 
 @cache
-def _cues_lead() -> float:
+def _confidence() -> ConfidenceConfig:
     """As the inference has it; read once, since tables ask for it thousands of times."""
-    return load_config().joints.confidence.cues_lead
+    return load_config().joints.confidence
 
 
 CAUSES = ("none proposed", "wrong type", "wrong direction", "line beside")

@@ -142,15 +142,21 @@ def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
     if said is not None:
         likely = likely * np.exp(config.name_weight * (hypotheses.kinds == said))
         odds += config.name_weight if said == FIXED else -config.name_weight
+    by_cues = 1 + (len(weighed.turns.scores) if slides else 0)
     return Judgement(
         hypotheses=hypotheses,
         likely=likely / likely.sum(),
         fixed=float(1.0 / (1.0 + np.exp(-odds))),
-        by_cues=1 + (len(weighed.turns.scores) if slides else 0),
+        by_cues=by_cues,
         support=measured["rules_score"],
         size=weighed.scene.frame.diagonal,
-        lead=config.cues_lead,
+        lead=lead_of(hypotheses.sources[by_cues], config),
     )
+
+
+def lead_of(source: str, config: ConfidenceConfig) -> float:
+    """Log odds that what cues would choose keeps, by what proposed it; no fitted object has a plate with a fold."""
+    return config.fold_lead if source == "fold" else config.cues_lead
 
 
 def hypotheses_of(weighed: WeighedJoints) -> Hypotheses:
