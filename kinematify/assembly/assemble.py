@@ -15,7 +15,7 @@ from kinematify.assembly.part import Assembly, Part, SetAside
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import MAX_MATERIALS
 from kinematify.robot.arrays import used_vertices
-from kinematify.robot.weld import weld, welded
+from kinematify.robot.weld import snapped, weld, welded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mesh_file import RawMesh
 
+_MANY_TIMES, _CELLS = 10, 400
+"""A part of so many times the faces that it may have is first thinned out on a grid of cells along its diagonal."""
 _PROBES = 200
 """Vertices of a set-aside mesh that are looked at to find the part nearest to it."""
 
@@ -237,10 +239,11 @@ def _thinned(parts: Sequence[Part], config: AssemblyConfig) -> tuple[list[Part],
 
 def simplified(part: Part, config: AssemblyConfig) -> Part:
     """Return a part of about `config.max_part_faces` faces with nearly the same surface."""
+    vertices, faces = part.vertices, part.faces
+    if len(faces) > _MANY_TIMES * config.max_part_faces:  # it takes half a kilobyte for each
+        vertices, faces = snapped(vertices, faces, _CELLS)
     # Its binding refuses read-only arrays.
-    vertices, faces = fast_simplification.simplify(
-        part.vertices.copy(), part.faces.copy(), target_count=config.max_part_faces
-    )
+    vertices, faces = fast_simplification.simplify(vertices.copy(), faces.copy(), target_count=config.max_part_faces)
     vertices, faces = welded(np.asarray(vertices, dtype=np.float64), faces.astype(np.int64), config.weld)
     return Part(name=part.name, vertices=vertices, faces=faces, color=part.color)
 

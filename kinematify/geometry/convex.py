@@ -21,6 +21,10 @@ _BESIDE = 3e-4
 """Distance of two corners that are one, fraction of a piece's size."""
 _CORNER = 1e-6
 """Least eigenvalue of the sum of n n^T over the unit normals n around a corner: 0 on edges and faces."""
+_MANY = 100_000
+"""Points of which the whole hull takes long: a second, if all are on it."""
+_BLOCK = 16
+"""Directions at a time: scans have millions of points."""
 _GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
 _KRONECKER = np.array([0.7548776662466927, 0.5698402909980532])
 
@@ -62,8 +66,11 @@ def convex_piece(points: FloatArray, *, thickness: float, directions: int) -> Co
     Args:
         points: Shape (n, 3), at least one.
         thickness: Flat sets of points are given this thickness [m]: no engine makes a hull of a plane.
-        directions: The piece keeps the outermost point in each of so many directions; corners always stay.
+        directions: The piece keeps the outermost point in each of so many directions; corners always stay, but of more
+            points than `_MANY` those that are outermost in no direction of four times as many.
     """
+    if len(points) > _MANY:
+        points = outermost(points, 4 * directions)
     vertices, faces = convex_hull(thickened(points, thickness))
     if len(vertices) > directions:
         vertices, faces = convex_hull(thickened(outermost(vertices, directions), thickness))
@@ -114,7 +121,12 @@ def outermost(points: FloatArray, directions: int) -> FloatArray:
     """Return the points that lie farthest out in each of so many directions, shape (k, 3): their hull, nearly."""
     if not len(points):
         return points
-    return np.asarray(points[np.unique(np.argmax(_directions(directions) @ (points - points[0]).T, axis=1))])
+    shifted = points - points[0]
+    farthest = [
+        np.argmax(shifted @ block.T, axis=0)
+        for block in np.array_split(_directions(directions), -(-directions // _BLOCK))
+    ]
+    return np.asarray(points[np.unique(np.concatenate(farthest))])
 
 
 @cache

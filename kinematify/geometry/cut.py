@@ -19,6 +19,7 @@ import numpy as np
 
 from kinematify.geometry.convex import ConvexPiece, convex_piece, outermost, surface_points
 from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.weld import snapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -109,13 +110,13 @@ class Surface:
         """Return the corners of its triangles, shape (n, 3, 3), simplified where there are many."""
         vertices, faces = self.vertices, self.faces
         if len(faces) > _MANY_FACES:
-            vertices, faces = _snapped(vertices, faces, _FINE_CELLS)
+            vertices, faces = snapped(vertices, faces, _FINE_CELLS)
         if len(faces) > _FEW_FACES:
             vertices, faces = fast_simplification.simplify(
                 vertices.astype(np.float32), faces.astype(np.int32), target_count=_FEW_FACES
             )
         if self._strays(vertices[faces]) or len(faces) > 2 * _FEW_FACES:
-            vertices, faces = _snapped(self.vertices, self.faces, _COARSE_CELLS)
+            vertices, faces = snapped(self.vertices, self.faces, _COARSE_CELLS)
         if not len(faces):
             vertices, faces = self.vertices, self.faces
         return np.asarray(vertices[faces], dtype=np.float64)
@@ -127,26 +128,6 @@ class Surface:
         middles = np.ascontiguousarray(triangles.mean(axis=1), dtype=np.float64)
         squared, _, _ = self._tree.squared_distance(self.vertices, self.faces, middles)
         return float(squared.max()) > (_STRAY * float(np.linalg.norm(np.ptp(self.vertices, axis=0)))) ** 2
-
-
-def _snapped(vertices: FloatArray, faces: IntArray, cells: int) -> tuple[FloatArray, IntArray]:
-    """Replace the vertices of each cell of a grid by the one farthest out, and drop faces that lose a corner.
-
-    Args:
-        vertices: Shape (V, 3).
-        faces: Shape (F, 3).
-        cells: Cells along the diagonal.
-    """
-    width = float(np.linalg.norm(np.ptp(vertices, axis=0))) / cells
-    outward = np.argsort(-lengths_of(vertices - vertices.mean(axis=0)), kind="stable")
-    keys = np.round(vertices[outward] / width).astype(np.int64)
-    _, first, merged = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    cell_of = np.empty(len(vertices), dtype=np.int64)
-    cell_of[outward] = merged.reshape(-1)
-    moved = cell_of[faces]
-    kept = (moved[:, 0] != moved[:, 1]) & (moved[:, 1] != moved[:, 2]) & (moved[:, 2] != moved[:, 0])
-    _, distinct = np.unique(np.sort(moved[kept], axis=1), axis=0, return_index=True)
-    return vertices[outward[first]], moved[kept][distinct]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -27,6 +27,7 @@ from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import LinkMesh, Shape, forward_kinematics, joint_ends, rest_configuration
 from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.weld import snapped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -45,6 +46,8 @@ _PROBES = 400
 """Points of a link's surface by which it is told how much the pieces leave out."""
 _CORNERS = 160
 """Of a sphere or a cylinder while it is carved, at most; around a sphere it reaches 2.5 % of its radius beyond it."""
+_MANY_FACES, _CELLS = 150_000, 300
+"""Meshes of more triangles are thinned out on a grid of so many cells along their diagonal."""
 _MAX_STEM = 100  # file systems end at 255 bytes for a name
 _FILLED = 1e-3
 """A mesh is convex if its hull is larger by less than this share."""
@@ -68,6 +71,8 @@ class FittedLink:
     """Largest distance of the surface from the nearest piece [m]."""
     carved: float
     """Share of the volume of the pieces that the motion carved away."""
+    thinned: float
+    """How far vertices were moved at most, to have fewer triangles, before anything was fitted [m]; mostly 0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,6 +120,7 @@ def fit_collision(
     Returns:
         The robot with pieces in the link frames; meshes among them name files in ``meshes/`` that are not written yet.
     """
+    given, robot = robot, _thinned(robot)
     finer = {name: getattr(config, name) for name in ("link_gap", "model_gap", "cuts", "cuts_per_link")}
     pieces = decomposed(robot, decomposition.model_copy(update=finer))
     poses = forward_kinematics(robot, rest_configuration(robot))
@@ -138,18 +144,45 @@ def fit_collision(
         shapes = tuple(
             uncut.get(id(piece)) or shape for piece, (shape, _) in zip(result.pieces[index], fitted, strict=True)
         )
-        links.append(replace(link, collisions=_named(shapes, link.name, index)))
+        links.append(replace(given.links[index], collisions=_named(shapes, link.name, index)))
         if shapes:
             outside = pieces[link.name].gap + max(beyond for _, beyond in fitted)
-            facts.append(_fitted(link, shapes, outside=outside, lost=result.lost[index]))
+            moved = _thinning(given.links[index])
+            facts.append(_fitted(link, shapes, outside=outside + moved, lost=result.lost[index], thinned=moved))
     joints = _moving(robot)
     return FittedCollision(
-        robot=replace(robot, links=tuple(links)),
+        robot=replace(given, links=tuple(links)),
         links=tuple(facts),
         clearance=clearance,
         jams=tuple((joints[k].name, robot.links[a].name, robot.links[b].name) for k, a, b in result.jams),
         blocked=tuple(exact.blocked),
     )
+
+
+def _thinned(robot: Robot) -> Robot:
+    """The robot with meshes of millions of triangles on a grid."""
+    return replace(
+        robot,
+        links=tuple(
+            replace(link, visuals=tuple(map(_thin, link.visuals)), collisions=tuple(map(_thin, link.collisions)))
+            if _thinning(link)
+            else link
+            for link in robot.links
+        ),
+    )
+
+
+def _thin(shape: Shape) -> Shape:
+    if len(shape.mesh.faces) <= _MANY_FACES:
+        return shape
+    vertices, faces = snapped(shape.mesh.vertices, shape.mesh.faces, _CELLS)
+    return replace(shape, mesh=LinkMesh(vertices=vertices, faces=faces))
+
+
+def _thinning(link: Link) -> float:
+    """How far vertices of a link move because there are too many [m]."""
+    heavy = [shape.mesh for shape in (*link.visuals, *link.collisions) if len(shape.mesh.faces) > _MANY_FACES]
+    return max((3**0.5 * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) / _CELLS for mesh in heavy), default=0.0)
 
 
 def collides_as_it_is(robot: Robot) -> bool:
@@ -273,7 +306,7 @@ def _moved(piece: ConvexPiece, T: FloatArray) -> ConvexPiece:
     return ConvexPiece(vertices=piece.vertices @ T[:3, :3].T + T[:3, 3], faces=piece.faces)
 
 
-def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float) -> FittedLink:
+def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float, thinned: float) -> FittedLink:
     kinds = Counter(shape.kind for shape in shapes)
     return FittedLink(
         link=link.name,
@@ -282,8 +315,9 @@ def _fitted(link: Link, shapes: Sequence[Shape], *, outside: float, lost: float)
         spheres=kinds["sphere"],
         convex=kinds["mesh"],
         outside=outside,
-        left_out=_left_out(link, shapes),
+        left_out=_left_out(link, shapes) + thinned,
         carved=lost,
+        thinned=thinned,
     )
 
 

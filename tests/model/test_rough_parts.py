@@ -13,6 +13,7 @@ from trimesh.creation import box
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.formats.fix import fix_urdf
+from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,6 +100,25 @@ def reached(urdf: Path) -> tuple[float, float]:
         data.qfrc_applied[0] = -30.0
         mujoco.mj_step(model, data)
     return float(deep), float(data.qpos[0])
+
+
+def fine() -> trimesh.Trimesh:
+    mesh = drawer()
+    for _ in range(7):
+        mesh = mesh.subdivide()
+    return mesh
+
+
+def test_a_surface_of_too_many_triangles_is_thinned_out_and_told(tmp_path: Path) -> None:
+    fixed = mended(tmp_path, fine())
+    (told,) = (sentence for sentence in fixed.left if sentence.startswith("slider: "))
+    assert "mm off" in told
+    assert reached(fixed.path)[1] < -0.95 * LIMIT
+    slider = read_robot(fixed.path).link_by_name["slider"]
+    low, high = (
+        end(np.concatenate([shape.mesh.vertices for shape in slider.collisions]), axis=0) for end in (np.min, np.max)
+    )
+    assert high - low == pytest.approx([0.34, 0.44, 0.2], abs=0.012)
 
 
 @pytest.mark.parametrize("build", [drawer, opened, inverted, crossing, sheet, tiny])
