@@ -20,7 +20,7 @@ TORCH := $(shell sed -n 's/.*"\(torch==[0-9.]*\)".*/\1/p' pyproject.toml)
 # Named after the content of pyproject.toml: while that does not change there is nothing to do.
 STAMP := $(VENV)/.setup-$(shell cksum < pyproject.toml | tr ' ' '-')
 
-.PHONY: help setup demo test check lint format types bench pictures clean
+.PHONY: help setup demo test check lint format types bench docs pictures clean
 .DEFAULT_GOAL := help
 
 help:
@@ -31,6 +31,7 @@ help:
 	@echo "make format   let ruff mend what it can"
 	@echo "make types    mypy --strict"
 	@echo "make bench    accuracy table beside the paper's (DATA=FOLDER or pip)"
+	@echo "make docs     all pages with a search, and the reference of Python, in out/site/"
 	@echo "make pictures redraw docs/demo.png, docs/gallery.md with its pictures and the moving one; takes minutes"
 	@echo "make setup    create $(VENV) with everything; quick when nothing changed"
 	@echo "make clean    remove what was built, but not $(VENV)"
@@ -86,6 +87,13 @@ types: setup
 
 bench: setup
 	$(IN_VENV) kinematify bench $(if $(filter pip,$(DATA)),--data pip,$(DATA)) -o results
+
+docs: setup
+	@$(IN_VENV) pip install --quiet --editable '.[docs]' --config-settings editable_mode=compat
+	@rm -rf out/pages && mkdir -p out/pages
+	@cp -r README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff LICENSE docs results configs examples out/pages/
+	$(IN_VENV) mkdocs build --quiet
+	@echo "Look at  out/site/index.html"
 
 clean:
 	rm -rf build dist out *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

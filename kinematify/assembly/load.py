@@ -37,10 +37,12 @@ _TO_Z_UP = {
 }
 """Axis that points up in the input -> rotation that turns it to z."""
 UP_CHOICES = ("auto", *_TO_Z_UP)
-PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf")
+PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf", ".dae")
 """Mesh files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
 """Files beside meshes that nobody takes for a part."""
+_STATED_UP = {"X_UP": "x", "Y_UP": "y"}
+"""What a COLLADA file says -> a key of `_TO_Z_UP`."""
 _GUESSES = (("millimetres", 1e-3), ("centimetres", 1e-2), ("metres, and were divided by a thousand", 1e3))
 """What lengths may be in that cannot be metres, the likeliest first, and metres per unit."""
 _UNITS = {"millimeter": 1e-3, "micron": 1e-6, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048}
@@ -74,16 +76,16 @@ def load_assembly(
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
-    One part is: a node of a GLB or glTF, a file of a folder, a group or object of an OBJ, an object of a 3MF, a label
-    of a mesh with labels, a connected piece of a mesh without, or a rigid group of links of a URDF, whose joints are
-    not looked at. A ZIP may hold any of these. Parts are in natural order of their names. Ground truth written by
-    `erase` is never opened.
+    One part is: a node of a GLB, glTF or COLLADA file, a file of a folder, a group or object of an OBJ, an object of a
+    3MF, a label of a mesh with labels, a connected piece of a mesh without, or a rigid group of links of a URDF, whose
+    joints are not looked at. A ZIP may hold any of these. Parts are in natural order of their names. Ground truth
+    written by `erase` is never opened.
 
     Args:
         path: File or folder.
         config: Limits and tolerances; those of the default configuration if absent.
-        up: ``auto`` (y for glTF as its standard says, z for all else), or the axis that points up: ``x``, ``y``, ``z``,
-            ``-x``, ``-y`` or ``-z`` (upside down). The input is turned to z up.
+        up: ``auto`` (y for glTF as its standard says, what a COLLADA file states, z for all else), or the axis that
+            points up: ``x``, ``y``, ``z``, ``-x``, ``-y`` or ``-z`` (upside down). The input is turned to z up.
         scale: Metres per unit of the input.
         labels: Labels per triangle of a single mesh.
 
@@ -234,9 +236,11 @@ def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ..
         )
     if path.suffix.lower() == ".3mf":
         check_packed_mesh(path, allowed)
+    meshes = read_meshes(path, empty_ok=empty_ok, appearance=True)
+    if reading.up != "auto":
+        return tuple(_upright(mesh, reading.up) for mesh in meshes)
     usual = "y" if path.suffix.lower() in GLTF_SUFFIXES else "z"
-    up = usual if reading.up == "auto" else reading.up
-    return tuple(_upright(mesh, up) for mesh in read_meshes(path, empty_ok=empty_ok, appearance=True))
+    return tuple(_upright(mesh, _STATED_UP.get(mesh.up, usual)) for mesh in meshes)
 
 
 def _upright(mesh: RawMesh, up: str) -> RawMesh:

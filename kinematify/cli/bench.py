@@ -45,12 +45,12 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
         context.exit()
 
 
-def _write_readme(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
+def _write_results_page(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
     if asked:
-        from kinematify.evaluation.readme import write_readme
+        from kinematify.evaluation.results_page import write_results_page
 
-        write_readme(Path("README.md"), Path("results"))
-        click.echo("README.md has the results of the reports in results/.")
+        write_results_page(Path("docs/results.md"), Path("results"))
+        click.echo("docs/results.md has the results of the reports in results/.")
         context.exit()
 
 
@@ -77,12 +77,12 @@ def _write_readme(context: click.Context, _parameter: click.Parameter, asked: bo
     "--list", is_flag=True, expose_value=False, is_eager=True, callback=_list, help="Name the studies and end."
 )
 @click.option(
-    "--readme",
+    "--results-page",
     is_flag=True,
     expose_value=False,
     is_eager=True,
-    callback=_write_readme,
-    help="Write the results of the README in this folder from the reports in results/, and end.",
+    callback=_write_results_page,
+    help="Write docs/results.md in this folder from the reports in results/, and end.",
 )
 @click.option("--data", metavar="pip|PATH", help="Same as DATA; pip: robots of the package example-robot-data.")
 @click.option(

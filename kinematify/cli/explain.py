@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from kinematify.cli import completion
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.table import format_table
@@ -30,7 +31,7 @@ _WIDTH = 100
         "kinematify explain --markdown > docs/checks.md",
     ),
 )
-@click.argument("checks", nargs=-1, metavar="[CHECK]...")
+@click.argument("checks", nargs=-1, metavar="[CHECK]...", shell_complete=completion.checks)
 @click.option("--list", "as_list", is_flag=True, help="Table of all checks.")
 @click.option("--markdown", is_flag=True, help="All checks as a page of documentation.")
 @json_option

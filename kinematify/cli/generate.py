@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from kinematify.cli import completion
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
 from kinematify.cli.options import collision_option
@@ -41,7 +42,12 @@ if TYPE_CHECKING:
     ),
 )
 @click.option("--text", metavar="SENTENCE", help="What to build, in English.")
-@click.option("--category", metavar="NAME", help="What to build, by category; see --list.")
+@click.option(
+    "--category",
+    metavar="NAME",
+    shell_complete=completion.categories,
+    help="What to build, by category; see --list.",
+)
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="A parameter of the category, repeatable.")
 @click.option(
     "--blueprint",

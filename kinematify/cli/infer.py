@@ -46,7 +46,7 @@ _INFERRED, _REFINED, _WRITTEN = 0.5, 0.55, 0.8
     type=click.Choice(["auto", "z", "y", "x", "-z", "-y", "-x"]),
     default="auto",
     show_default=True,
-    help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, z for all else.",
+    help="Axis of the input that points up (-z: it lies upside down); auto: y for glTF, what COLLADA says, else z.",
 )
 @click.option("--scale", type=float, default=1.0, show_default=True, help="Metres per unit of the input.")
 @click.option(
@@ -115,9 +115,9 @@ def command(
 ) -> int:
     """Infer the mechanism of ASSEMBLY and write it to OUT as a URDF with everything that belongs to it.
 
-    ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF),
-    a GLB or glTF with a node per part, an OBJ with groups, a 3MF, a ZIP of these, one mesh with --labels, one mesh
-    of several pieces, or a URDF, whose joints are then not looked at.
+    ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF,
+    DAE), a GLB, glTF or DAE with a node per part, an OBJ with groups, a 3MF, a ZIP of these, one mesh with --labels,
+    one mesh of several pieces, or a URDF, whose joints are then not looked at.
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from kinematify.cli import completion
 from kinematify.cli.help import examples
 from kinematify.cli.options import package_dirs_option
 
@@ -30,7 +31,14 @@ _SHOWN_TITLE = 60
     ),
 )
 @click.argument("model", type=click.Path(path_type=Path))
-@click.option("--joint", "joints", multiple=True, metavar="NAME", help="Joint that stands at the --q behind it.")
+@click.option(
+    "--joint",
+    "joints",
+    multiple=True,
+    metavar="NAME",
+    shell_complete=completion.joints,
+    help="Joint that stands at the --q behind it.",
+)
 @click.option("--q", "values", multiple=True, type=float, metavar="VALUE", help="Its value [rad or m].")
 @package_dirs_option
 @click.option(

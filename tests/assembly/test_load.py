@@ -171,6 +171,31 @@ def test_obj_polygons_and_indices_that_count_back(tmp_path: Path) -> None:
     assert [part.bounds[0, 2] for part in loaded.parts] == [0.0, 5.0]
 
 
+def test_collada_nodes_are_parts_and_its_up_axis_and_unit_are_heeded(tmp_path: Path) -> None:
+    corners = box().vertices.reshape(-1).tolist()
+    faces = box().faces.reshape(-1).tolist()
+    nodes = "".join(
+        f'<node id="{name}" name="{name}"><translate>{2 * k} 0 0</translate><instance_geometry url="#box"/></node>'
+        for k, name in enumerate(("body", "door"))
+    )
+    (tmp_path / "a.dae").write_text(
+        '<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><unit meter="0.01"/>'
+        '<up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="box"><mesh><source id="p">'
+        f'<float_array id="a" count="{len(corners)}">{" ".join(map(str, corners))}</float_array><technique_common>'
+        f'<accessor source="#a" count="{len(corners) // 3}" stride="3"><param name="X" type="float"/>'
+        '<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>'
+        '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>'
+        f'<triangles count="{len(faces) // 3}"><input semantic="VERTEX" source="#v" offset="0"/>'
+        f"<p>{' '.join(map(str, faces))}</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+        f'<visual_scene id="s">{nodes}</visual_scene></library_visual_scenes><scene>'
+        '<instance_visual_scene url="#s"/></scene></COLLADA>'
+    )
+    loaded = load(tmp_path / "a.dae")
+    assert len(loaded.parts) == 2
+    assert np.allclose(loaded.parts[0].bounds, [[0.0, -0.03, 0.0], [0.01, 0.0, 0.02]]), "y points up, centimetres"
+    assert np.allclose(load(tmp_path / "a.dae", up="z").parts[0].bounds[1], [0.01, 0.02, 0.03])
+
+
 def test_3mf_objects_are_parts_and_the_unit_is_pointed_out(tmp_path: Path) -> None:
     scene().export(tmp_path / "a.3mf")
     loaded = load(tmp_path / "a.3mf")

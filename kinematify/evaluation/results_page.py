@@ -1,4 +1,4 @@
-"""The results of the README, written from the reports of a folder."""
+"""The page of results, written from the reports of a folder."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ _TITLES = (
 )  # fmt: skip
 
 
-def write_readme(readme: Path, results: Path) -> None:
+def write_results_page(page: Path, results: Path) -> None:
     """Replace what stands between the marks ``results`` and ``refine``.
 
     Args:
-        readme: The file.
+        page: The file.
         results: Folder with the reports robots, everyday, ablation_robots, ablation_everyday and refinement.
 
     Raises:
         InputError: A report or a mark is missing.
     """
     try:
-        text = readme.read_text(encoding="utf-8")
+        text = page.read_text(encoding="utf-8")
         for mark, blocks in (("results", _accuracy(results)), ("refine", _refinement(results))):
             begin, end = f"<!-- {mark}:begin -->", f"<!-- {mark}:end -->"
             before, after = text[: text.index(begin)], text[text.index(end) :]
             text = f"{before}{begin}\n" + "\n\n".join(blocks) + f"\n{after}"
     except (OSError, ValueError) as error:
         raise InputError(
-            f"The results cannot be put into {readme}: {error}. Call the command in a checkout; README.md must hold "
+            f"The results cannot be put into {page}: {error}. Call the command in a checkout; the page must hold "
             "the marks results:begin, results:end, refine:begin and refine:end."
         ) from error
-    replace_text(readme, text)
+    replace_text(page, text)
 
 
 def _accuracy(results: Path) -> list[str]:
@@ -70,7 +70,7 @@ def _accuracy(results: Path) -> list[str]:
         _ablation([run for report in ablation for run in report.records]),
         (
             f"Made by `{robots.header.command}` and `{everyday.header.command}` at commit {robots.header.commit},\n"
-            "written here by `kinematify bench --readme`."
+            "written here by `kinematify bench --results-page`."
         ),
     ]
 
