@@ -13,7 +13,7 @@ from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES, load_file
-from kinematify.simulation.loaded_file import Unloadable, hand
+from kinematify.simulation.loaded_file import MovesFreely, Unloadable, hand
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -83,11 +83,13 @@ class AsLoadedContext:
     def loading(self) -> LoadedFile | Unloadable:
         """The file in the engine, or what the engine says against it."""
         try:
-            return load_file(
+            loaded = load_file(
                 self.engine, self.request.urdf, self.mechanism.links[self._root], self.request.package_dirs
             )
         except Unloadable as error:
             return error
+        known = set(loaded.joints) <= set(self.mechanism.joints)
+        return loaded if known or not self.floats else MovesFreely(loaded.lines_of_joints())
 
     @property
     def floats(self) -> bool:

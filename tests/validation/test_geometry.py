@@ -158,6 +158,16 @@ def test_a_drawer_that_opens_inwards_has_the_wrong_direction(tmp_path: Path) -> 
     assert "Reverse" in finding.remedy
 
 
+def test_what_is_in_its_parent_at_rest_cannot_be_judged_for_certain(tmp_path: Path) -> None:
+    """Cylinders and boxes that stand for a hip overlap where they are joined, and more when it turns."""
+    hip = Part(name="hip", parent="beam", kind="revolute", boxes=(Box(size=(0.1, 0.3, 0.04), at=(0.03, 0.0, 0.0)),),
+               at=(0.5, 0.0, 0.0), axis=(0.0, 0.0, 1.0), limits=(-1.2, 1.2))  # fmt: skip
+    findings = found(beam(hip), tmp_path)
+    assert {finding.severity for check in ("KV310", "KV312") for finding in findings.get(check, [])} == {
+        Severity.WARNING
+    }
+
+
 def test_a_part_driven_into_a_stranger_is_told(tmp_path: Path) -> None:
     slider = block("slider", -0.3, axis=(1.0, 0.0, 0.0), limits=(0.0, 0.3))
     post = Part(name="post", boxes=(Box(size=(0.1, 0.1, 0.3)),), parent="beam", kind="revolute",

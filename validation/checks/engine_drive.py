@@ -35,10 +35,10 @@ if TYPE_CHECKING:
 def reaches_both_ends(result: OpenCheck, context: EngineContext) -> None:
     """One joint after the other is driven from rest to both ends by a position servo, the others held. Each must
     arrive within engines.reach of its range. A joint that its own base stops is an error if the surfaces that the file
-    declares meet, the visible ones too; where only collision geometry meets or convex stand-ins are in the way it is a
-    warning, and a note where they are no neighbours (KV311 judges those), or pass each other in every engine unless
-    their contacts are asked for. A tracking error
-    above engines.tracking is a note.
+    declares meet, the visible ones too; where they are in each other at rest, only collision geometry meets, or
+    convex stand-ins are in the way it is a warning, and a note where they are no neighbours (KV311 judges those), or
+    pass each other in every engine unless their contacts are asked for. A tracking error above engines.tracking is a
+    note.
 
     PyBullet: Pairs that touch at rest once meshes are inflated by 1 mm do not act on each other, since PyBullet would
     push them apart; the joint counts as stopped where they get deeper than allowed.
@@ -180,7 +180,7 @@ def _find_blocked(result: OpenCheck, context: EngineContext, driven: Driven) -> 
     result.find(
         f"{stops}: {why}.",
         remedy,
-        severity=_severity(context, index, certain=seen and travel.limited),
+        severity=_severity(context, index, certain=seen and travel.limited and not _buried(context, index)),
         blame=Blame.KINEMATICS if seen else Blame.PHYSICS,
         pair=pair,
         **facts,  # type: ignore[arg-type]
@@ -207,6 +207,12 @@ def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, 
     ask = partial(surfaces_meet, declared, pair, rows, tolerance=context.drives.sweep.tolerance, settings=geometry)
     real = ask()
     return real, real and (not simplified(declared) or ask(shapes_of=visible_shapes))
+
+
+def _buried(context: EngineContext, index: int) -> bool:
+    """Whether a pair is in each other at rest already, as shapes are that stand for a joint roughly."""
+    sweep = context.drives.sweep
+    return bool(sweep.at_rest[index] > sweep.tolerance)
 
 
 def _severity(context: EngineContext, index: int, *, certain: bool) -> Severity:

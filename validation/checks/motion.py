@@ -42,8 +42,8 @@ def through_parent(result: OpenCheck, motion: JointMotion) -> None:
     """Each joint is moved alone, over its range and beyond. A child that gets deeper into its parent than at rest
     (geometry.tolerance) before geometry.early of the range is through, to both sides, says that axis, place or type is
     wrong; to the only permitted side, with the other one free, that the direction is. Above geometry.wrong it is an
-    error, unless the joint has no limits (a whole turn is none), or only the collision geometry meets and not what is
-    visible.
+    error, unless the joint has no limits (a whole turn is none), the two are in each other at rest, or only the
+    collision geometry meets and not what is visible.
 
     Why it matters: The joint is stuck in every engine, or the part passes through the wall that carries it.
 
@@ -165,9 +165,10 @@ def _folds(motion: JointMotion, meeting: Meeting) -> bool:
 )
 def beyond_free_travel(result: OpenCheck, motion: JointMotion) -> None:
     """The range does not end beyond the place where the child meets its parent (by more than geometry.late of the
-    range): a warning, above geometry.wrong of depth an error, unless only the collision geometry meets. Where the
-    joint has no limits (a whole turn is none) it is a warning, and a note after geometry.early_turn. A rail may go
-    through a solid carriage as it does at rest. A range below geometry.small_range of the free travel is a note.
+    range): a warning, above geometry.wrong of depth an error, unless only the collision geometry meets, or the two are
+    in each other at rest. Where the joint has no limits (a whole turn is none) it is a warning, and a note after
+    geometry.early_turn. A rail may go through a solid carriage as it does at rest. A range below geometry.small_range
+    of the free travel is a note.
 
     Why it matters: Controllers drive to the declared end; what they meet before it bends, breaks or explodes.
 
@@ -309,10 +310,11 @@ def _meet(
     *,
     severity: Severity | None = None,
 ) -> None:
-    """Add a finding; an error if they are clearly too deep, and not in the collision geometry alone."""
+    """Add a finding; an error if they are clearly too deep, not in the collision geometry alone nor at rest already."""
     seen = meeting.depth if severity is Severity.NOTE else motion.seen(meeting)
     unseen = seen == 0.0
-    wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size
+    buried = motion.look.allowance.at_rest(meeting.pair) > motion.look.allowance.tolerance(meeting.pair)
+    wrong = min(meeting.depth, seen) > motion.scene.settings.wrong * motion.scene.size and not buried
     result.find(
         f"{message} {UNSEEN}" if unseen else message,
         SLIMMER if unseen else remedy,
