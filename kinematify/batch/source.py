@@ -101,7 +101,7 @@ def content_hash(place: str) -> str:
     digest = hashlib.sha256()
     for name, file in sorted(_files(fs, path).items()):
         digest.update(f"{name}\n".encode())
-        digest.update(Path(file).read_bytes() if is_local(fs) else fs.ukey(file).encode())
+        digest.update(Path(file).read_bytes() if is_local(fs) else str(fs.checksum(file)).encode())
     return digest.hexdigest()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import time
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,13 @@ def write_knob(path: Path, seed: int) -> Path:
 def manifest_lines(out: Path, name: str = "manifest.jsonl") -> list[dict[str, Any]]:
     """What stands in the manifest; every line has to be whole."""
     return [json.loads(line) for line in (out / name).read_text().splitlines()]
+
+
+def wait_for(path: Path, lines: int = 1) -> None:
+    """Wait until a file has so many lines."""
+    deadline = time.monotonic() + 60.0
+    while time.monotonic() < deadline and not (path.is_file() and path.read_text().count("\n") >= lines):
+        time.sleep(0.05)
 
 
 def workers_of(pid: int) -> list[int]:

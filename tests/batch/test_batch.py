@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from kinematify.cli.app import run
-from tests.batch.assets import kill, manifest_lines, workers_of, write_assets, write_knob
+from tests.batch.assets import kill, manifest_lines, wait_for, workers_of, write_assets, write_knob
 
 INFER = ("--steps", "infer", "--up", "z")
 
@@ -29,12 +29,6 @@ def started(*words: str | Path) -> subprocess.Popen[str]:
     """The command in a process of its own."""
     line = [sys.executable, "-m", "kinematify", "batch", *map(str, words)]
     return subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def wait_for(path: Path, lines: int = 1) -> None:
-    deadline = time.monotonic() + 60.0
-    while time.monotonic() < deadline and not (path.is_file() and path.read_text().count("\n") >= lines):
-        time.sleep(0.05)
 
 
 def by_object(out: Path) -> dict[str, dict[str, object]]:
