@@ -42,23 +42,6 @@ def wait_for(path: Path, lines: int = 1) -> None:
         time.sleep(0.05)
 
 
-def workers_of(pid: int) -> list[int]:
-    """Workers of a run: processes below it that lead a session of their own."""
-    parents: dict[int, tuple[int, int]] = {}
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            state, parent, _, session = (folder / "stat").read_text().rpartition(")")[2].split()[:4]
-        except (FileNotFoundError, ProcessLookupError):
-            continue
-        if state != "Z":
-            parents[int(folder.name)] = int(parent), int(session)
-    found, below = [], {pid}
-    while below:
-        below = {child for child, (parent, _) in parents.items() if parent in below}
-        found += [child for child in below if parents[child][1] == child]
-    return found
-
-
 def kill(pid: int) -> None:
     """End a process at once, if it is there."""
     try:

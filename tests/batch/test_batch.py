@@ -6,7 +6,6 @@ import json
 import os
 import re
 import resource
-import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +15,8 @@ from pathlib import Path
 import pytest
 
 from kinematify.cli.app import run
-from tests.batch.assets import kill, manifest_lines, wait_for, workers_of, write_assets, write_knob
+from kinematify.evaluation.studies.batch import Killed, killed_run, workers_of
+from tests.batch.assets import kill, manifest_lines, wait_for, write_assets, write_knob
 
 INFER = ("--steps", "infer", "--up", "z")
 
@@ -232,26 +232,29 @@ def test_an_object_that_costs_every_worker_is_set_aside(tmp_path: Path) -> None:
 
 
 def test_nothing_is_lost_or_doubled_when_workers_and_the_driver_are_killed(tmp_path: Path) -> None:
-    count = 8
-    write_assets(tmp_path / "assets", count)
-    manifest = tmp_path / "out" / "manifest.jsonl"
-    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER, "--resume", "--workers", "2")
-    for before_the_driver_is_killed in (2, 5):
-        command = started(*words)
-        wait_for(manifest, before_the_driver_is_killed - 1)
-        for worker in workers_of(command.pid)[:1]:
-            kill(worker)
-        wait_for(manifest, before_the_driver_is_killed)
-        workers = workers_of(command.pid)
-        command.kill()
-        command.communicate()
-        deadline = time.monotonic() + 10.0
-        while any(Path(f"/proc/{worker}").exists() for worker in workers) and time.monotonic() < deadline:
-            time.sleep(0.05)
-        assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
-    assert batch(*words) == 0
-    records = by_object(tmp_path / "out")
-    assert {record["status"] for record in records.values()} == {"ok"}
-    assert sorted(records) == sorted(f"knob_{number}" for number in range(count))
-    assert {path.name for path in (tmp_path / "out" / "objects").iterdir()} == set(records)
-    shutil.rmtree(tmp_path / "out")
+    write_assets(tmp_path / "assets", 8)
+    asked = Killed(pattern=str(tmp_path / "assets/*.glb"), steps="infer", objects=8, workers=2, every=4.0, drivers=2)
+    found = killed_run(asked)
+    assert (found["lost"], found["doubled"]) == (0, 0)
+    assert set(found["status"]) <= {"ok", "crash"}, "on a busy machine three kills can hit one object"
+    assert found["workers_killed"] > 0
+    assert found["drivers_killed"] == 2
+
+
+def test_a_killed_driver_takes_its_workers_with_it_and_what_it_left_is_cleared(tmp_path: Path) -> None:
+    write_assets(tmp_path / "assets", 3)
+    words = (tmp_path / "assets/*.glb", "-o", tmp_path / "out", *INFER)
+    command = started(*words)
+    wait_for(tmp_path / "out" / "manifest.jsonl")
+    workers = workers_of(command.pid)
+    command.kill()
+    command.communicate()
+    deadline = time.monotonic() + 10.0
+    while any(Path(f"/proc/{worker}").exists() for worker in workers) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert workers
+    assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+    assert list((tmp_path / "out").glob(".unfinished*"))
+    assert batch(*words, "--resume") == 0
+    assert not list((tmp_path / "out").glob(".unfinished*"))
+    assert {path.name for path in (tmp_path / "out" / "objects").iterdir()} == set(by_object(tmp_path / "out"))
