@@ -336,7 +336,7 @@ def _parameters(category: str) -> str:
 
 
 def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, composed: bool) -> None:
-    from kinematify.pipeline.corpus import write_corpus
+    from kinematify.batch.corpus import write_corpus
 
     if only is not None:
         raise click.UsageError("--corpus takes all categories; leave out --text and --category.")

@@ -29,7 +29,7 @@ from kinematify.batch.record import RECORD
 from kinematify.batch.summary import STEP_HEADINGS, step_rows
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
-from kinematify.pipeline.corpus import write_corpus
+from kinematify.batch.corpus import write_corpus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
