@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import os
 import shutil
-import signal
 import zlib
 from collections import Counter
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify import __version__
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import run_tasks
+from kinematify.batch.processes import Processes
 from kinematify.config import load_config
-from kinematify.errors import OutputError
+from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.sentence import told
 from kinematify.generate.procedural.families import FAMILIES
@@ -35,6 +37,7 @@ COMPOSED = "composed"
 """Category of objects that no family builds."""
 _AJAR = 0.25  # of the objects, as of things that are seen in rooms
 _AJAR_BY = (0.05, 0.6)  # share of the way; more is as good as open, and no object is found so
+_LONGEST = 600.0  # seconds for one object
 _FEW = 8  # so many are written while other processes are still starting
 
 
@@ -67,6 +70,7 @@ def write_corpus(
 
     Raises:
         OutputError: The folder cannot be written, or holds a corpus of another seed.
+        EnvironmentFault: An object could not be built.
     """
     manifest = out / MANIFEST
     _check_seed(manifest, seed)
@@ -122,17 +126,16 @@ def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -
         for entry in entries:
             yield _write_object(out, entry)
         return
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_leave_interrupts_to_the_parent)
-    try:
-        for future in as_completed([pool.submit(_write_object, out, entry) for entry in entries]):
-            yield future.result()
-    finally:
-        pool.shutdown(cancel_futures=True)
-
-
-def _leave_interrupts_to_the_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tasks = ((entry["name"], partial(_write_object, out, entry)) for entry in entries)
+    engine = Processes(workers, preload=(__name__,))
+    with closing(run_tasks(tasks, engine, timeout=_LONGEST, reuse=len(entries))) as running:
+        for name, answer in running:
+            if isinstance(answer, TaskFailure):
+                raise EnvironmentFault(
+                    f"The object {name} of the corpus could not be written: {answer.message}. What was written stays; "
+                    "the same command goes on."
+                )
+            yield answer
 
 
 def _write_object(out: Path, entry: dict[str, Any]) -> str:

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from kinematify.assembly.truth import GroundTruth
+from kinematify.batch.corpus import _entry, write_corpus
 from kinematify.cli.app import run
 from kinematify.cli.generation import Generation
 from kinematify.cli.verdict import describe_briefly
 from kinematify.evaluation.datasets import find_objects
 from kinematify.generate.procedural.request import from_text
-from kinematify.batch.corpus import _entry, write_corpus
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Severity
 from tests.reports import add_checks, finding, report, result

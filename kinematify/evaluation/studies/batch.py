@@ -25,11 +25,11 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import nnls
 
+from kinematify.batch.corpus import write_corpus
 from kinematify.batch.record import RECORD
 from kinematify.batch.summary import STEP_HEADINGS, step_rows
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
-from kinematify.batch.corpus import write_corpus
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

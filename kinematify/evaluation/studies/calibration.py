@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import Field
 
+from kinematify.batch.corpus import write_corpus
 from kinematify.evaluation.record import table
 from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
 from kinematify.evaluation.study import Options, Study, explained
 from kinematify.evaluation.summary import is_right
-from kinematify.batch.corpus import write_corpus
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
