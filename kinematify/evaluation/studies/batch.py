@@ -118,8 +118,10 @@ def timed_run(asked: Timed) -> Record:
         subprocess.run([*command, "--engine", asked.engine, "--json", str(answer)], capture_output=True, check=False)
         seconds = time.perf_counter() - start
         records = json.loads(answer.read_text("utf-8"))["records"]
-    facts = {"engine": asked.engine, "workers": asked.workers, "seconds": seconds}
-    return {"run": "timed", **facts, "objects": records}
+    objects = [{**record, "source": record["object"]} for record in records]  # the same wherever they lie
+    return {
+        "run": "timed", "engine": asked.engine, "workers": asked.workers, "seconds": seconds, "objects": objects,
+    }  # fmt: skip
 
 
 def killed_run(asked: Killed) -> Record:
