@@ -38,7 +38,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from kinematify.assembly.part import Part
 from kinematify.errors import InputError
-from kinematify.generate.blueprint import Blueprint, BlueprintJoint
+from kinematify.generate.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_material, surface_of
 from kinematify.generate.procedural.solids import SEGMENTS, union
 from kinematify.robot.joint_type import JointType
@@ -405,6 +405,14 @@ class JointDescription(_Described):
         )
 
 
+class LoopDescription(_Described):
+    """A pin that two parts share besides the joints: it closes a chain of joints, whose bars follow by `mimic`."""
+
+    parts: tuple[Name, Name]
+    pivot: Vector
+    """A point on the pin, world frame, where the parts are given [m]."""
+
+
 class BlueprintDescription(_Described):
     """An articulated object; the part that no joint carries is the base link."""
 
@@ -413,6 +421,7 @@ class BlueprintDescription(_Described):
     parts: tuple[PartDescription, ...] = Field(min_length=2, max_length=MOST_PARTS)
     joints: tuple[JointDescription, ...] = Field(max_length=MOST_PARTS)
     """In any order."""
+    loops: tuple[LoopDescription, ...] = Field((), max_length=MOST_PARTS)
 
     @model_validator(mode="after")
     def _is_a_tree(self) -> BlueprintDescription:
@@ -421,6 +430,10 @@ class BlueprintDescription(_Described):
         for joint in self.joints:
             for name in (joint.parent, joint.child, *([joint.mimic.leader] if joint.mimic else ())):
                 _among(name, names, "part")
+        for loop in self.loops:
+            one, other = (_among(name, names, "part") for name in loop.parts)
+            if one == other:
+                raise ValueError(f"a loop joins {one} to itself; name two parts")
         _refuse_twice([joint.child for joint in self.joints], "joints carry")
         self._refuse_cycles()
         roots = sorted(set(names) - {joint.child for joint in self.joints})
@@ -487,6 +500,10 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
         family=described.category,
         parts=(parts.pop(root), *parts.values()),
         joints=joints,
+        loops=tuple(
+            BlueprintLoop(one=loop.parts[0], other=loop.parts[1], pivot=np.array(loop.pivot))
+            for loop in described.loops
+        ),
     )
     return blueprint.moved({joint.child: joint.value for joint in described.joints if not joint.mimic})
 

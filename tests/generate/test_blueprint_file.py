@@ -107,6 +107,39 @@ def test_a_joint_with_a_value_is_shown_there_and_others_follow():
     assert model.robot.joint_by_name["flap_joint"].mimic.multiplier == -0.2
 
 
+def test_a_loop_is_a_point_that_both_parts_keep():
+    bar = {"shapes": [{"kind": "box", "size": [0.01, 0.01, 0.2], "xyz": [0, 0, 0.1]}]}
+    values = {
+        "name": "four_bar",
+        "parts": [
+            {"name": "base", "shapes": [{"kind": "box", "size": [0.3, 0.02, 0.01]}]},
+            {"name": "left", **bar},
+            {"name": "right", "shapes": [{**bar["shapes"][0], "xyz": [0.1, 0, 0.1]}]},
+            {"name": "top", "shapes": [{"kind": "box", "size": [0.1, 0.01, 0.01], "xyz": [0.05, 0, 0.2]}]},
+        ],
+        "joints": [
+            {"type": "revolute", "parent": "base", "child": "left", "axis": [0, 1, 0], "lower": 0, "upper": 1},
+            {
+                "type": "revolute", "parent": "base", "child": "right", "axis": [0, 1, 0], "pivot": [0.1, 0, 0],
+                "lower": 0, "upper": 1, "mimic": {"leader": "left"},
+            },
+            {
+                "type": "revolute", "parent": "left", "child": "top", "axis": [0, 1, 0], "pivot": [0, 0, 0.2],
+                "lower": -1, "upper": 0, "mimic": {"leader": "left", "multiplier": -1},
+            },
+        ],
+        "loops": [{"parts": ["right", "top"], "pivot": [0.1, 0, 0.2]}],
+    }  # fmt: skip
+    built = described_blueprint(values)
+    (loop,) = built.moved({"left": 0.5}).loops
+    np.testing.assert_allclose(loop.pivot, [0.1 + 0.2 * math.sin(0.5), 0.0, 0.2 * math.cos(0.5)], atol=1e-12)
+    model = true_model(built, load_config())
+    assert [item.links for item in model.loops] == [("right", "top")]
+    for parts, message in ((["right", "roof"], "no part 'roof'"), (["top", "top"], "joins top to itself")):
+        with pytest.raises(InputError, match=message):
+            described_blueprint({**values, "loops": [{"parts": parts, "pivot": [0, 0, 0]}]})
+
+
 def test_parts_and_joints_may_stand_in_any_order():
     values = toolbox()
     values["parts"].reverse()

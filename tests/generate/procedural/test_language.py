@@ -52,7 +52,7 @@ def test_slips_of_spelling_are_told_and_mended_only_if_that_is_asked_for():
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a truck", "truck"),
+        ("a rocket", "rocket"),
         ("a door handle", "door handle"),
         ("two cabinet doors", "cabinet"),
         ("fifty nightstands", "at most 12"),
@@ -62,9 +62,9 @@ def test_slips_of_spelling_are_told_and_mended_only_if_that_is_asked_for():
         ("a sash window", "sash"),
         ("a microwave with a handle on the left", "left"),
         ("an oven with a door that opens to the left", "opens left"),
-        ("a fridge of 180 cm", "180 cm"),
+        ("a microwave of 180 cm", "180 cm"),
         ("a cabinet with small drawers", "small"),
-        ("a robot arm with seven joints and a three finger gripper", "three finger gripper"),
+        ("a robot arm with seven joints and two grippers", "two"),
         ("a humanoid robot holding a laptop", "holding"),
         ("an oven with golden knobs and a spinning door", "spinning"),
         ("a 2 km fridge", "2 km"),
