@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from kinematify.pipeline import Inference
     from kinematify.robot.robot import Joint
 
-DOUBTFUL = 0.5
-"""Joints of less confidence are named as those to look at first."""
-
 
 def confidences(inference: Inference) -> dict[str, float]:
     """Confidence of the joint above every part, by the part's name."""
@@ -71,15 +68,12 @@ def _range(joint: Joint) -> str:
 
 def _describe_doubts(inference: Inference) -> list[str]:
     """What the user should look at, one line each, and an empty line if there is any."""
-    confidence_of = confidences(inference)
-    doubtful = sorted(
-        (joint for joint in inference.model.joints if confidence_of[joint.child] < DOUBTFUL),
-        key=lambda joint: confidence_of[joint.child],
-    )
+    joint_of = {joint.child: joint.name for joint in inference.model.joints}
+    doubtful = [joint_of[part] for part in inference.doubtful]
     lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]
     lines += [f"Note: {warning}" for warning in inference.warnings]
     if doubtful:
-        names = ", ".join(joint.name for joint in doubtful)
+        names = ", ".join(doubtful)
         count = f"{len(doubtful)} joint{'s' if len(doubtful) > 1 else ''} to look at"
         lines.append(f"{count}, of which the geometry says least: {names}. What you know, tell with --hint.")
     return [*lines, ""] if lines else []

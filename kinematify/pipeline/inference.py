@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.topology.tree import KinematicTree
 
+DOUBTFUL = 0.5
+"""Joints of less confidence are named as those to look at first."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Inference:
@@ -45,6 +48,12 @@ class Inference:
     """What the user said of joints, as it is typed behind ``--hint``; in force already."""
     provenance: Mapping[str, Any] | None = None
     """Who made the parts, from what (`kinematify.generate.providers`), as JSON values; None where that is not known."""
+
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """Parts whose joint is to be looked at, since its confidence is below `DOUBTFUL`; the least sure first."""
+        below = sorted((joint.confidence, joint.child) for joint in self.joints if joint.confidence < DOUBTFUL)
+        return tuple(self.assembly.names[child] for _, child in below)
 
     @cached_property
     def model(self) -> KinematicModel:

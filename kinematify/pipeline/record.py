@@ -100,6 +100,7 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "contacts": [_contact(inference, edge) for edge in inference.graph.edges],
         "trees": [_tree(tree, assembly.names) for tree in inference.trees],
         "joints": [_joint(joint, assembly.names) for joint in inference.joints],
+        "doubtful": list(inference.doubtful),
         "hints": list(inference.hints),
         "refinement": inference.refinement,
         "provenance": inference.provenance,

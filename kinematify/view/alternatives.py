@@ -45,6 +45,18 @@ class Alternative:
     """Its rank among the candidates of one joint: higher is better."""
 
 
+def load_doubtful(path: Path) -> tuple[str, ...]:
+    """Return the parts whose joints are to be looked at first, from `inference.json` of a model folder.
+
+    Raises:
+        InputError: It cannot be read.
+    """
+    try:
+        return tuple(map(str, json.loads(path.read_text(encoding="utf-8")).get("doubtful", ())))
+    except (OSError, ValueError, AttributeError, TypeError) as error:
+        raise _no_record(path, error) from error
+
+
 def load_alternatives(path: Path) -> dict[tuple[str, str], tuple[Alternative, ...]]:
     """Return the candidates of every joint, best first, keyed by (parent, child) part names; the last one is fixed.
 
@@ -58,10 +70,14 @@ def load_alternatives(path: Path) -> dict[tuple[str, str], tuple[Alternative, ..
         joints = json.loads(path.read_text(encoding="utf-8"))["joints"]
         return {(joint["parent"], joint["child"]): tuple(_alternatives(joint)) for joint in joints}
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(
-            f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
-            "view the model from another folder."
-        ) from error
+        raise _no_record(path, error) from error
+
+
+def _no_record(path: Path, error: Exception) -> InputError:
+    return InputError(
+        f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
+        "view the model from another folder."
+    )
 
 
 def _alternatives(joint: dict[str, Any]) -> list[Alternative]:

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Joint
     from kinematify.view.alternatives import Alternative
     from kinematify.view.keep import Kept, ModelFolder
-    from kinematify.view.scene import Touch, ViewScene
+    from kinematify.view.scene import Touch
+    from kinematify.view.shown import Shown
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
@@ -66,19 +67,17 @@ class ModelViewer:
     def __init__(
         self,
         server: viser.ViserServer,
-        scene: ViewScene,
+        shown: Shown,
         *,
-        alternatives: Mapping[tuple[str, str], Sequence[Alternative]],
         sights: Sequence[Sight],
         folder: ModelFolder | None = None,
-        reopen: Callable[[], tuple[ViewScene, Mapping[tuple[str, str], Sequence[Alternative]]]] | None = None,
+        reopen: Callable[[], Shown] | None = None,
     ) -> None:
         """Build the page.
 
         Args:
             server: Running.
-            scene: The model.
-            alternatives: Candidates of joints by (parent, child) link.
+            shown: The model.
             sights: Findings.
             folder: Where a candidate that is kept is written; None: nothing can be kept.
             reopen: Reads the folder again after it was written.
@@ -87,18 +86,13 @@ class ModelViewer:
         self._lock = threading.RLock()  # sliders, buttons and the sweep come from threads of their own
         self._random = np.random.default_rng(0)
         server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
-        self._open(scene, alternatives, sights)
+        self._open(shown, sights, _doubts(shown))
 
-    def _open(
-        self,
-        scene: ViewScene,
-        alternatives: Mapping[tuple[str, str], Sequence[Alternative]],
-        sights: Sequence[Sight],
-        said: str = "",
-    ) -> None:
+    def _open(self, shown: Shown, sights: Sequence[Sight], said: str) -> None:
         """Show a model from the beginning."""
         with self._lock:
-            self._scene, self._alternatives = scene, alternatives
+            scene = shown.scene
+            self._scene, self._alternatives = scene, shown.alternatives
             self._q = {joint.name: scene.rest[joint.name] for joint in scene.leaders}
             self._marked: frozenset[str] = frozenset()
             self._sweeping: str | None = None
@@ -192,13 +186,13 @@ class ModelViewer:
         if joint is None or not number:
             return None
         chosen = self._candidates(joint)[number - 1]
-        return self._written(partial(self._folder.keep, joint.child, chosen), joint.name)
+        return self._written(partial(self._folder.keep, joint.child, chosen))
 
     def _undo(self) -> None:
         assert self._folder is not None
-        self._written(self._folder.undo, None)
+        self._written(self._folder.undo)
 
-    def _written(self, write: Callable[[], Kept | None], joint: str | None) -> Kept | None:
+    def _written(self, write: Callable[[], Kept | None]) -> Kept | None:
         """Change the folder, tell what came of it, and show what it holds."""
         assert self._reopen is not None
         self._keep.disabled = True
@@ -208,7 +202,7 @@ class ModelViewer:
         ]
         try:
             kept = write()
-            scene, alternatives = self._reopen()
+            shown = self._reopen()
         except KinematifyError as error:
             self._tell("Nothing was changed", str(error))
             return None
@@ -216,9 +210,7 @@ class ModelViewer:
             self._keep.disabled = False
             for item in waiting:
                 item.remove()
-        self._open(scene, alternatives, (), "" if kept is None else _kept_words(kept))
-        if joint is not None and joint in self._sliders:
-            self.choose(joint)
+        self._open(shown, (), _doubts(shown) if kept is None else _kept_words(kept))
         return kept
 
     def _tell(self, title: str, body: str) -> None:
@@ -300,7 +292,7 @@ class ModelViewer:
             self._draw_axis(joint)
         if not self._scene.leaders:
             gui.add_markdown("No joint of this model moves.")
-        self._told = gui.add_markdown(said or "Touch a slider or click a part.")
+        self._told = gui.add_markdown(said)
         self._play = gui.add_button("Play", visible=False)
         self._play.on_click(_ignoring_event(self._sweep))
         self._options = [_AS_WRITTEN]
@@ -528,6 +520,12 @@ def _ignoring_event(action: Callable[[], object]) -> Callable[[Any], None]:
         action()
 
     return called
+
+
+def _doubts(shown: Shown) -> str:
+    """The joints to look at first, and how to begin."""
+    begin = "Touch a slider or click a part."
+    return f"Look at these, they are least sure: **{', '.join(shown.doubtful)}**. {begin}" if shown.doubtful else begin
 
 
 def _kept_words(kept: Kept) -> str:

@@ -12,31 +12,31 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import EnvironmentFault
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
-from kinematify.view.alternatives import load_alternatives
+from kinematify.view.alternatives import load_alternatives, load_doubtful
 from kinematify.view.scene import ViewScene
+from kinematify.view.shown import Shown
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.view.alternatives import Alternative
     from kinematify.view.server import ModelViewer, Sight
 
 _PAGE_HEIGHT = 620
 """Of the frame in a notebook [pixels]."""
 
 
-def read_model(
-    urdf: Path, package_dirs: Sequence[Path]
-) -> tuple[ViewScene, dict[tuple[str, str], tuple[Alternative, ...]]]:
-    """Read a URDF with its colours, and the candidates of its joints where `inference.json` lies beside it.
+def read_model(urdf: Path, package_dirs: Sequence[Path]) -> Shown:
+    """Read a URDF with its colours, and what `inference.json` tells of its joints where that lies beside it.
 
     Raises:
         InputError: One of them cannot be read.
     """
     scene = ViewScene(read_robot(urdf, package_dirs=package_dirs, appearance=True), load_settings())
     record = urdf.parent / RECORD_FILE
-    return scene, load_alternatives(record) if record.is_file() else {}
+    if not record.is_file():
+        return Shown(scene=scene)
+    return Shown(scene=scene, alternatives=load_alternatives(record), doubtful=load_doubtful(record))
 
 
 class Window:
@@ -73,20 +73,19 @@ class Window:
         from kinematify.view.keep import ModelFolder  # noqa: PLC0415  # loads the inference
         from kinematify.view.server import ModelViewer  # noqa: PLC0415  # needs viser
 
-        scene, alternatives = read_model(urdf, package_dirs)
+        shown = read_model(urdf, package_dirs)
         self._stop = threading.Event()
         with redirect_stdout(StringIO()):  # a banner of its own
             self._server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
         self.viewer: ModelViewer = ModelViewer(
             self._server,
-            scene,
-            alternatives=alternatives,
+            shown,
             sights=sights,
-            folder=ModelFolder(urdf.parent) if urdf.name == MODEL_FILE and alternatives else None,
+            folder=ModelFolder(urdf.parent) if urdf.name == MODEL_FILE and shown.alternatives else None,
             reopen=lambda: read_model(urdf, package_dirs),
         )
-        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
-        self.url = f"http://{shown}:{self._server.get_port()}"
+        name = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
+        self.url = f"http://{name}:{self._server.get_port()}"
         """Address of the page."""
 
     def run(self) -> None:
