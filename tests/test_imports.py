@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -45,6 +46,17 @@ def test_the_list_of_studies_loads_no_engine() -> None:
     loaded = loaded_after("from kinematify.cli.app import run; assert run(['bench', '--list']) == 0")
     assert "pydantic" in loaded
     assert loaded & {"torch", "mujoco", "pybullet", "pinocchio", "trimesh"} == set()
+
+
+def test_inferring_loads_only_what_runs(tmp_path: Path) -> None:
+    for name, z in (("plate", 0.0), ("lid", 1.0)):
+        corners = [(x, y, z + h) for x in (0, 1) for y in (0, 1) for h in (0.0, 0.9)]
+        faces = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
+        (tmp_path / f"{name}.obj").write_text("".join("v {} {} {}\n".format(*corner) for corner in corners) + faces)
+    words = ["infer", str(tmp_path), "-o", str(tmp_path / "out"), "--no-preview", "--no-validation"]
+    loaded = loaded_after(f"from kinematify.cli.app import run; assert run({words!r}) == 0")
+    assert "igl" in loaded
+    assert loaded & {"torch", "mujoco", "pybullet", "pinocchio", "trimesh", "httpx"} == set()
 
 
 def test_public_names_resolve_and_are_all_there_is() -> None:

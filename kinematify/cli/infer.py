@@ -16,10 +16,11 @@ from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from kinematify.config import Config
     from kinematify.pipeline import Inference
+    from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
 
 _INFERRED, _REFINED, _WRITTEN = 0.5, 0.55, 0.8
@@ -127,7 +128,6 @@ def command(
     from kinematify.config import load_config
     from kinematify.model.output import MODEL_FILE, check_output
     from kinematify.pipeline import infer, write_inference
-    from kinematify.refinement.hints import parse_hints, with_hints
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
@@ -136,13 +136,13 @@ def command(
         use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
-        told = parse_hints(hints, given.names, base=base)
+        told = _told(hints, given.names, base)
         inference = infer(given, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
         inference, heard = _with_votes(inference, vlm, progress)
         status, loaded = 0, ""
         if rounds is not None:
             inference, status = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
-        inference = with_hints(inference, told) if told else inference
+        inference = _with_hints(inference, told)
         progress("writing the model", _REFINED)
         write_inference(inference, out, overwrite=force, preview=not no_preview)
         if not no_validation:
@@ -155,6 +155,22 @@ def command(
         blocks = (heard, describe_refinement(inference), describe(inference, out), loaded)
         click.echo("\n\n".join(block for block in blocks if block))
     return status
+
+
+def _told(hints: Sequence[str], parts: Sequence[str], base: str | None) -> Sequence[Hint]:
+    if not hints:  # refinement takes a quarter of a second to load
+        return ()
+    from kinematify.refinement.hints import parse_hints
+
+    return parse_hints(hints, parts, base=base)
+
+
+def _with_hints(inference: Inference, told: Sequence[Hint]) -> Inference:
+    if not told:
+        return inference
+    from kinematify.refinement.hints import with_hints
+
+    return with_hints(inference, told)
 
 
 def _share(progress: Callable[[str, float], None], start: float, end: float) -> Callable[[str, float], None]:

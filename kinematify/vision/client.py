@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.providers.service import Service
 from kinematify.geometry.cut_cache import cache_folder
 from kinematify.vision.answer import JointVotes, read_answer, schema
 from kinematify.vision.question import PROMPT
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import VisionConfig
+    from kinematify.generate.providers.service import Service
     from kinematify.vision.answer import JointQuestion
 
 ADDRESS, KEY, MODEL = "KINEMATIFY_VLM_URL", "KINEMATIFY_VLM_KEY", "KINEMATIFY_VLM_MODEL"
@@ -49,6 +49,8 @@ class ChatOracle:
             InputError: The address cannot be used, or the key or the request is not accepted: no question would be
                 answered.
         """
+        from kinematify.generate.providers.service import Service  # noqa: PLC0415 - most calls ask nobody
+
         service = Service(name="The vision model", url=self.url, key=self.key, settings=self.config, key_name=KEY)
         with closing(service), ThreadPoolExecutor(self.config.concurrency) as pool:
             return list(pool.map(lambda question: self._votes(service, question), questions))
