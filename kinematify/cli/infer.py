@@ -181,12 +181,13 @@ def _share(progress: Callable[[str, float], None], start: float, end: float) -> 
 def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float], None]) -> tuple[Inference, str]:
     """The joints chosen again with the votes of a model, and what it said; unchanged where none is asked."""
     from kinematify.vision.client import oracle_of
-    from kinematify.vision.votes import with_votes
-    from kinematify.vision.words import describe_votes
 
     oracle = oracle_of(vlm, inference.config.vision)
     if oracle is None:
         return inference, ""
+    from kinematify.vision.votes import with_votes
+    from kinematify.vision.words import describe_votes
+
     progress("asking a vision model about the joints", _INFERRED)
     inference, heard = with_votes(inference, oracle)
     return inference, describe_votes(heard)

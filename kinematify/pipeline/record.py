@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify import __version__
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
-from kinematify.model.preview import render_preview
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import MESH_FOLDER, write_model
 from kinematify.versions import package_versions
@@ -59,6 +58,8 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
     text = json.dumps(record, indent=1, allow_nan=False)
     (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
     if preview:
+        from kinematify.model.preview import render_preview  # noqa: PLC0415 - a third of a second
+
         render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
 
 
