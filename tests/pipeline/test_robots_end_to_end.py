@@ -47,7 +47,7 @@ def test_arms_come_back_exactly(name: str, count: int) -> None:
     assert np.mean([joint.line_m for joint in score.joints if joint.line_m is not None]) <= 0.002
 
 
-@pytest.mark.parametrize(("name", "count"), [("cabinet_41083", 4), ("microwave_7128", 5), ("box_100141", 1)])
+@pytest.mark.parametrize(("name", "count"), [("cabinet_41083", 4), ("dishwasher_12428", 5), ("box_100141", 1)])
 def test_everyday_objects_come_back_with_their_joints(name: str, count: int) -> None:
     score = inferred_again(name).score
     assert score is not None
