@@ -46,6 +46,8 @@ class ContactConfig(StageConfig):
     """Largest gap that counts as contact."""
     bridge_ratio: float
     """Where parts touch nothing, gaps up to this many times the smallest one count as contact."""
+    strength: Literal["area", "proximity"]
+    """Of a contact: its area beside the largest one, or exp(-gap / tolerance)."""
     band: float
     """Samples farther from the other part than this say nothing about the joint."""
     samples: int
@@ -59,6 +61,8 @@ class ContactConfig(StageConfig):
 class SeamConfig(StageConfig):
     """Where one part was cut in two."""
 
+    join: bool
+    """Infer with such pieces as one part; false: with the parts as they are given."""
     tolerance: float
     """Distance at which two rims coincide, fraction of the assembly's diagonal."""
     through_smooth: float

@@ -78,8 +78,8 @@ class TopologyConfig(StageConfig):
     """Search, maximum spanning trees alone, or breadth-first orientation alone."""
     reward: Literal["default", "paper"]
     """Our terms with joint quality, or the five terms of the paper with contact strength."""
-    base_rule: Literal["scored", "degree"]
-    """Our scored rule, or the paper's highest degree."""
+    base_rule: Literal["scored", "degree", "given"]
+    """Our scored rule, the paper's highest degree, or none: the base link has to be given, as in its Algorithm 1."""
     cluster_edges: Literal["penalise", "forbid"]
     """What happens to edges inside a cluster of congruent parts."""
     weights: RewardWeights

@@ -50,22 +50,31 @@ def build_contact_graph(
         (pair, gap, *_contact_samples(surfaces, pair, max(band, 3 * gap), config.samples, seed))
         for pair, gap in sorted({**gaps, **bridges}.items())
     ]
-    areas = np.array([_mutual_area(side_a, side_b, max(gap, tolerance)) for _, gap, side_a, side_b in raw])
-    largest = max(float(areas.max(initial=0.0)), 1e-300)
+    strengths = _strengths(raw, tolerance, config)
     edges = tuple(
         ContactEdge(
             a=pair[0],
             b=pair[1],
             gap=gap,
-            strength=float(area / largest),
+            strength=strength,
             samples_a=side_a,
             samples_b=side_b,
             bridge=pair in bridges,
         )
-        for (pair, gap, side_a, side_b), area in zip(raw, areas, strict=True)
+        for (pair, gap, side_a, side_b), strength in zip(raw, strengths, strict=True)
     )
     clusters = find_clusters(assembly, surfaces, config=config, seed=seed)
     return ContactGraph(n_parts=len(assembly.parts), edges=edges, clusters=clusters, tolerance=tolerance)
+
+
+def _strengths(
+    raw: Sequence[tuple[Pair, float, ContactSamples, ContactSamples]], tolerance: float, config: ContactConfig
+) -> list[float]:
+    """Strength of every contact in [0, 1]."""
+    if config.strength == "proximity":
+        return [float(np.exp(-gap / tolerance)) for _, gap, _, _ in raw]
+    areas = np.array([_mutual_area(side_a, side_b, max(gap, tolerance)) for _, gap, side_a, side_b in raw])
+    return [float(area) for area in areas / max(float(areas.max(initial=0.0)), 1e-300)]
 
 
 def near_pairs(assembly: Assembly, margin: float) -> list[Pair]:

@@ -161,12 +161,19 @@ class _Answer:
 def _infer(job: Job, erased: ErasedModel, given: Perturbed) -> _Answer:
     start = time.perf_counter()
     try:
-        inference = imported(job.infer)(given.assembly, config=given.config)
+        inference = imported(job.infer)(given.assembly, config=given.config, **_known(job, erased))
         seconds = time.perf_counter() - start
         prediction, mended = predicted(erased, given, inference)
     except Exception as error:
         return _Answer(seconds=time.perf_counter() - start, message=sentence(error))
     return _Answer(prediction=prediction, seconds=seconds, stage_seconds=dict(inference.timings), cuts_mended=mended)
+
+
+def _known(job: Job, erased: ErasedModel) -> dict[str, str]:
+    """What a method is told beside the parts: the base link, where its configuration takes that as input."""
+    if job.config.topology.base_rule != "given":
+        return {}
+    return {"base": erased.truth.part_names[erased.truth.parents.index(-1)]}
 
 
 def imported(dotted: str) -> Callable[..., Inference]:

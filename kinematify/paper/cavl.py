@@ -206,8 +206,13 @@ def cavl_terms(
     for side in scene.sides:
         moved = _move(side, kind, pivots, axes, motions)
         distances = side.field.value(moved)
-        separation = _weighted_mean(side.anchored, torch.relu(distances - margin) / unit, config.epsilon)
-        penetration = _weighted_mean(side.free, torch.relu(-distances - margin) / unit, config.epsilon)
+        apart, inside = (torch.relu(depths - margin) / unit for depths in (distances, -distances))
+        if config.surviving_share < 1.0:
+            separation = _surviving_mean(side.anchored, apart, config.surviving_share, config.epsilon)
+            penetration = _weighted_mean(side.free + side.anchored, inside, config.epsilon)
+        else:
+            separation = _weighted_mean(side.anchored, apart, config.epsilon)
+            penetration = _weighted_mean(side.free, inside, config.epsilon)
         consistency = consistency + separation / len(scene.sides)
         collision = collision + penetration / len(scene.sides)
     offset = torch.zeros(len(axes), dtype=torch.float64)
@@ -227,6 +232,19 @@ def _move(side: CavlSide, kind: JointType, pivots: Tensor, axes: Tensor, motions
 def _weighted_mean(weights: Tensor, depths: Tensor, epsilon: float) -> Tensor:
     """Weighted mean of the squares over the last dimension, (N,) and (K, M, N) -> (K, M)."""
     return (depths.square() @ weights) / (weights.sum() + epsilon)
+
+
+def _surviving_mean(weights: Tensor, depths: Tensor, share: float, epsilon: float) -> Tensor:
+    """Weighted mean of the squares over that share of the weight that is separated least (DW-CAVL+; not printed).
+
+    A closed door touches its frame all around and keeps one side of four: what a motion has to leave is no contact of
+    the joint, whatever the joint is.
+    """
+    ascending, order = depths.sort(dim=-1)
+    sorted_weights = weights[order]
+    wanted = share * weights.sum()
+    kept = torch.minimum(sorted_weights, (wanted - (sorted_weights.cumsum(dim=-1) - sorted_weights)).clamp_min(0.0))
+    return (ascending.square() * kept).sum(dim=-1) / (wanted + epsilon)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -57,7 +57,7 @@ def infer(
     clock = StageClock(progress)
     with clock.stage("contacts", 0.0):
         surfaces = part_surfaces(assembly, config=config.surface)
-        cuts = find_cuts(assembly, surfaces, config.seam) if graph is None else {}
+        cuts = find_cuts(assembly, surfaces, config.seam) if graph is None and config.seam.join else {}
         pieces = rigid_pieces(len(assembly.parts), cuts)
         if graph is None:
             graph = build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)

@@ -85,6 +85,11 @@ def rank_trees(
     reward = (PaperReward if config.reward == "paper" else TreeReward)(graph, stats, evidence, config, simulated)
     if base is not None and not 0 <= base < graph.n_parts:
         raise InputError(f"Part {base} was given as base link, but the parts are numbered 0 to {graph.n_parts - 1}.")
+    if base is None and config.base_rule == "given":
+        raise InputError(
+            "The configuration takes the base link as input, as the paper's Algorithm 1 does, and none was given. Name "
+            "one with --base, or take a configuration that finds it, e.g. paper or default."
+        )
     if base is not None:
         bases: tuple[BaseCandidate, ...] = (BaseCandidate(part=base, score=1.0, reason="It was given."),)
     else:

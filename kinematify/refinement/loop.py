@@ -289,7 +289,7 @@ class _Loop:
         """Parts that were one, and contacts that the graph has wrong; None where both are right."""
         assembly, config = self.given.assembly, self.given.config
         surfaces = part_surfaces(assembly, config=config.surface)
-        seams = find_seams(assembly, surfaces, done.plan.tree.root, config.seam)
+        seams = find_seams(assembly, surfaces, done.plan.tree.root, config.seam) if config.seam.join else {}
         if seams:
             joined = infer_joined(done.plan, done.contacts, seams, base=self.base)
             if joined[2]:
