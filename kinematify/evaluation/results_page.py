@@ -8,7 +8,7 @@ from kinematify.errors import InputError
 from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.evaluation.record import load_report, number, replace_text, table
 from kinematify.evaluation.run import RESULTS
-from kinematify.evaluation.studies.refinement import harmed, part_tables, results_of
+from kinematify.evaluation.studies.refine import sentence
 from kinematify.evaluation.study import load_study_report
 from kinematify.evaluation.summary import CLOSE_ANGLE, condition_group, median_seconds, summarise
 
@@ -29,7 +29,7 @@ def write_results_page(page: Path, results: Path) -> None:
 
     Args:
         page: The file.
-        results: Folder with the reports robots, everyday, ablation_robots, ablation_everyday and refinement.
+        results: Folder with the reports robots, everyday, ablation_robots, ablation_everyday and refine.
 
     Raises:
         InputError: A report or a mark is missing.
@@ -123,9 +123,4 @@ def _ablation(runs: Sequence[JobResult]) -> str:
 
 
 def _refinement(results: Path) -> list[str]:
-    found = load_study_report(results, "refinement")
-    harm = [f"{row[0]} ({row[1]}: {row[3]})" for row in harmed(results_of(found.records))]
-    return [
-        *(f"**{title}**\n\n{text}" for title, text in part_tables(found).items()),
-        f"Where feedback did harm: {'; '.join(dict.fromkeys(harm)) or 'none'}.",
-    ]
+    return [sentence(load_study_report(results, "refine"))]

@@ -22,10 +22,13 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.topology.tree import KinematicTree
     from kinematify.validation.feedback import EdgeSignal
 
+_SAME = np.cos(np.radians(1.0))
+_NEAR = 1e-3  # of the distance of a line from the origin
 Edge = tuple[int, int]
 """Parent and child."""
 
@@ -80,12 +83,18 @@ def replanned(
         plan: On the tree before.
         contacts: That the new tree was found on.
         tree: The new one.
-        keep: Joints stay where neither the parent of a part nor what hangs on it has changed, nor the contacts.
+        keep: The contacts have not changed: joints of edges that stay are kept where the inference would choose the
+            same on either tree.
     """
     chosen = choose_joints(plan.assembly, contacts.graph, tree, contacts.bearings, plan.config)
-    known = {(joint.parent, joint.child): joint for joint in plan.joints if keep}
-    carries = [set(here) == set(before) for here, before in zip(tree.children, plan.tree.children, strict=True)]
-    joints = tuple(known.get((joint.parent, joint.child), joint) if carries[joint.child] else joint for joint in chosen)
+    kept: dict[Edge, JointEstimate] = {}
+    if keep:
+        before = choose_joints(plan.assembly, contacts.graph, plan.tree, contacts.bearings, plan.config)
+        then = {(joint.parent, joint.child): joint for joint in before}
+        now = {(joint.parent, joint.child): joint for joint in chosen}
+        known = {(joint.parent, joint.child): joint for joint in plan.joints}
+        kept = {edge: known[edge] for edge in now.keys() & then.keys() if _alike(now[edge], then[edge])}
+    joints = tuple(kept.get((joint.parent, joint.child), joint) for joint in chosen)
     names = plan.assembly.names
     new = Plan(assembly=plan.assembly, config=plan.config, tree=tree, joints=joints)
     changes = [
@@ -100,3 +109,11 @@ def replanned(
         if before != after
     ]
     return new, changes
+
+
+def _alike(one: JointEstimate, other: JointEstimate) -> bool:
+    """Whether two joints of one part are of one type about one line, or along one direction."""
+    if one.kind is not other.kind or abs(float(one.axis @ other.axis)) < _SAME:
+        return False
+    apart = float(np.linalg.norm(np.cross(one.pivot - other.pivot, one.axis)))
+    return not one.kind.turns or apart < _NEAR * max(float(np.linalg.norm(one.pivot)), _NEAR)

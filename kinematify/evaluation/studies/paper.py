@@ -2,7 +2,9 @@
 
 Trees: the five rewards under `paper` (the base link is the part of highest degree, edges inside a cluster are
 forbidden), `paper-base` (the base link is given, as in Algorithm 1) and `paper-open` (given, and nothing is forbidden);
-contact strength by proximity, pieces of cut parts not joined. Gaps are exact, where the paper samples fields.
+pieces of cut parts are not joined. Contact strength is exp(-gap / tolerance), for the paper says "proximity" and gives
+no formula; *by area* it is the area of the contact beside the largest one. Gaps are exact, where the paper samples
+fields.
 
 Joints: on the true tree, DW-CAVL as printed and DW-CAVL+, in which only the quarter of the contact that the motion
 separates least counts as the contact of the joint, and the rest of it as free surface. J of the true joint stands
@@ -46,7 +48,8 @@ if TYPE_CHECKING:
     from kinematify.evaluation.study import Measured, Record, Work
     from kinematify.paper.cavl import CavlScene
 
-RULES = ("paper", "paper-base", "paper-open")
+_BY_AREA = ", by area"
+RULES = ("paper", "paper-base", "paper-open", f"paper-open{_BY_AREA}")
 OBJECTIVES = {"DW-CAVL": "paper-open", "DW-CAVL+": "paper-plus"}
 WRONG_DEG = 10.0
 _SAMPLE = (
@@ -107,10 +110,11 @@ def searched_trees(asked: PosedObject) -> Record:
     erased = erased_item(asked.item, asked.condition)
     assembly, true = shown_parts(erased), dict(enumerate(erased.truth.parents))
     root = erased.truth.parents.index(-1)
-    graph = _contacts(assembly)
+    graphs = {strength: _contacts(assembly, strength) for strength in ("proximity", "area")}
     rows = []
     for name in RULES:
-        config = load_config(name)
+        config = load_config(name.removesuffix(_BY_AREA))
+        graph = graphs["area" if name.endswith(_BY_AREA) else "proximity"]
         base = root if config.topology.base_rule == "given" else None
         found = dict(enumerate(find_trees(assembly, graph, {}, config, base=base)[0].parents))
         rows.append({
@@ -123,10 +127,11 @@ def searched_trees(asked: PosedObject) -> Record:
     return {"rows": rows}
 
 
-def _contacts(assembly: Assembly) -> ContactGraph:
+def _contacts(assembly: Assembly, strength: str) -> ContactGraph:
     config = load_config("paper")
     surfaces = part_surfaces(assembly, config=config.surface)
-    return build_contact_graph(assembly, surfaces, config=config.contact, seed=config.seed)
+    contact = config.contact.model_copy(update={"strength": strength})
+    return build_contact_graph(assembly, surfaces, config=contact, seed=config.seed)
 
 
 def judged_joints(asked: PosedObject) -> Record:
@@ -137,7 +142,7 @@ def judged_joints(asked: PosedObject) -> Record:
 
     erased = erased_item(asked.item, asked.condition)
     assembly = shown_parts(erased)
-    graph = _contacts(assembly)
+    graph = _contacts(assembly, "proximity")
     base = load_config("paper")
     sdf = base.sdf.model_copy(update={"kind": asked.sdf})
     field_of = field_source(assembly.parts, sdf, seed=base.seed)
@@ -218,7 +223,7 @@ def report(found: Report[Record]) -> list[str]:
             or "None."
         )
     if "joints" in parts:
-        titles = ("set", "objective", "joints", "axis angle [deg]", "types", "objective", "pool", "optimiser")
+        heads = ("set", "objective", "joints", "axis angle [deg]", "types", "objective", "pool", "optimiser")
         rows = [
             _joint_row(name, objective, records)
             for name, own in grouped(parts["joints"], by=itemgetter("set")).items()
@@ -229,7 +234,7 @@ def report(found: Report[Record]) -> list[str]:
         blocks += [
             "## Joints, the true tree given",
             "Axis angle: mean over an object's joints, then over objects. The last three columns count wrong joints.",
-            table(titles, rows),
+            table(heads, rows),
             "### J(true) and J(chosen) of wrong joints",
             table(titles_of_wrong, [_wrong_row(row) for row in wrong]),
         ]

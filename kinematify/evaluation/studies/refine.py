@@ -6,8 +6,9 @@ fitted choice puts next, written in place of a right one with the log odds of it
 candidates are those of inference, the right one among them. The other wrong joints have the log odds that the fitted
 choice gives them beside the candidates, with --level those of the best candidate, so that only simulation tells them
 apart. *Found*: a failure blames the joint. *Repaired*: parent, type, axis within 10 deg, line within a tenth of the
-part, and the opening side are right afterwards. *Harm*: joints that were right and are not, or whose range overlaps the
-true one by .1 less. The rows *nothing* are the true mechanisms as they are.
+part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is inferred anew. *Harm*:
+joints that were right and are not, or whose range overlaps the true one by .1 less. The rows *nothing* are the true
+mechanisms as they are.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from pydantic import Field
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.job import erased_item
-from kinematify.evaluation.planted import FAULTS, NOTHING, Planted, planted_faults, true_mechanism
+from kinematify.evaluation.planted import FAULTS, NOTHING, PARENT, SECOND, Planted, planted_faults, true_mechanism
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.refinement import refine
@@ -111,7 +112,7 @@ def _refined(mechanism: Mechanism, planted: Planted, asked: Planting) -> Record:
         "part": planted.part,
         "failed": list(history.rounds[0].failed),
         "found": any(blamed.startswith(f"{planted.part}: ") for blamed in history.rounds[0].blamed),
-        "repaired": planted.part not in wrong,
+        "repaired": after[planted.part].matched if planted.fault == PARENT else planted.part not in wrong,
         "joints": len(before),
         "harmed": sorted(spoilt),
         "changes": [f"{item.part}: {item.what} {item.before} -> {item.after}" for item in history.changed],
@@ -149,6 +150,23 @@ def _row(title: str, records: Sequence[Record]) -> tuple[str, ...]:
 
 def _share(values: Sequence[bool]) -> str:
     return f"{sum(values)} ({sum(values) / len(values):.0%})" if values else "-"
+
+
+def sentence(found: Report[Record]) -> str:
+    """What the README says of it."""
+    parts = []
+    for tier, records in grouped(found.records, by=itemgetter("tier")).items():
+        by_fault = grouped(records, by=itemgetter("fault"))
+        planted = [record["repaired"] for fault in FAULTS if fault != SECOND for record in by_fault.get(fault, [])]
+        second = [record["repaired"] for record in by_fault.get(SECOND, [])]
+        harmed = sum(len(record["harmed"]) for record in by_fault.get(NOTHING, []))
+        joints = sum(record["joints"] for record in by_fault.get(NOTHING, []))
+        parts.append(
+            f"simulated by {tier} it repairs {sum(planted)} of {len(planted)} wrong joints that were planted in true "
+            f"mechanisms, {sum(second)} of {len(second)} where the second-best hypothesis stands in place of the best, "
+            f"as inference errs, and spoils {harmed} of {joints} joints that were right"
+        )
+    return f"What it is worth on everyday objects: {'; '.join(parts)} ([results/refine.md](results/refine.md))."
 
 
 def _misses(records: Sequence[Record]) -> str:
