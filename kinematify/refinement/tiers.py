@@ -25,7 +25,10 @@ TIERS = (GEOMETRY, ENGINES, TASK)
 _TRIED = " tried"
 """After the name of a joint, in what KV705 measures."""
 _RUN = {ENGINES: ("KV34", "KV4", "KV5", "KV8"), TASK: ("KV34", "KV4", "KV5", "KV7", "KV8")}
-"""Families of checks that a dear tier runs beside those of geometry, which the cheap tier has told already."""
+"""Families of checks that a dear tier runs beside those of geometry, which the cheap tier has told already.
+
+What the inference itself holds of the shapes is left out: its scores have said that.
+"""
 
 
 def dear_verdict(plan: Plan, cheap: MotionVerdict, *, tier: str, settings: ValidationSettings) -> MotionVerdict:
@@ -37,7 +40,7 @@ def dear_verdict(plan: Plan, cheap: MotionVerdict, *, tier: str, settings: Valid
         tier: ``engines`` or ``task``.
         settings: Of the validation.
     """
-    selected = [check.id for check in checks_of(*_RUN[tier])]
+    selected = [check.id for check in checks_of(*_RUN[tier]) if not check.opinion]
     with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
         urdf = write_model(simulable_model(plan.model, plan.config).robot, Path(folder))
         task = TaskRequest(kind=PULL) if tier == TASK else None

@@ -153,7 +153,7 @@ def _share(values: Sequence[bool]) -> str:
 
 
 def sentence(found: Report[Record]) -> str:
-    """What the README says of it."""
+    """What the page of results says of it."""
     parts = []
     for tier, records in grouped(found.records, by=itemgetter("tier")).items():
         by_fault = grouped(records, by=itemgetter("fault"))
@@ -166,7 +166,7 @@ def sentence(found: Report[Record]) -> str:
             f"mechanisms, {sum(second)} of {len(second)} where the second-best hypothesis stands in place of the best, "
             f"as inference errs, and spoils {harmed} of {joints} joints that were right"
         )
-    return f"What it is worth on everyday objects: {'; '.join(parts)} ([results/refine.md](results/refine.md))."
+    return f"What it is worth on everyday objects: {'; '.join(parts)} ([results/refine.md](../results/refine.md))."
 
 
 def _misses(records: Sequence[Record]) -> str:
