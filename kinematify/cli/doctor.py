@@ -52,6 +52,9 @@ MODULES = {
     "viser": ("viser", "viewer in the browser"),
     "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
     "matplotlib": ("matplotlib", "plots of the benchmark"),
+    "fsspec": ("fsspec", "paths and URLs of `kinematify batch`"),
+    "s3fs": ("s3fs", "`kinematify batch` from and to s3://"),
+    "ray": ("ray", "`kinematify batch` on a cluster"),
 }
 """Distribution -> module that proves that it works (empty: data only), and what it is for."""
 
