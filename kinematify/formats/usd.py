@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.formats.content import Content
     from kinematify.robot.appearance import Material, Rgba, Surface, Texture
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import Joint, Link, Shape
+    from kinematify.robot.robot import Joint, Link, LoopJoint, Shape
 
 SUFFIXES = (".usd", ".usda", ".usdc")
 
@@ -81,6 +81,8 @@ class _Writer:
             joint.CreateBody1Rel().SetTargets([self._paths[self._content.robot.root]])
         for joint in self._content.robot.joints:
             self._add_joint(joint, joints.AppendChild(_identifier(joint.name, taken)))
+        for loop in self._content.robot.loops:
+            self._add_loop(loop, joints.AppendChild(_identifier(loop.name, taken)))
         self._keep_apart()
 
     def _add_link(self, link: Link, T_world_link: FloatArray) -> None:
@@ -211,6 +213,14 @@ class _Writer:
             found.GetPrim().SetCustomDataByKey("kinematify", {
                 "follows": joint.mimic.joint, "multiplier": joint.mimic.multiplier, "offset": joint.mimic.offset,
             })  # fmt: skip
+
+    def _add_loop(self, loop: LoopJoint, path: Any) -> None:
+        found = UsdPhysics.SphericalJoint.Define(self.stage, path)
+        found.CreateBody0Rel().SetTargets([self._paths[loop.links[0]]])
+        found.CreateBody1Rel().SetTargets([self._paths[loop.links[1]]])
+        found.CreateLocalPos0Attr(_vector(loop.points[0]))
+        found.CreateLocalPos1Attr(_vector(loop.points[1]))
+        found.CreateExcludeFromArticulationAttr(True)  # an articulation is a tree
 
     def _add_drive(self, prim: Any, joint: Joint) -> None:
         """Damping and the largest effort; an importer adds the gains that it wants."""

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from lxml import etree
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from kinematify.config import load_config
 from kinematify.errors import DescriptionError
@@ -59,6 +60,26 @@ def test_sdf_has_a_ball_joint(toolbox, tmp_path):
     export(toolbox, "sdf", tmp_path / "toolbox.sdf")
     joints = etree.parse(tmp_path / "toolbox.sdf").findall(".//joint[@type='ball']")
     assert {joint.findtext("child") for joint in joints} == {"cantilever_tray_1", "cantilever_tray_2"}
+
+
+def test_usd_has_a_spherical_joint_outside_of_the_articulation(toolbox, tmp_path):
+    export(toolbox, "usd", tmp_path / "toolbox.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "toolbox.usda"))
+    joints = [prim for prim in stage.Traverse() if prim.IsA(UsdPhysics.SphericalJoint)]
+    assert len(joints) == 2
+    for prim in joints:
+        joint = UsdPhysics.SphericalJoint(prim)
+        assert joint.GetExcludeFromArticulationAttr().Get()
+        ends = [
+            UsdGeom.Xformable(stage.GetPrimAtPath(body.GetTargets()[0]))
+            .ComputeLocalToWorldTransform(Usd.TimeCode.Default())
+            .Transform(Gf.Vec3d(place.Get()))
+            for body, place in (
+                (joint.GetBody0Rel(), joint.GetLocalPos0Attr()),
+                (joint.GetBody1Rel(), joint.GetLocalPos1Attr()),
+            )
+        ]
+        np.testing.assert_allclose(*ends, atol=1e-6)
 
 
 def test_a_loop_of_a_link_that_is_not_there_is_refused(toolbox, tmp_path):
