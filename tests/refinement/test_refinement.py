@@ -465,3 +465,14 @@ def test_a_fixed_piece_is_one_part_again_when_scored() -> None:
     )
     unchanged, mended = without_pieces(loose, {2: 1})
     assert (dict(unchanged.parents), mended) == (dict(loose.parents), 0)
+
+
+def test_what_fails_in_an_engine_is_tried_there_again() -> None:
+    right = joint_above(inferred("drawer"), "drawer")
+    blocked = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    refinement = refine(blocked, tier="engines", rounds=1)
+    first = refinement.history.rounds[0]
+    assert any(failed.startswith(("KV4", "KV5", "KV8")) for failed in first.failed)
+    found = joint_above(refinement.inference, "drawer")
+    assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
+    assert refinement.history.rounds[refinement.history.kept].errors == 0
