@@ -74,7 +74,7 @@ def test_model_folder_is_complete(made: Made) -> None:
 def test_progress_is_on_stderr_in_plain_lines(made: Made) -> None:
     lines = made.stderr.splitlines()
     assert lines[0].endswith("reading the parts")
-    assert lines[-1].endswith("loading the model into engines")
+    assert lines[-1].endswith("done")
     assert all(line.startswith("[") for line in lines)
 
 
