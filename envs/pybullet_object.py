@@ -115,6 +115,7 @@ class PybulletObject:
                     0
                 ]
             )
+            self._loaded.find_contacts_anew()
             self._saved = bullet.saveState(physicsClientId=self.client)
         bullet.restoreState(self._saved, physicsClientId=self.client)
         self._loaded.place(self.articulated_object.scene.mechanism.all_values(leaders[None])[0])

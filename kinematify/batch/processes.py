@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.batch.engine import TaskFailure
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.context import ForkServerContext
     from multiprocessing.process import BaseProcess
@@ -71,7 +71,9 @@ class WorkerProcess:
     def __init__(self, context: ForkServerContext, memory: int | None) -> None:
         self.channel, other = context.Pipe()
         # No daemon, which could not start processes, as validation does.
-        self._process: BaseProcess = context.Process(target=_serve, args=(other, memory))
+        # The server may have been started under another environment, before credentials of a store were set.
+        environment = {name: value for name, value in os.environ.items() if name not in _THREAD_VARIABLES}
+        self._process: BaseProcess = context.Process(target=_serve, args=(other, memory, environment))
         self._process.start()
         other.close()  # only the process may hold its end: then its death is seen as the end of the stream
         self._started, self.deadline = 0.0, 0.0
@@ -106,8 +108,9 @@ class WorkerProcess:
         self._process.join()
 
 
-def _serve(channel: Connection, memory: int | None) -> None:
+def _serve(channel: Connection, memory: int | None, environment: Mapping[str, str]) -> None:
     """Body of a process."""
+    os.environ.update(environment)
     os.setsid()  # Ctrl-C is answered by the caller alone, and a hang is stopped with all that it has started
     threading.Thread(target=_end_with_caller, args=(channel.fileno(),), daemon=True).start()
     if memory is not None:  # the soft limit alone: stages of a validation have limits of their own

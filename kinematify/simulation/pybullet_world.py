@@ -126,7 +126,14 @@ class PybulletBody:
         return list(states or ())
 
     def contacts(self, row: int) -> list[tuple[int, int, int, float]]:
-        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set.
+        """Return (row, link, link, depth [m]) of all contacts of the configuration that was set."""
+        self.find_contacts_anew()
+        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
+        link_of = self.link_of
+        return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
+
+    def find_contacts_anew(self) -> None:
+        """Forget the contacts of earlier configurations.
 
         PyBullet keeps contacts from step to step as points that move with the bodies. Where a body was set to another
         place they are wrong, so all pairs are made to be found anew.
@@ -134,9 +141,6 @@ class PybulletBody:
         for index in self.link.tolist():
             bullet.setCollisionFilterGroupMask(self.body, index, 1, 1, physicsClientId=self.client)
         bullet.performCollisionDetection(physicsClientId=self.client)
-        points = bullet.getContactPoints(self.body, self.body, physicsClientId=self.client)
-        link_of = self.link_of
-        return [(row, link_of[point[3]], link_of[point[4]], -point[8]) for point in points]
 
     def touching_bodies(self) -> frozenset[tuple[int, int]]:
         """Return pairs of bodies that pushed each other in the last step, smaller index first."""

@@ -31,11 +31,10 @@ def test_a_node_that_is_lost_loses_no_object(tmp_path: Path, monkeypatch: pytest
         )
         wait_for(tmp_path / "out" / "manifest.jsonl", 2)
         cluster.remove_node(second, allow_graceful=False)
-        answer, said = command.communicate(timeout=240.0)
+        _, said = command.communicate(timeout=240.0)
     finally:
         cluster.shutdown()
     assert command.returncode == 0, said
-    assert "with 1 workers" in answer, "one node is left"
     records = manifest_lines(tmp_path / "out")
     assert sorted(record["object"] for record in records) == [f"knob_{number}" for number in range(COUNT)]
     assert {record["status"] for record in records} == {"ok"}
