@@ -110,7 +110,7 @@ def declared(extra: str | None = None) -> set[str]:
 
 
 def test_the_doctor_knows_every_declared_package() -> None:
-    extras = ("bench", "view", "drake", "cloud", "ray")
+    extras = ("bench", "cad", "view", "drake", "cloud", "ray")
     assert set(MODULES) == declared().union(*map(declared, extras))
 
 

@@ -8,12 +8,12 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from kinematify.errors import AssemblyError
-from kinematify.robot.mesh_paths import MESH_SUFFIXES
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, MESH_SUFFIXES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-WANTED_SUFFIXES = (*MESH_SUFFIXES, ".bin", ".urdf")
+WANTED_SUFFIXES = (*MESH_SUFFIXES, *CAD_SUFFIXES, ".bin", ".urdf")
 """Files that an assembly can consist of; nothing else is unpacked."""
 _CHUNK = 1 << 20
 

@@ -107,7 +107,8 @@ def _welded_part(mesh: RawMesh, name: str, config: AssemblyConfig) -> Part:
     vertices, faces, kept = weld(mesh.vertices, mesh.faces, config.weld)
     if len(faces):
         appearance = None if mesh.appearance is None else mesh.appearance.of_faces(kept).with_few_materials()
-        return Part(name=name, vertices=vertices, faces=faces, **_looks(vertices, faces, appearance))
+        looks = _looks(vertices, faces, appearance)
+        return Part(name=name, vertices=vertices, faces=faces, exact=mesh.exact, **looks)
     # Nothing has area: kept as it was given, so that the user finds it in the output.
     finite = mesh.vertices if np.isfinite(mesh.vertices).all() else mesh.vertices[:0]
     return Part(name=name, vertices=finite, faces=mesh.faces)
@@ -245,7 +246,7 @@ def simplified(part: Part, config: AssemblyConfig) -> Part:
     # Its binding refuses read-only arrays.
     vertices, faces = fast_simplification.simplify(vertices.copy(), faces.copy(), target_count=config.max_part_faces)
     vertices, faces = welded(np.asarray(vertices, dtype=np.float64), faces.astype(np.int64), config.weld)
-    return Part(name=part.name, vertices=vertices, faces=faces, color=part.color)
+    return Part(name=part.name, vertices=vertices, faces=faces, color=part.color, exact=part.exact)
 
 
 def _thinning_warnings(thin: Sequence[Part], originals: dict[str, Part]) -> list[str]:

@@ -19,7 +19,7 @@ from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
 from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
-from kinematify.robot.mesh_paths import GLTF_SUFFIXES
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 
@@ -37,8 +37,8 @@ _TO_Z_UP = {
 }
 """Axis that points up in the input -> rotation that turns it to z."""
 UP_CHOICES = ("auto", *_TO_Z_UP)
-PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf", ".dae")
-"""Mesh files that an assembly can be given as."""
+PART_SUFFIXES = (".obj", ".stl", ".ply", ".off", ".glb", ".gltf", ".3mf", ".dae", *CAD_SUFFIXES)
+"""Files that an assembly can be given as."""
 _SILENT_SUFFIXES = (".mtl", ".bin", ".png", ".jpg", ".jpeg", ".json", ".txt", ".md")
 """Files beside meshes that nobody takes for a part."""
 _STATED_UP = {"X_UP": "x", "Y_UP": "y"}
@@ -76,10 +76,10 @@ def load_assembly(
 ) -> Assembly:
     """Load an object in one static configuration as rigid parts.
 
-    One part is: a node of a GLB, glTF or COLLADA file, a file of a folder, a group or object of an OBJ, an object of a
-    3MF, a label of a mesh with labels, a connected piece of a mesh without, or a rigid group of links of a URDF, whose
-    joints are not looked at. A ZIP may hold any of these. Parts are in natural order of their names. Ground truth
-    written by `erase` is never opened.
+    One part is: a node of a GLB, glTF or COLLADA file, an instance of a part in a STEP file, a file of a folder, a
+    group or object of an OBJ, an object of a 3MF, a label of a mesh with labels, a connected piece of a mesh without,
+    or a rigid group of links of a URDF, whose joints are not looked at. A ZIP may hold any of these. Parts are in
+    natural order of their names. Ground truth written by `erase` is never opened.
 
     Args:
         path: File or folder.
@@ -92,13 +92,14 @@ def load_assembly(
     Raises:
         AssemblyError: The input cannot become an assembly; the message names the file and the remedy.
         DescriptionError: A URDF cannot be read.
+        EnvironmentFault: A STEP file needs a package that is not installed.
     """
     path = Path(path)
     config = config or load_config().assembly
     _check_arguments(up, scale)
     given = _given(path, _Reading(up=up, labels=labels, config=config))
     meshes = sorted(given.meshes, key=lambda mesh: natural_key(mesh.name))
-    scaled = meshes if scale == 1.0 else [replace(mesh, vertices=mesh.vertices * scale) for mesh in meshes]
+    scaled = meshes if scale == 1.0 else [mesh.moved(scale * np.eye(3)) for mesh in meshes]
     stated = _unit_warnings(given.meshes) if scale == 1.0 else ()
     assembly = assemble(scaled, source=str(path), config=config, warnings=(*given.warnings, *stated))
     doubts = () if stated else _size_warnings(assembly, scale, config)
@@ -247,7 +248,7 @@ def _upright(mesh: RawMesh, up: str) -> RawMesh:
     """Turn the axis that points up to z; from y a quarter turn about x, so that the front stays in front."""
     if up == "z":
         return mesh
-    return replace(mesh, vertices=mesh.vertices @ np.array(_TO_Z_UP[up], dtype=np.float64).T)
+    return mesh.moved(np.array(_TO_Z_UP[up], dtype=np.float64))
 
 
 def _empty(name: str) -> RawMesh:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.exact_faces import ExactFaces
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,6 +39,8 @@ class Part:
     """Materials of the faces where the source knows more than one colour."""
     density: float | None = None
     """[kg/m^3] where the source knows it."""
+    exact: ExactFaces | None = None
+    """Cylinders and planes, world frame [m], where a CAD file states them."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", read_only(self.vertices, np.float64))

@@ -49,6 +49,7 @@ MODULES = {
     "click": ("click", "command line"),
     "rich": ("rich", "command line"),
     "packaging": ("packaging", "this command"),
+    "cascadio": ("cascadio", "STEP files"),
     "viser": ("viser", "viewer in the browser"),
     "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
     "matplotlib": ("matplotlib", "plots of the benchmark"),

@@ -117,8 +117,8 @@ def command(
     """Infer the mechanism of ASSEMBLY and write it to OUT as a URDF with everything that belongs to it.
 
     ASSEMBLY is the object in one pose, as rigid parts: a folder with a mesh file per part (OBJ, STL, PLY, GLB, OFF,
-    DAE), a GLB, glTF or DAE with a node per part, an OBJ with groups, a 3MF, a ZIP of these, one mesh with --labels,
-    one mesh of several pieces, or a URDF, whose joints are then not looked at.
+    DAE), a GLB, glTF or DAE with a node per part, an OBJ with groups, a 3MF, a STEP, a ZIP of these, one mesh with
+    --labels, one mesh of several pieces, or a URDF, whose joints are then not looked at.
 
     OUT gets model.urdf, meshes/, inference.json (every alternative with its evidence) and preview.png.
 

@@ -22,6 +22,7 @@ from scipy.spatial import cKDTree
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.contact.build import near_pairs
+from kinematify.robot.exact_faces import joined_faces
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
@@ -96,6 +97,7 @@ def _one(assembly: Assembly, group: tuple[int, ...]) -> Part:
         faces=np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
         color=main.color,
         density=main.density,
+        exact=joined_faces([part.exact for part in parts]),
     )
 
 

@@ -13,8 +13,10 @@ import numpy as np
 
 from kinematify.robot.appearance import Appearance, Material, joined, painted
 from kinematify.robot.colors import srgb_of
+from kinematify.robot.exact_faces import ExactFaces, joined_faces
 
 if TYPE_CHECKING:
+    import re
     from collections.abc import Iterator
     from pathlib import Path
 
@@ -45,14 +47,17 @@ class GltfNode:
     """May scale and mirror, shape (4, 4)."""
     appearance: Appearance | None = None
     """None where the file states no material, and where it was not asked for."""
+    exact: ExactFaces | None = None
+    """Node frame; None where the file states no faces (the extension TM_brep_faces)."""
 
 
-def read_gltf(path: Path, *, appearance: bool = False) -> tuple[GltfNode, ...]:
+def read_gltf(path: Path, *, appearance: bool = False, unnamed: re.Pattern[str] | None = None) -> tuple[GltfNode, ...]:
     """Read the nodes with triangles of the default scene, parents before children.
 
     Args:
         path: A ``.glb``, or a ``.gltf`` whose buffers are inside or beside it.
         appearance: Read materials, textures and colours of vertices too.
+        unnamed: Names of nodes that say nothing, whole; the name of the mesh is taken instead.
 
     Raises:
         OSError: A file cannot be opened.
@@ -61,6 +66,10 @@ def read_gltf(path: Path, *, appearance: bool = False) -> tuple[GltfNode, ...]:
     document, binary = _opened(path)
     _check_extensions(document)
     source = _Buffers(document=document, binary=binary, folder=path.parent, loaded={})
+    if unnamed is not None:
+        for node in document.get("nodes", []):
+            if unnamed.fullmatch(str(node.get("name", ""))):
+                del node["name"]
     return tuple(_nodes(document, source, _Materials(document, source) if appearance else None))
 
 
@@ -257,8 +266,27 @@ def _nodes(document: dict[str, Any], source: _Buffers, materials: _Materials | N
             mesh = document["meshes"][node["mesh"]]
             vertices, faces, appearance = _merged_primitives(mesh, source, materials)
             if len(faces):
-                name = str(node.get("name") or mesh.get("name") or "")
-                yield GltfNode(name=name, vertices=vertices, faces=faces, T_world_node=transform, appearance=appearance)
+                yield GltfNode(
+                    name=str(node.get("name") or mesh.get("name") or ""),
+                    vertices=vertices,
+                    faces=faces,
+                    T_world_node=transform,
+                    appearance=appearance,
+                    exact=joined_faces([_exact_faces(primitive) for primitive in mesh["primitives"]]),
+                )
+
+
+def _exact_faces(primitive: dict[str, Any]) -> ExactFaces | None:
+    stated = primitive.get("extensions", {}).get("TM_brep_faces", {}).get("faces")
+    if stated is None:
+        return None
+    cylinders = [face for face in stated if face and face.get("type") == "cylinder"]
+    planes = [face for face in stated if face and face.get("type") == "plane"]
+    return ExactFaces(
+        axes=np.array([face["axis"] for face in cylinders]),
+        points=np.array([face["origin"] for face in cylinders]),
+        normals=np.array([face["normal"] for face in planes]),
+    )
 
 
 def _roots(document: dict[str, Any]) -> list[int]:

@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from lxml import etree
 
-from kinematify.errors import AssemblyError
+from kinematify.errors import AssemblyError, EnvironmentFault
 from kinematify.robot.appearance import joined, painted
+from kinematify.robot.exact_faces import joined_faces
 from kinematify.robot.gltf_file import read_gltf
-from kinematify.robot.mesh_paths import MESH_SUFFIXES
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.obj_file import read_obj
+from kinematify.robot.step_file import read_step
 from kinematify.robot.weld import without_unused
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
 
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.exact_faces import ExactFaces
+    from kinematify.robot.gltf_file import GltfNode
 
 # Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
 # logging still hears it.
@@ -55,11 +59,20 @@ class RawMesh:
     """Key of `TO_Z_UP` if the file states such an axis, which was not heeded."""
     appearance: Appearance | None = None
     """Of the faces; None where the file states no material and no colours, and where it was not asked for."""
+    exact: ExactFaces | None = None
+    """Cylinders and planes in the frame of the vertices, of this mesh and of what it was cut from; None where the file
+    states none."""
 
     def of_faces(self, index: IntArray) -> RawMesh:
         """Return the mesh of some faces, in the order of their indices, shape (n,)."""
         appearance = None if self.appearance is None else self.appearance.of_faces(index)
         return replace(self, faces=self.faces[index], appearance=appearance)
+
+    def moved(self, linear: FloatArray, offset: FloatArray | None = None) -> RawMesh:
+        """Return the mesh after p -> linear @ p + offset, shapes (3, 3) and (3,); its faces keep their order."""
+        exact = None if self.exact is None else self.exact.moved(linear, np.zeros(3) if offset is None else offset)
+        turned = self.vertices @ linear.T
+        return replace(self, vertices=turned if offset is None else turned + offset, exact=exact)
 
 
 def read_meshes(path: Path, *, empty_ok: bool = False, appearance: bool = False) -> tuple[RawMesh, ...]:
@@ -70,15 +83,16 @@ def read_meshes(path: Path, *, empty_ok: bool = False, appearance: bool = False)
     may remain.
 
     Args:
-        path: A file with one of `MESH_SUFFIXES`.
+        path: A file with one of `MESH_SUFFIXES` or `CAD_SUFFIXES`.
         empty_ok: True returns a well-formed file without triangles as it is, perhaps as no mesh at all.
         appearance: Read materials, textures and colours too; what of them cannot be read is a note, not an error.
 
     Raises:
         AssemblyError: The file is missing, empty, truncated, of another format, or (unless `empty_ok`) holds no
             triangle.
+        EnvironmentFault: It is a STEP, and cascadio is not installed.
     """
-    if path.suffix.lower() not in MESH_SUFFIXES:
+    if path.suffix.lower() not in (*MESH_SUFFIXES, *CAD_SUFFIXES):
         raise AssemblyError(
             f"The file {path} is not a mesh that can be read. Give one of {', '.join(MESH_SUFFIXES)}; convert other "
             "formats, for example with Blender."
@@ -109,6 +123,7 @@ def merged(meshes: tuple[RawMesh, ...], name: str) -> RawMesh:
         faces=np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)]),
         up=meshes[0].up if meshes else "",
         appearance=joined([mesh.appearance for mesh in meshes], [len(mesh.faces) for mesh in meshes]),
+        exact=joined_faces([mesh.exact for mesh in meshes]),
     )
 
 
@@ -121,6 +136,8 @@ def _guarded(path: Path, read: Callable[[Path, bool], tuple[RawMesh, ...]], *, a
             _check_indices(meshes)
     except MemoryError as error:
         raise AssemblyError(f"The mesh file {path} does not fit into memory. Simplify it first.") from error
+    except EnvironmentFault:
+        raise
     except Exception as error:
         reason = f"{error}".strip().partition("\n")[0][:200] or type(error).__name__
         raise AssemblyError(
@@ -149,13 +166,18 @@ def _read_obj(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
 
 
 def _read_gltf(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
-    return tuple(
-        _placed(
-            RawMesh(name=node.name, vertices=node.vertices, faces=node.faces, appearance=node.appearance),
-            node.T_world_node,
-        )
-        for node in read_gltf(path, appearance=appearance)
+    return tuple(map(_of_node, read_gltf(path, appearance=appearance)))
+
+
+def _read_step(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
+    return tuple(map(_of_node, read_step(path, appearance=appearance)))
+
+
+def _of_node(node: GltfNode) -> RawMesh:
+    mesh = RawMesh(
+        name=node.name, vertices=node.vertices, faces=node.faces, appearance=node.appearance, exact=node.exact
     )
+    return _placed(mesh, node.T_world_node)
 
 
 def _read_scene(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
@@ -221,11 +243,11 @@ def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
     """Apply the transform of a node, shape (4, 4), then a change of unit; mirroring would turn a mesh inside out."""
     if unit == 1.0 and np.array_equal(transform, np.eye(4)):
         return mesh  # formats without nodes can hold millions of vertices: no copy
-    vertices = unit * (mesh.vertices @ transform[:3, :3].T + transform[:3, 3])
+    moved = mesh.moved(transform[:3, :3], transform[:3, 3]).moved(unit * np.eye(3))
     if np.linalg.det(transform[:3, :3]) >= 0:
-        return replace(mesh, vertices=vertices)
+        return moved
     appearance = None if mesh.appearance is None else mesh.appearance.mirrored()
-    return replace(mesh, vertices=vertices, faces=mesh.faces[:, [0, 2, 1]], appearance=appearance)
+    return replace(moved, faces=mesh.faces[:, [0, 2, 1]], appearance=appearance)
 
 
 def _collada_asset(path: Path) -> tuple[float, str]:
@@ -239,5 +261,9 @@ def _collada_asset(path: Path) -> tuple[float, str]:
     ), stated.upaxis if stated.upaxis in TO_Z_UP else ""
 
 
-_READERS = {".obj": _read_obj, ".glb": _read_gltf, ".gltf": _read_gltf}
+_READERS = {
+    ".obj": _read_obj,
+    **dict.fromkeys(GLTF_SUFFIXES, _read_gltf),
+    **dict.fromkeys(CAD_SUFFIXES, _read_step),
+}
 """Formats whose groups, names or exact numbers the general reader would lose."""

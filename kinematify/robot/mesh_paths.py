@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 GLTF_SUFFIXES = (".glb", ".gltf")
 MESH_SUFFIXES = (*GLTF_SUFFIXES, ".obj", ".stl", ".ply", ".off", ".3mf", ".dae")
 """Mesh formats that are read."""
+CAD_SUFFIXES = (".step", ".stp")
+"""Formats whose surfaces are turned into triangles; an assembly may be one, the mesh of a link not."""
 _SHOWN = 6
 
 

@@ -488,8 +488,8 @@ def refused(path: Path, message: str, config: AssemblyConfig = CONFIG, **options
 def test_missing_and_empty(tmp_path: Path) -> None:
     refused(tmp_path / "none.obj", r"There is no file or folder .*none\.obj")
     refused(tmp_path, "holds no mesh file")
-    (tmp_path / "a.step").write_text("")
-    refused(tmp_path / "a.step", r"a\.step is not an input.*\.glb")
+    (tmp_path / "a.iges").write_text("")
+    refused(tmp_path / "a.iges", r"a\.iges is not an input.*\.glb")
     for suffix in ("obj", "stl", "ply", "off", "glb", "gltf", "3mf"):
         (tmp_path / f"a.{suffix}").write_bytes(b"")
         refused(tmp_path / f"a.{suffix}", rf"a\.{suffix} cannot be read as a \.{suffix} mesh")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointEstimate, JointType
+from kinematify.joints.choice.exact import with_exact_lines
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.kind import Siblings, decide_kind
 from kinematify.joints.choice.limits import find_range
@@ -69,7 +70,8 @@ def estimate_joints(
         judged |= {
             edge: replace(judged[edge], likely=given, fixed=fixed) for edge, given in zip(group, likely, strict=True)
         }
-    return tuple(_estimate(weighed[edge], judged[edge], config=config) for edge in tree.edges())
+    estimates = (_estimate(weighed[edge], judged[edge], config=config) for edge in tree.edges())
+    return tuple(with_exact_lines(assembly, estimate) for estimate in estimates)
 
 
 def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig) -> JointEstimate:
