@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
 
-_INFERRED, _REFINED, _WRITTEN = 0.5, 0.55, 0.8
-"""Shares of the whole time after the inference, the refinement, and the files with the picture."""
+_INFERRED, _REFINED = 0.5, 0.55
+"""Shares of the whole time after the inference and the refinement."""
 
 
 @click.command(
@@ -124,10 +124,14 @@ def command(
 
     With --refine it ends with 1 if the model that is kept still has an error about its motion.
     """
+    if not no_validation:
+        from kinematify.validation.isolation import start_server
+
+        start_server()  # its imports go on beside the inference
     from kinematify.assembly.load import load_assembly
     from kinematify.config import load_config
-    from kinematify.model.output import MODEL_FILE, check_output
-    from kinematify.pipeline import infer, write_inference
+    from kinematify.model.output import check_output
+    from kinematify.pipeline import infer
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
@@ -139,15 +143,12 @@ def command(
         told = _told(hints, given.names, base)
         inference = infer(given, config=settings, base=base, progress=_share(progress, 0.0, _INFERRED))
         inference, heard = _with_votes(inference, vlm, progress)
-        status, loaded = 0, ""
+        status = 0
         if rounds is not None:
             inference, status = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
         inference = _with_hints(inference, told)
         progress("writing the model", _REFINED)
-        write_inference(inference, out, overwrite=force, preview=not no_preview)
-        if not no_validation:
-            progress("loading the model into engines", _WRITTEN)
-            loaded = as_loaded(out / MODEL_FILE)
+        loaded = _written(inference, out, overwrite=force, preview=not no_preview, validated=not no_validation)
         progress("done", 1.0)
     if json_to:
         write_answer({**_as_answer(inference, out), "as_loaded": loaded or None}, json_to)
@@ -209,6 +210,28 @@ def use_one_thread(config: Config) -> None:
         import torch
 
         torch.set_num_threads(1)
+
+
+def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, validated: bool) -> str:
+    """Write the model folder, its picture while engines load the model, and return what `as_loaded` says."""
+    from concurrent.futures import Future, ThreadPoolExecutor, wait
+
+    from kinematify.model.output import MODEL_FILE, write_model_folder
+    from kinematify.pipeline.record import write_inference_files, write_preview
+
+    loading: list[Future[str]] = []
+
+    def write(folder: Path) -> None:
+        write_inference_files(inference, folder, preview=False)
+        if validated:
+            loading.append(beside.submit(as_loaded, folder / MODEL_FILE))
+        if preview:
+            write_preview(inference, folder)
+        wait(loading)
+
+    with ThreadPoolExecutor(1) as beside:
+        write_model_folder(out, write, overwrite=overwrite)
+    return loading[0].result() if loading else ""
 
 
 def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:

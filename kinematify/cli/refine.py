@@ -129,11 +129,11 @@ def exit_status(refinement: Refinement) -> int:
 
 def describe_refinement(inference: Inference) -> str:
     """The rounds as a table, which one was kept and why the loop ended."""
-    from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
-
     record = inference.refinement
     if record is None:
         return ""
+    from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
+
     table = format_table(ROUND_HEADINGS, round_rows(record)) if record["rounds"] else ""
     return "\n".join(line for line in (table, *round_words(record)) if line)
 

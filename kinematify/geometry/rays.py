@@ -72,7 +72,7 @@ class RayScene:
         """Find the first surface along each ray.
 
         Args:
-            origins: World frame [m], shape (n, 3).
+            origins: World frame [m], shape (n, 3), or (3,) where all start.
             directions: Unit, shape (n, 3).
         """
         found = self._tree.run(*self._local_rays(origins, directions), output=1)
@@ -101,7 +101,8 @@ class RayScene:
 
     def _local_rays(self, origins: FloatArray, directions: NDArray[np.floating]) -> tuple[NDArray[np.float32], ...]:
         start = ((origins - self._center) / self.size).astype(np.float32)
-        return np.ascontiguousarray(start), np.ascontiguousarray(directions, dtype=np.float32)
+        along = np.ascontiguousarray(directions, dtype=np.float32)
+        return np.ascontiguousarray(np.broadcast_to(start, along.shape)), along
 
     def smooth_normals(self, face: IntArray, barycentric: FloatArray, angle: float) -> FloatArray:
         """Interpolated unit normals at points of faces; only faces that meet at less than `angle` are blended.

@@ -58,9 +58,18 @@ def write_inference_files(inference: Inference, folder: Path, *, preview: bool =
     text = json.dumps(record, indent=1, allow_nan=False)
     (folder / RECORD_FILE).write_text(text + "\n", encoding="utf-8")
     if preview:
-        from kinematify.model.preview import render_preview  # noqa: PLC0415 - a third of a second
+        write_preview(inference, folder)
 
-        render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
+
+def write_preview(inference: Inference, folder: Path) -> None:
+    """Draw the picture that belongs to a model folder into an existing folder.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    from kinematify.model.preview import render_preview  # noqa: PLC0415 - a third of a second
+
+    render_preview(inference.model, folder / PREVIEW_FILE, inference.config.preview)
 
 
 def file_hashes(folder: Path) -> dict[str, str]:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.robot.vectors import lengths_of
+
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
@@ -43,12 +45,12 @@ class Camera:
             pixels: Right and down from the upper left corner [pixels], shape (n, 2).
 
         Returns:
-            Origins (n, 3) and unit directions (n, 3) in the world frame.
+            Where all start (3,), and unit directions (n, 3) in the world frame.
         """
         plane = np.column_stack([(pixels - self._optical_center) / self.focal, np.ones(len(pixels))])
         directions = plane @ self.axes
-        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        return np.broadcast_to(self.position, directions.shape), directions
+        directions /= lengths_of(directions)[:, None]
+        return self.position, directions
 
     def project(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Picture positions (n, 2) [pixels] and depths along `forward` (n,) [m] of world points (n, 3)."""

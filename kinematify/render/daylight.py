@@ -9,13 +9,13 @@ from scipy.ndimage import gaussian_filter, map_coordinates
 
 if TYPE_CHECKING:
     from kinematify.config import PreviewConfig
-    from kinematify.geometry.rays import RayHits, RayScene
+    from kinematify.geometry.rays import RayScene
     from kinematify.render.camera import Camera
     from kinematify.robot.arrays import FloatArray, IntArray
 
 SAME_SURFACE_COSINE = 0.94
 """Places of one mesh whose normals differ less (20 deg) share light."""
-_TILE = 4  # pixels per side of the square over which light is averaged; each pixel of it has its own directions
+_TILE = 4  # places per side of the square over which light is averaged; each pixel of it has its own directions
 _FLOOR_RAYS = 64
 _FLOOR_REACH = 0.6  # of the scene's size
 _FLOOR_ROOM = 0.4  # of the scene's size: how far the map of the shadow reaches beyond the object
@@ -52,15 +52,20 @@ class SkyLight:
         share: FloatArray = 1.0 - np.count_nonzero(hidden.reshape(-1, self.rays), axis=1) / self.rays
         return share
 
-    def of_picture(self, points: FloatArray, normals: FloatArray, hits: RayHits, camera: Camera) -> FloatArray:
-        """Share of the sky at the centre of every pixel, averaged over a tile of the same surface, shape (h, w)."""
-        shape = (camera.height, camera.width)
-        row, column = np.indices(shape)
-        sets = ((row % _TILE) * _TILE + column % _TILE).ravel()
-        share = np.ones(shape[0] * shape[1])
-        met = np.flatnonzero(hits.met)
+    def of_picture(self, points: FloatArray, normals: FloatArray, mesh: IntArray) -> FloatArray:
+        """Share of the sky that a grid of places sees, averaged over a tile of the same surface, shape (h, w).
+
+        Args:
+            points: World frame [m], shape (h, w, 3).
+            normals: Unit, shape (h, w, 3).
+            mesh: Which one each shows, -1 for none, shape (h, w).
+        """
+        row, column = np.meshgrid(*(np.arange(size) for size in mesh.shape), indexing="ij")
+        sets = (row % _TILE) * _TILE + column % _TILE
+        share = np.ones(mesh.shape)
+        met = mesh >= 0
         share[met] = self.open_share(points[met], normals[met], sets[met])
-        return _average_on_surface(share.reshape(shape), hits.mesh.reshape(shape), normals.reshape(*shape, 3))
+        return _average_on_surface(share, mesh, normals)
 
 
 def _even_directions(count: int) -> FloatArray:
@@ -122,14 +127,14 @@ class FloorShadow:
         """Darkness of the floor where rays meet it, 0 elsewhere and at the border of the picture, shape (n,).
 
         Args:
-            origins: World frame [m], shape (n, 3).
+            origins: World frame [m], shape (n, 3), or (3,) where all start.
             directions: Unit, shape (n, 3).
             pixels: Picture positions of the rays [pixels], shape (n, 2).
             camera: For the size of the picture.
         """
         down = directions[:, 2] < -1e-6
-        distance = (self.height - origins[:, 2]) / np.where(down, directions[:, 2], -1.0)
-        spots = origins[:, :2] + distance[:, None] * directions[:, :2]
+        distance = (self.height - origins[..., 2]) / np.where(down, directions[:, 2], -1.0)
+        spots = origins[..., :2] + distance[:, None] * directions[:, :2]
         dark = map_coordinates(self.map, ((spots - self.low) / self.step).T, order=1, cval=0.0)
         inside = np.minimum(pixels, np.array([camera.width, camera.height]) - pixels).min(axis=1)
         share: FloatArray = np.where(down & (distance > 0.0), dark, 0.0) * _smooth_step(inside / _BORDER)

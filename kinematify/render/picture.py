@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
-from scipy.ndimage import binary_dilation
 
 from kinematify.geometry.rays import RayScene
 from kinematify.render.daylight import SAME_SURFACE_COSINE, FloorShadow, SkyLight
@@ -38,6 +37,7 @@ _LAMP_IN_DARK = 0.35  # share of the lamp that reaches where the sky does not
 _DEPTH_STEP = 0.004  # of the scene's size: a larger step in depth from pixel to pixel is an edge
 _PANES = 6  # a pane of glass has two surfaces
 _BEHIND = 1e-5  # of the scene's size: where a ray goes on behind a surface
+_SPARSE = 2  # rays to the sky start at every second pixel of every second row
 _OUTLINE_DIRECTIONS = 240
 _OUTLINE_VERTICES = 30000
 
@@ -112,6 +112,7 @@ class _View:
     pixels: FloatArray
     """Picture positions [pixels], shape (n, 2)."""
     origins: FloatArray
+    """World frame [m], shape (n, 3), or (3,) where all start."""
     directions: FloatArray
     hits: RayHits
     normals: FloatArray
@@ -123,6 +124,18 @@ class _View:
         distance = np.where(self.hits.met, self.hits.distance, 0.0)
         points: FloatArray = self.origins + distance[:, None] * self.directions
         return points
+
+
+@dataclass(frozen=True, eq=False)
+class _SparseLight:
+    """How much sky some pixels of a picture see."""
+
+    mesh: IntArray
+    """Shape (rows, columns)."""
+    normals: FloatArray
+    """Shape (rows, columns, 3)."""
+    light: FloatArray
+    """From 0 to 1, shape (rows, columns)."""
 
 
 class _Painter:
@@ -142,10 +155,10 @@ class _Painter:
     def paint(self) -> Image.Image:
         """Cast one ray per pixel, then more where one is not enough."""
         view = self._view(_pixel_centers(self.camera))
-        light = self.sky.of_picture(view.points, view.normals, view.hits, self.camera).ravel()
-        image = self._colors(view, light)
+        sparse = self._sparse_light(view)
+        image = self._colors(view, self._light(view, np.arange(len(view.pixels)), sparse))
         rough = np.flatnonzero(self._edges(view) | self._near_glyphs(view))
-        image[rough] = self._subsampled(rough, view, light)
+        image[rough] = self._subsampled(rough, view, sparse)
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
     def _view(self, pixels: FloatArray) -> _View:
@@ -204,6 +217,11 @@ class _Painter:
             at = np.flatnonzero(mesh == index)
             if posed.appearance is not None and len(at):
                 face = view.hits.face[met][at] - self.first_faces[index]
+                if not posed.appearance.is_textured:  # a colour for each material is quicker than one for each pixel
+                    painted = np.array([material.color for material in posed.appearance.materials])
+                    material = posed.appearance.material_of_face[face]
+                    colors[at], opacity[at] = linear_of(painted[:, :3])[material], painted[material, 3]
+                    continue
                 seen = posed.appearance.colors_at(face, view.hits.barycentric[met][at])
                 colors[at], opacity[at] = linear_of(seen[:, :3]), seen[:, 3]
         return colors, opacity
@@ -233,34 +251,55 @@ class _Painter:
         if self.glyphs is None:
             return np.zeros(len(view.pixels), dtype=bool)
         met = self.glyphs.first_hits(view.origins, view.directions).met.reshape(self.shape)
-        near: BoolArray = binary_dilation(met, iterations=2).ravel()
-        return near
+        for _ in range(2):
+            grown = met.copy()
+            grown[1:] |= met[:-1]
+            grown[:-1] |= met[1:]
+            grown[:, 1:] |= met[:, :-1]
+            grown[:, :-1] |= met[:, 1:]
+            met = grown
+        return met.ravel()
 
-    def _subsampled(self, chosen: IntArray, coarse: _View, coarse_light: FloatArray) -> FloatArray:
-        """Mean linear colour of a grid of rays in each chosen pixel, shape (len(chosen), 3)."""
+    def _subsampled(self, chosen: IntArray, coarse: _View, sparse: _SparseLight) -> FloatArray:
+        """Mean linear colour of a turned grid of rays in each chosen pixel, shape (len(chosen), 3)."""
         side = self.config.subsamples
-        ticks = (np.arange(side) + 0.5) / side - 0.5
-        grid = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
-        fine = self._view((coarse.pixels[chosen][:, None] + grid).reshape(-1, 2))
-        light = self._fine_light(fine, np.repeat(chosen, side * side), coarse, coarse_light)
+        across, down = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
+        # No two rays share a row or a column: upright and level edges have as many steps as there are rays.
+        shares = np.stack([across + (down + 0.5) / side, down + (side - across - 0.5) / side], axis=1)
+        fine = self._view((coarse.pixels[chosen][:, None] + shares / side - 0.5).reshape(-1, 2))
+        light = self._light(fine, np.repeat(chosen, side * side), sparse)
         colors = self._with_glyphs(self._colors(fine, light), fine)
         mean: FloatArray = colors.reshape(len(chosen), side * side, 3).mean(axis=1)
         return mean
 
-    def _fine_light(self, fine: _View, pixel: IntArray, coarse: _View, coarse_light: FloatArray) -> FloatArray:
-        """Light of the nearest pixel that shows the same surface; rays of their own for what no pixel shows."""
+    def _sparse_light(self, view: _View) -> _SparseLight:
+        """Light of every other pixel of every other row: it changes slowly over a surface."""
+        chosen = np.arange(len(view.pixels)).reshape(self.shape)[::_SPARSE, ::_SPARSE]
+        mesh, normals = view.hits.mesh[chosen], view.normals[chosen]
+        return _SparseLight(mesh, normals, self.sky.of_picture(view.points[chosen], normals, mesh))
+
+    def _light(self, view: _View, pixel: IntArray, sparse: _SparseLight) -> FloatArray:
+        """Light of the nearest of the sparse pixels that shows the same surface; rays of its own for what none shows.
+
+        Args:
+            view: What is seen, through n rays.
+            pixel: Number of the pixel of each ray, row by row, shape (n,).
+            sparse: What there is.
+        """
         light = np.ones(len(pixel))
-        left = np.flatnonzero(fine.hits.met)
+        left = np.flatnonzero(view.hits.met)
         row, column = np.divmod(pixel, self.shape[1])
-        for down, right in ((0, 0), (0, -1), (0, 1), (-1, 0), (1, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)):
-            near_row = np.clip(row[left] + down, 0, self.shape[0] - 1)
-            near = near_row * self.shape[1] + np.clip(column[left] + right, 0, self.shape[1] - 1)
-            cosine = np.einsum("ij,ij->i", fine.normals[left], coarse.normals[near])
-            alike = (fine.hits.mesh[left] == coarse.hits.mesh[near]) & (cosine > SAME_SURFACE_COSINE)
-            light[left[alike]] = coarse_light[near[alike]]
+        rows, columns = sparse.mesh.shape
+        for down, right in ((0, 0), (0, 1), (1, 0), (1, 1), (0, -1), (-1, 0), (-1, 1), (1, -1), (-1, -1)):
+            near = (
+                np.clip(row[left] // _SPARSE + down, 0, rows - 1),
+                np.clip(column[left] // _SPARSE + right, 0, columns - 1),
+            )
+            cosine = np.einsum("ij,ij->i", view.normals[left], sparse.normals[near])
+            alike = (view.hits.mesh[left] == sparse.mesh[near]) & (cosine > SAME_SURFACE_COSINE)
+            light[left[alike]] = sparse.light[near][alike]
             left = left[~alike]
-        sets = left % self.config.subsamples**2 % len(self.sky.sets)
-        light[left] = self.sky.open_share(fine.points[left], fine.normals[left], sets)
+        light[left] = self.sky.open_share(view.points[left], view.normals[left], left % len(self.sky.sets))
         return light
 
     def _with_glyphs(self, colors: FloatArray, view: _View) -> FloatArray:

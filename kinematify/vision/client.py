@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.geometry.cut_cache import cache_folder
 from kinematify.vision.answer import JointVotes, read_answer, schema
-from kinematify.vision.question import PROMPT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -80,6 +79,8 @@ class ChatOracle:
         return answer
 
     def _request(self, question: JointQuestion) -> dict[str, Any]:
+        from kinematify.vision.question import PROMPT  # noqa: PLC0415 - it draws, and most calls ask nobody
+
         file = io.BytesIO()
         question.picture.save(file, format="PNG")
         picture = f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"

@@ -18,7 +18,15 @@ from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.hypotheses.bearing import fit_bearings
 from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.hypotheses.bearing_fit import across_axis, circle_rows, moved_line, refine_line, surface_rows
+from kinematify.joints.hypotheses.bearing_fit import (
+    across_axis,
+    circle_rows,
+    line_frames,
+    moved_lines,
+    refine_line,
+    refine_lines,
+    surface_rows,
+)
 from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines
 from kinematify.joints.hypotheses.bearing_scores import circle_support, line_support, surface_support
 from kinematify.joints.hypotheses.line import Line, Lines, join
@@ -250,21 +258,23 @@ def test_the_gradient_of_the_residuals_is_their_difference_quotient(seed: int, n
     rng = np.random.default_rng(seed)
     axis = rng.normal(size=3)
     line = Line(axis=axis / np.linalg.norm(axis), point=contact_centroid(sides) + 0.1 * diagonal * rng.normal(size=3))
-    basis, spread = across_axis(line.axis), 0.3 * diagonal
+    lines = Lines(axes=line.axis[None], points=line.point[None])
+    frames, spread = line_frames(lines.axes), 0.3 * diagonal
     for side in sides:
         for rows_of, numerators in ((surface_rows, surface_numerators), (circle_rows, circle_numerators)):
             extra = {"share": 1.0} if rows_of is circle_rows else {}
-            rows = rows_of(side, line, basis, spread=spread, tolerance=0.1, **extra)
+            rows = rows_of(side, lines, frames, spread=spread, tolerance=0.1, **extra)
             here, radius = numerators(side, line, line)
-            assert np.allclose(rows.rest * radius, here, atol=1e-9)
+            assert np.allclose(rows.rest[0] * radius, here, atol=1e-9)
             for column in range(4):
                 step = STEP * np.eye(4)[column]
                 ahead, back = (
-                    numerators(side, moved_line(line, basis, sign * step, spread=spread), line)[0] for sign in (1, -1)
+                    numerators(side, moved_lines(lines, frames, sign * step[None], spread=spread)[0], line)[0]
+                    for sign in (1, -1)
                 )
                 quotient = (ahead - back) / (2 * STEP)
                 assert np.allclose(
-                    rows.design[:, column] * radius, quotient, atol=1e-6 * max(1.0, np.abs(quotient).max())
+                    rows.design[0, column] * radius, quotient, atol=1e-6 * max(1.0, np.abs(quotient).max())
                 )
 
 
@@ -299,6 +309,21 @@ def test_refinement_returns_from_one_degree(seed: int, name: str) -> None:
     assert np.linalg.norm(found.axis) == pytest.approx(1.0)
     assert angle_deg(found.axis, joint.axis) < 0.1
     assert np.linalg.norm(np.cross(found.point - joint.pivot, joint.axis)) < 1e-4
+
+
+def test_lines_are_refined_together_as_each_alone() -> None:
+    sides, diagonal = sides_of("knob")
+    rng = np.random.default_rng(0)
+    axes = rng.normal(size=(20, 3))
+    points = contact_centroid(sides) + 0.05 * diagonal * rng.normal(size=(20, 3))
+    lines = Lines(axes=axes / np.linalg.norm(axes, axis=1)[:, None], points=points)
+    tolerances = np.array([BEARING.normal_tolerance_sine] * 2)
+    for tilting in (True, False):
+        found = refine_lines(sides, lines, tolerances, BEARING, turning=tilting)
+        alone = [refine_line(sides, line, tolerances, BEARING, turning=tilting) for line in lines]
+        assert np.allclose(found.axes, [line.axis for line in alone], atol=1e-9)
+        assert np.allclose(found.points, [line.point for line in alone], atol=1e-9 * diagonal)
+        assert np.allclose(found.axes, lines.axes) != tilting
 
 
 def test_pairs_of_normals_meet_on_the_axis_of_a_cylinder() -> None:

@@ -16,12 +16,12 @@ import numpy as np
 
 from kinematify.geometry.directions import distinct_directions
 from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.hypotheses.bearing_fit import refine_line
-from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line
+from kinematify.joints.hypotheses.bearing_fit import refine_line, refine_lines
+from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line, scored_lines
 from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines, propose_lines
 from kinematify.joints.hypotheses.bearing_scores import line_support, surface_support
 from kinematify.joints.hypotheses.bearing_twins import shared_by_twins
-from kinematify.joints.hypotheses.line import Line
+from kinematify.joints.hypotheses.line import Line, Lines
 from kinematify.joints.hypotheses.rail import fit_rail
 from kinematify.robot.arrays import read_only
 
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge, ContactGraph
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
-    from kinematify.joints.hypotheses.line import Lines
     from kinematify.robot.arrays import FloatArray
 
 _EXACTLY = 0.1  # [deg] lines that were proposed along a direction
@@ -142,23 +141,31 @@ def _rank(
     """Refine lines on few samples, keep the best distinct ones, finish them on all samples; best first."""
     few = thin(sides[0], config.refine_samples), thin(sides[1], config.refine_samples)
     tolerances = _tolerances(config)
-    rough = []
-    for line in proposals:
-        # Lines along a main direction have little left to be refined, and the final rounds let them turn.
-        known = _along(line, directions, _EXACTLY) is not None
-        refined = refine_line(few, line, tolerances[-4:] if known else tolerances, config, turning=not known)
-        rough.append(scored_line(few, refined, centroid, diagonal, config))
-    final = []
-    for start in best_distinct(rough, diagonal, config):
-        free = refine_line(sides, start.line, tolerances[-2:], config)
-        best = scored_line(sides, free, centroid, diagonal, config)
-        along = _along(start.line, directions, config.directed_angle)
-        if along is not None:
-            straight = refine_line(sides, along, tolerances[-2:], config, turning=False)
-            held_line = scored_line(sides, straight, centroid, diagonal, config)
-            best = held_line if held_line.score * config.directed_bonus > best.score else best
-        final.append(best)
+    # Lines along a main direction have little left to be refined, and the final rounds let them turn.
+    known = np.array([_along(line, directions, _EXACTLY) is not None for line in proposals], dtype=bool)
+    axes, points = np.empty((len(proposals), 3)), np.empty((len(proposals), 3))
+    for turning, rounds in ((False, tolerances[-4:]), (True, tolerances)):
+        index = np.flatnonzero(known != turning)
+        refined = refine_lines(few, proposals.subset(index), rounds, config, turning=turning)
+        axes[index], points[index] = refined.axes, refined.points
+    rough = scored_lines(few, Lines(axes=axes, points=points), centroid, diagonal, config)
+    starts = best_distinct(rough, diagonal, config)
+    free = refine_lines(sides, _lines([start.line for start in starts]), tolerances[-2:], config)
+    final = scored_lines(sides, free, centroid, diagonal, config)
+    along = {k: _along(start.line, directions, config.directed_angle) for k, start in enumerate(starts)}
+    straight = {k: line for k, line in along.items() if line is not None}
+    held = refine_lines(sides, _lines(list(straight.values())), tolerances[-2:], config, turning=False)
+    for k, line in zip(straight, scored_lines(sides, held, centroid, diagonal, config), strict=True):
+        if line.score * config.directed_bonus > final[k].score:
+            final[k] = line
     return best_distinct(final, diagonal, config)
+
+
+def _lines(lines: Sequence[Line]) -> Lines:
+    return Lines(
+        axes=np.array([line.axis for line in lines]).reshape(-1, 3),
+        points=np.array([line.point for line in lines]).reshape(-1, 3),
+    )
 
 
 def _along(line: Line, directions: FloatArray, angle: float) -> Line | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.bearing_scores import circle_support, line_support
+from kinematify.joints.hypotheses.bearing_scores import circle_support, surface_support
 from kinematify.joints.hypotheses.line import Line, Lines
 from kinematify.robot.arrays import read_only
 
@@ -69,19 +69,31 @@ class EdgeBearing:
 
 def scored_line(sides: Sides, line: Line, centroid: FloatArray, diagonal: float, config: BearingConfig) -> BearingLine:
     """Score a line as a bearing of a contact; its pivot is the foot of the contact centroid."""
-    surface_a, surface_b = (line_support(side, line, config) for side in sides)
-    circles_a, circles_b = (circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
-    support = np.sqrt(surface_a * surface_b)
-    score = float(support * (config.circle_floor + np.sqrt(circles_a * circles_b)) / (config.circle_floor + 1))
-    return BearingLine(
-        axis=line.axis,
-        pivot=line.foot(centroid),
-        score=score,
-        surface_a=surface_a,
-        surface_b=surface_b,
-        circles_a=circles_a,
-        circles_b=circles_b,
-    )
+    return scored_lines(sides, Lines(axes=line.axis[None], points=line.point[None]), centroid, diagonal, config)[0]
+
+
+def scored_lines(
+    sides: Sides, lines: Lines, centroid: FloatArray, diagonal: float, config: BearingConfig
+) -> list[BearingLine]:
+    """`scored_line` of each of many lines."""
+    surface_a, surface_b = (surface_support(side, lines, config).tolist() for side in sides)
+    scored = []
+    for index, line in enumerate(lines):
+        circles_a, circles_b = (circle_support(side, line, diagonal=diagonal, config=config) for side in sides)
+        support = np.sqrt(surface_a[index] * surface_b[index])
+        score = float(support * (config.circle_floor + np.sqrt(circles_a * circles_b)) / (config.circle_floor + 1))
+        scored.append(
+            BearingLine(
+                axis=line.axis,
+                pivot=line.foot(centroid),
+                score=score,
+                surface_a=surface_a[index],
+                surface_b=surface_b[index],
+                circles_a=circles_a,
+                circles_b=circles_b,
+            )
+        )
+    return scored
 
 
 def best_distinct(lines: list[BearingLine], diagonal: float, config: BearingConfig) -> list[BearingLine]:

@@ -143,8 +143,8 @@ def _circle_votes(lines: Lines, n_first: int, *, diagonal: float, config: Bearin
     """
     axes, points = lines.axes, lines.points
     aligned = np.abs(axes @ axes.T) > np.cos(np.arcsin(config.circle_tolerance_sine))
-    offset = points[None] - points[:, None]
-    along = np.einsum("ijk,ik->ij", offset, axes)
-    apart = np.sqrt(np.maximum(np.einsum("ijk,ijk->ij", offset, offset) - along**2, 0))
+    x, y, z = (column[None] - column[:, None] for column in points.T)
+    along = x * axes[:, :1] + y * axes[:, 1:2] + z * axes[:, 2:]
+    apart = np.sqrt(np.maximum(x * x + y * y + z * z - along**2, 0))
     same = aligned & (apart < config.circle_cell * diagonal)
     return np.asarray(np.sqrt(same[:, :n_first].sum(axis=1) * same[:, n_first:].sum(axis=1)))

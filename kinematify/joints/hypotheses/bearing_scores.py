@@ -49,7 +49,7 @@ def line_support(side: BearingSide, line: Line, config: BearingConfig) -> float:
 
 def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
     u, p = lines.axes, lines.points
-    e1, e2 = _across(u)
+    e1, e2 = across_axes(u)
     along = side.normals @ u.T  # (S, L)
     n1, n2 = side.normals @ e1.T, side.normals @ e2.T
     x1 = side.points @ e1.T - np.einsum("ij,ij->i", p, e1)
@@ -65,7 +65,7 @@ def _block_support(side: BearingSide, lines: Lines, config: BearingConfig) -> Fl
     return np.asarray((2 * smaller + config.flange_weight * flat) / total)
 
 
-def _across(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
+def across_axes(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Two unit vectors across each axis, shapes (L, 3)."""
     helper = np.eye(3)[np.argmin(np.abs(axes), axis=1)]
     first = crossed(axes, helper)

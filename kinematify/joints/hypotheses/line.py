@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import dots, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -69,14 +69,15 @@ class Lines:
         """
         kept: list[int] = []
         cosine = np.cos(np.deg2rad(angle))
-        for index, (axis, point) in enumerate(zip(self.axes, self.points, strict=True)):
-            offset = self.points[kept] - point
-            offset -= (offset @ axis)[:, None] * axis
-            same = (np.abs(self.axes[kept] @ axis) > cosine) & (lengths_of(offset) < distance)
-            if not same.any():
-                kept.append(index)
-            if len(kept) == count:
-                break
+        left = np.arange(len(self))
+        while len(left) and len(kept) < count:
+            kept.append(int(left[0]))
+            axes = self.axes[left]
+            offset = self.points[left[0]] - self.points[left]
+            offset -= dots(offset, axes)[:, None] * axes
+            same = (np.abs(dots(axes, axes[0])) > cosine) & (lengths_of(offset) < distance)
+            same[0] = True
+            left = left[~same]
         return kept
 
 

@@ -80,7 +80,9 @@ def _extruded_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> F
     """
     along = side.normals @ axes.T
     fit = np.exp(-((along / config.tolerance_sine) ** 2)) * (side.weights / side.weights.sum())[:, None]
-    moments = np.einsum("sl,si,sj->lij", fit, side.normals, side.normals)
+    moments = np.empty((len(axes), 3, 3))
+    for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):  # equal directions keep equal digits
+        moments[:, i, j] = moments[:, j, i] = (fit * (side.normals[:, i] * side.normals[:, j])[:, None]).sum(axis=0)
     # The normals that count are across the axis, so the smallest of the three eigenvalues belongs to the axis itself.
     return np.asarray(np.clip(2 * np.linalg.eigvalsh(moments)[:, 1], 0.0, 1.0))
 
