@@ -8,10 +8,14 @@ from __future__ import annotations
 
 from gymnasium.envs.registration import register
 
+from kinematify.envs.tasks import TASKS
+
 OPEN_PART, DRAWER_PULL = "kinematify/OpenPart-v0", "kinematify/DrawerPull-v0"
 OPEN_PART_SPARSE, DRAWER_PULL_SPARSE = "kinematify/OpenPart-Sparse-v0", "kinematify/DrawerPull-Sparse-v0"
 IDS = (OPEN_PART, OPEN_PART_SPARSE, DRAWER_PULL, DRAWER_PULL_SPARSE)
-"""All ids."""
+"""All ids but those of tasks."""
+TASK_IDS = {name: f"kinematify/{name}-v0" for name in TASKS}
+"""Ids of `kinematify.envs.tasks.TASKS`."""
 
 EPISODE_STEPS = {"open_part": 100, "drawer_pull": 240}
 """Actions after which episodes are truncated: 5 s and 12 s."""
@@ -32,6 +36,13 @@ def _register() -> None:
             entry_point="kinematify.envs.drawer_pull:make_drawer_pull",
             max_episode_steps=EPISODE_STEPS["drawer_pull"],
             kwargs={"reward": reward},
+        )
+    for name, env_id in TASK_IDS.items():
+        register(
+            id=env_id,
+            entry_point="kinematify.envs.tasks:make_task",
+            max_episode_steps=EPISODE_STEPS["open_part"],
+            kwargs={"task": name},
         )
 
 

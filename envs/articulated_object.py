@@ -6,7 +6,7 @@ import difflib
 import shutil
 import tempfile
 import weakref
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -123,6 +123,11 @@ class Target:
         """Value of the joint where a share of the way is open [rad or m]."""
         return self.closed + fraction * self.range
 
+    @cached_property
+    def reversed(self) -> Target:
+        """The same way from open to closed."""
+        return replace(self, closed=self.opened, opened=self.closed)
+
     @property
     def path_ratio(self) -> float:
         """Metres of the point per unit of the joint [m/rad or 1]."""
@@ -133,7 +138,8 @@ def load_articulated_object(model: str | Path | None) -> ArticulatedObject:
     """Read the object that a `model` keyword names.
 
     Args:
-        model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY``, or None for the default.
+        model: A URDF, a folder with ``model.urdf``, ``bundled:NAME``, ``procedural:FAMILY`` or
+            ``procedural:FAMILY:SEED``, or None for the default.
 
     Raises:
         InputError: There is no such model, it cannot be read, or nothing of it moves.

@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.articulated_object import AUTO, held_links, open_end
+from kinematify.envs.articulated_object import AUTO, held_links
 from kinematify.envs.dynamics import draw, drawing, no_draw
 from kinematify.envs.goal import Goal
 from kinematify.envs.picture import Painter, Piece, View, Window, has_screen, require_screen
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.goal import Progress
     from kinematify.envs.reading import Reading
+    from kinematify.envs.settings import PictureSettings
+    from kinematify.envs.tiny_picture import TinyPainter
     from kinematify.envs.worlds import World
     from kinematify.robot.arrays import FloatArray
 
@@ -52,7 +54,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
     def _begin(
         self, *, model: str | Path | None, joint: str, open_fraction: float, engine: str, reward: str,
         randomize: bool | str | Collection[str], terminate_on_success: bool, allow_invalid: bool,
-        render_mode: str | None,
+        render_mode: str | None, closing: bool = False,
     ) -> None:  # fmt: skip
         """Check the keywords and read the object; subclasses then make their world and spaces.
 
@@ -71,7 +73,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self.engine, self.render_mode = engine, render_mode
         self._sparse, self.terminates = reward == "sparse", terminate_on_success
         self._drawn_names = drawing(randomize)
-        self.open_fraction = open_fraction
+        self.open_fraction, self._closing = open_fraction, closing
         self.articulated_object = shared_articulated_object(model)
         self.validation = require_valid(self.articulated_object, engine, allow_invalid=allow_invalid)
         self.T_world_root = self.articulated_object.T_world_root
@@ -80,6 +82,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._draw = no_draw(*self._counts)
         self._painter: Painter | None = None
         self._window: Window | None = None
+        self._tiny: TinyPainter | None = None
         self._progress: Progress | None = None
         self._aim(self._choose(joint))
 
@@ -101,7 +104,8 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
 
     def _targeted(self, joint: str) -> Target:
         """Return the joint with the point at which its part is held."""
-        return shared_target(self.articulated_object, joint)
+        found = shared_target(self.articulated_object, joint)
+        return found.reversed if self._closing else found
 
     @property
     def _counts(self) -> tuple[int, int]:
@@ -136,7 +140,9 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             leaders[self.target.leader] = self.target.value(float(rng.uniform(*self._start_noise)))
             if self._place(leaders) <= allowed:
                 return
-        self._place(self.articulated_object.scene.mechanism.rest)
+        leaders = self.articulated_object.scene.mechanism.rest.copy()
+        leaders[self.target.leader] = self.target.closed
+        self._place(leaders)
 
     @abstractmethod
     def _place(self, leaders: FloatArray) -> float:
@@ -237,15 +243,27 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
                 'render() was called without render_mode; make the environment with render_mode="rgb_array".'
             )
             return None
-        poses, tint = self._world.link_poses(), dict(
-            zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True)
-        )  # fmt: skip
+        poses, tint = self._world.link_poses(), self._tint
         if self.render_mode == "human":
             self._window = self._window or Window(self._pieces(), self._view(), self.settings.picture)
             self._window.draw(poses, tint)
             return None
         self._painter = self._painter or Painter(self._pieces(), self._view(), self.settings.picture)
         return self._painter.draw(poses, tint)
+
+    def pixels(self, size: tuple[int, int]) -> NDArray[np.uint8]:
+        """Return what a camera sees, shape (*size, 3), the same on every machine; `size` is height and width."""
+        return self.camera().draw(self._world.link_poses(), self._tint, size)
+
+    def camera(self) -> TinyPainter:
+        """Return what `pixels` are taken with; it is made when it is first asked for, in some tenths of a second."""
+        self._tiny = self._tiny or _tiny_painter(self._pieces(), self._view(), self.settings.picture)
+        return self._tiny
+
+    @property
+    def _tint(self) -> dict[str, FloatArray]:
+        """What is added to the colour of each link."""
+        return dict(zip(self.articulated_object.scene.mechanism.links, self._draw.color, strict=True))
 
     @property
     def renderer(self) -> str | None:
@@ -268,7 +286,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         """All of the object, at rest and open, from the side to which it opens."""
         scene, T = self.articulated_object.scene, self.T_world_root
         rows = np.stack([scene.mechanism.rest] * 2)
-        rows[1, self.target.leader] = open_end(self.articulated_object.travels[self.target.leader])
+        rows[:, self.target.leader] = self.target.closed, self.target.opened
         corners = [
             transformed(shape, T @ pose)
             for row in scene.poses(rows)
@@ -287,10 +305,10 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         return ()
 
     def _close_pictures(self) -> None:
-        for shown in (self._painter, self._window):
+        for shown in (self._painter, self._window, self._tiny):
             if shown is not None:
                 shown.close()
-        self._painter = self._window = None
+        self._painter = self._window = self._tiny = None
 
     def close(self) -> None:
         """Free the engine, OpenGL and the window."""
@@ -312,3 +330,9 @@ def _pose_at_rest(articulated_object: ArticulatedObject, target: Target) -> Floa
     """Link that is moved, frame of the root link, shape (4, 4)."""
     values = {travel.joint: travel.rest for travel in articulated_object.travels}
     return forward_kinematics(articulated_object.declared, values)[target.link]
+
+
+def _tiny_painter(pieces: Sequence[Piece], view: View, settings: PictureSettings) -> TinyPainter:
+    from kinematify.envs.tiny_picture import TinyPainter  # noqa: PLC0415  # loads PyBullet
+
+    return TinyPainter(pieces, view, settings)

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 PREFIX = "bundled:"
 """What a `model` keyword begins with that names a bundled object."""
 FAMILY_PREFIX = "procedural:"
-"""What a `model` keyword begins with that names a family of `kinematify generate`, built with its usual sizes."""
+"""What a `model` keyword begins with that names a family of `kinematify generate`, built with its usual sizes; a seed
+behind the name, ``procedural:FAMILY:SEED``, draws them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +32,8 @@ class BundledObject:
     settings: dict[str, str]
     joint: str
     """Joint that is opened if none is asked for."""
+    seed: int | None = None
+    """Draws what the settings leave open."""
 
 
 def _bundled(family: str, joint: str, **settings: str) -> BundledObject:
@@ -69,8 +72,9 @@ def find_bundled(model: str) -> BundledObject:
     """
     prefix = PREFIX if model.startswith(PREFIX) else FAMILY_PREFIX
     name = model.removeprefix(prefix)
-    if prefix == FAMILY_PREFIX and name in FAMILIES:
-        return BundledObject(family=name, settings={}, joint="auto")
+    name, _, seed = name.partition(":")
+    if prefix == FAMILY_PREFIX and name in FAMILIES and (seed.isdecimal() or not seed):
+        return BundledObject(family=name, settings={}, joint="auto", seed=int(seed) if seed else None)
     if prefix == PREFIX and name in BUNDLED:
         return BUNDLED[name]
     names = list(BUNDLED if prefix == PREFIX else FAMILIES)
@@ -87,5 +91,5 @@ def write_bundled(bundled: BundledObject, folder: Path) -> Path:
     """
     folder.mkdir(parents=True)
     config = load_config()
-    model = true_model(from_category(bundled.family, bundled.settings).build(), config)
+    model = true_model(from_category(bundled.family, bundled.settings).build(seed=bundled.seed), config)
     return write_model(simulable_model(model, config).robot, folder)

@@ -14,6 +14,7 @@ from kinematify.envs.base import OpeningEnv, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.mujoco_arm import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
+from kinematify.envs.pixels import PIXEL_SIZE, STATE, observed
 from kinematify.envs.robot_plan import env_robot, robot_plan
 from kinematify.envs.worlds import shared_target
 from kinematify.geometry.hull import convex_hull
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
+    import gymnasium
     from gymnasium import spaces
     from numpy.typing import NDArray
 
@@ -336,6 +338,18 @@ def _pybullet_arm() -> type:
     return PybulletArm
 
 
-def make_drawer_pull(**keywords: Any) -> DrawerPullEnv:
-    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself."""
-    return DrawerPullEnv(**keywords)
+def make_drawer_pull(
+    *, observation: str = STATE, pixel_size: tuple[int, int] = PIXEL_SIZE, **keywords: Any
+) -> gymnasium.Env[Any, Any]:
+    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself.
+
+    Args:
+        observation: ``state``, ``pixels`` or ``pixels+state``; see `kinematify.envs.pixels.PixelObservation`.
+        pixel_size: Height and width of pictures.
+        keywords: Of `DrawerPullEnv`.
+
+    Raises:
+        InputError: A keyword is impossible.
+        EnvironmentFault: As for `DrawerPullEnv`.
+    """
+    return observed(DrawerPullEnv(**keywords), observation, pixel_size)

@@ -147,7 +147,7 @@ class MujocoObject:
     def inertia(self) -> float:
         """Largest inertia that the joint moves, at both ends [kg m^2 or kg]."""
         rows = np.tile(self.articulated_object.scene.mechanism.rest, (2, 1))
-        rows[1, self.target.leader] = self.target.opened
+        rows[:, self.target.leader] = self.target.closed, self.target.opened
         k = int(self._leaders[self.target.leader])
         return max(float(self._loads(row)[0][k]) for row in rows)
 

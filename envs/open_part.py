@@ -11,12 +11,14 @@ from gymnasium.utils import EzPickle
 from kinematify.envs.base import OpeningEnv, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.mujoco_hand import FORCE, POSITION, MujocoHand
+from kinematify.envs.pixels import PIXEL_SIZE, STATE, observed
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
+    import gymnasium
     from gymnasium import spaces
     from numpy.typing import NDArray
 
@@ -111,11 +113,13 @@ class OpenPartEnv(OpeningEnv):
         terminate_on_success: bool = False,
         allow_invalid: bool = False,
         render_mode: str | None = None,
+        closing: bool = False,
     ) -> None:
         """Make the environment.
 
         Args:
-            model: URDF, folder with it, ``bundled:NAME`` or ``procedural:FAMILY``; a chest of drawers if None.
+            model: URDF, folder with it, ``bundled:NAME``, ``procedural:FAMILY`` or ``procedural:FAMILY:SEED``; a chest
+                of drawers if None.
             joint: Joint that is opened; ``auto`` takes the one whose part moves farthest.
             open_fraction: Share of the way that counts as open, above 0 and at most 1.
             engine: ``mujoco`` or ``pybullet``.
@@ -126,6 +130,7 @@ class OpenPartEnv(OpeningEnv):
             terminate_on_success: End the episode on success.
             allow_invalid: Take a model that fails `kinematify validate`.
             render_mode: None, ``rgb_array`` or ``human``.
+            closing: Begin with the part open, and shut it: closed counts as open everywhere, and open as closed.
 
         Raises:
             InputError: A keyword is impossible, or the model cannot be used; the message says what to do.
@@ -134,7 +139,7 @@ class OpenPartEnv(OpeningEnv):
         EzPickle.__init__(
             self, model, joint=joint, open_fraction=open_fraction, engine=engine, robot=robot, control=control,
             reward=reward, randomize=randomize, terminate_on_success=terminate_on_success,
-            allow_invalid=allow_invalid, render_mode=render_mode,
+            allow_invalid=allow_invalid, render_mode=render_mode, closing=closing,
         )  # fmt: skip
         one_of("control", control, (FORCE, POSITION))
         if robot is not None:
@@ -146,6 +151,7 @@ class OpenPartEnv(OpeningEnv):
         self._begin(
             model=model, joint=joint, open_fraction=open_fraction, engine=engine, reward=reward, randomize=randomize,
             terminate_on_success=terminate_on_success, allow_invalid=allow_invalid, render_mode=render_mode,
+            closing=closing,
         )  # fmt: skip
         self._make_world()
         self.action_space: Space = Box(-1.0, 1.0, (3,), np.float32)
@@ -246,6 +252,18 @@ def _pybullet_hand() -> type:
     return PybulletHand
 
 
-def make_open_part(**keywords: Any) -> OpenPartEnv:
-    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself."""
-    return OpenPartEnv(**keywords)
+def make_open_part(
+    *, observation: str = STATE, pixel_size: tuple[int, int] = PIXEL_SIZE, **keywords: Any
+) -> gymnasium.Env[Any, Any]:
+    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself.
+
+    Args:
+        observation: ``state``, ``pixels`` or ``pixels+state``; see `kinematify.envs.pixels.PixelObservation`.
+        pixel_size: Height and width of pictures.
+        keywords: Of `OpenPartEnv`.
+
+    Raises:
+        InputError: A keyword is impossible.
+        EnvironmentFault: As for `OpenPartEnv`.
+    """
+    return observed(OpenPartEnv(**keywords), observation, pixel_size)

@@ -13,6 +13,7 @@ from mujoco.rollout import Rollout
 
 from kinematify.envs.mujoco_hand import POSITION
 from kinematify.envs.open_part import OpenPartEnv, hand_space, observe_hand
+from kinematify.envs.pixels import STATE
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
@@ -67,6 +68,11 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
             raise InputError(
                 f"Only MuJoCo steps many environments at once, but engine={keywords['engine']!r} was given. Use "
                 'vectorization_mode="sync" or "async" for PyBullet.'
+            )
+        if keywords.pop("observation", STATE) != STATE:
+            raise InputError(
+                "Many environments at once are observed by their state, but pixels were asked for. Use "
+                'vectorization_mode="sync" or "async" for pixels.'
             )
         self.num_envs, self._longest = num_envs, max_episode_steps
         self._envs = [OpenPartEnv(**keywords) for _ in range(num_envs)]

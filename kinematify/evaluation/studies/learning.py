@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _OPEN_PART = "kinematify.envs:kinematify/OpenPart-v0"
 _LIMIT = 600.0
 """Of a training [s]."""
-_PPO: dict[str, Any] = {
+PPO_SETTINGS: dict[str, Any] = {
     "n_steps": 256, "batch_size": 512, "gamma": 0.97, "learning_rate": 1e-3, "policy_kwargs": {"log_std_init": -0.7},
 }  # fmt: skip
 _SEEN, _UNSEEN = range(1000, 1020), range(5000, 5100)
@@ -67,17 +67,21 @@ class Training:
 
 def measure(options: LearningOptions, work: Work) -> Measured:
     """Train on every object with every seed."""
-    _stable_baselines()
+    stable_baselines()
     asked = {
         f"{name}, seed {seed}": Training(object=name, seed=seed, parts=options.parts)
         for name in _OBJECTS
         for seed in options.seeds
     }
-    return list(work.each(trained, asked, workers=1).values()), {"ppo": _PPO}
+    return list(work.each(trained, asked, workers=1).values()), {"ppo": PPO_SETTINGS}
 
 
-def _stable_baselines() -> tuple[Any, Any]:
-    """PPO, and what makes environments for it."""
+def stable_baselines() -> tuple[Any, Any]:
+    """Return PPO, and what makes environments for it.
+
+    Raises:
+        EnvironmentFault: Stable-Baselines3 is not installed.
+    """
     try:
         from stable_baselines3 import PPO  # noqa: PLC0415  an optional package
         from stable_baselines3.common.env_util import make_vec_env  # noqa: PLC0415
@@ -90,7 +94,7 @@ def _stable_baselines() -> tuple[Any, Any]:
 
 def trained(asked: Training) -> Record:
     """Train a policy, and see what an expert and chance make of the same object."""
-    ppo, _ = _stable_baselines()
+    ppo, _ = stable_baselines()
     model, joint = _OBJECTS[asked.object]
     with tempfile.TemporaryDirectory() as folder:
         if model is None:
@@ -100,7 +104,7 @@ def trained(asked: Training) -> Record:
         env = gymnasium.make(_OPEN_PART, **keywords)
         bare: Any = env.unwrapped
         name, expert, rng = env.reset(seed=0)[1]["joint"], HandExpert(bare), np.random.default_rng(0)
-        untrained = ppo("MlpPolicy", env, device="cpu", seed=asked.seed, **_PPO)
+        untrained = ppo("MlpPolicy", env, device="cpu", seed=asked.seed, **PPO_SETTINGS)
         record: Record = {
             "object": asked.object,
             "joint": name,
@@ -117,9 +121,9 @@ def trained(asked: Training) -> Record:
 
 def _train(keywords: Record, seed: int) -> tuple[Any, list[Record]]:
     """Train until it succeeds; the curve has a point per 2048 steps."""
-    ppo, make_vec_env = _stable_baselines()
+    ppo, make_vec_env = stable_baselines()
     envs = make_vec_env(lambda: gymnasium.make(_OPEN_PART, **keywords), n_envs=8, seed=seed)
-    policy = ppo("MlpPolicy", envs, device="cpu", seed=seed, **_PPO)
+    policy = ppo("MlpPolicy", envs, device="cpu", seed=seed, **PPO_SETTINGS)
     curve: list[Record] = []
     spent, good = 0.0, 0
     while spent < _LIMIT and good < 2:
