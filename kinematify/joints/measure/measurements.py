@@ -161,12 +161,11 @@ class Measured:
         result = np.zeros((count, 2, len(_TURNS)))
         if len(points) == 0 or len(parts) == 0:
             return result
-        poses = np.stack([self.moved(points, sense * amounts) for _, _, amounts in self.steps])
-        queries = np.concatenate([points, poses.reshape(-1, 3)])
-        inside = np.any([self.scene.cache.inside(part, queries) for part in parts], axis=0)
-        at_rest, then = inside[: len(points)], inside[len(points) :].reshape(poses.shape[:3])
-        entered = (then & ~at_rest).mean(axis=2)
-        for (side, k, _), share in zip(self.steps, entered, strict=True):
+        outside = points[~self.scene.cache.inside_any(parts, points)]  # what is in a solid at rest cannot enter it
+        poses = np.stack([self.moved(outside, sense * amounts) for _, _, amounts in self.steps])
+        entered = self.scene.cache.inside_any(parts, poses.reshape(-1, 3)).reshape(poses.shape[:3])
+        shares = entered.sum(axis=2) / len(points)
+        for (side, k, _), share in zip(self.steps, shares, strict=True):
             result[:, side, k] = share
         return result
 

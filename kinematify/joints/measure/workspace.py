@@ -13,7 +13,7 @@ from embreex.rtcore_scene import EmbreeScene
 from kinematify.geometry.sampling import sample_surface
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
+
+_WINDING = ((1.0, 0.4), (2.0, 0.0))
+"""Accuracies of winding numbers, and how far from a half each decides: the first takes a third of the time of the
+second and was never more than 0.35 off it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,9 +141,19 @@ class PartCache:
         lower, upper = self.assembly.parts[part].bounds
         result = np.all((points > lower) & (points < upper), axis=1)
         near = np.flatnonzero(result)
-        if len(near):
-            result[near] = np.abs(self._solid(part).winding_number(np.ascontiguousarray(points[near]))) > 0.5
+        for accuracy, clear in _WINDING if len(near) else ():
+            off = np.abs(self._solid(part).winding_number(points[near], accuracy)) - 0.5
+            result[near] = off > 0.0
+            near = near[np.abs(off) < clear]
         return np.asarray(result)
+
+    def inside_any(self, parts: Sequence[int], points: FloatArray) -> BoolArray:
+        """Whether points (n, 3) in the world frame lie inside the solid of one of some parts, shape (n,)."""
+        result = np.zeros(len(points), dtype=bool)
+        for part in parts:
+            left = np.flatnonzero(~result)
+            result[left] = self.inside(part, points[left])
+        return result
 
     def contact(self, parent: int, child: int, band: float) -> ContactView:
         """Contact samples of a pair that lie within `band` [m] beyond its gap."""
