@@ -89,10 +89,9 @@ bench: setup
 	$(IN_VENV) kinematify bench $(if $(filter pip,$(DATA)),--data pip,$(DATA)) -o results
 
 docs: setup
-	@$(IN_VENV) pip install --quiet --editable '.[docs]' --config-settings editable_mode=compat
 	@rm -rf out/pages && mkdir -p out/pages
 	@cp -r README.md CONTRIBUTING.md CHANGELOG.md CITATION.cff LICENSE docs results configs examples out/pages/
-	$(IN_VENV) mkdocs build --quiet
+	NO_MKDOCS_2_WARNING=1 $(IN_VENV) mkdocs build --quiet --strict
 	@echo "Look at  out/site/index.html"
 
 clean:
