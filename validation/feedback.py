@@ -51,6 +51,8 @@ class LineSignal:
     weight: float
     check: str
     reason: str
+    at: float | None
+    """Value of the joint at which it failed [rad or m], if one is known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +65,8 @@ class TypeSignal:
     weight: float
     check: str
     reason: str
+    at: float | None
+    """Value of the joint at which it failed [rad or m], if one is known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,6 +124,11 @@ class Feedback:
         lines = {signal.check: signal.weight for signal in self.lines if signal.child == child}
         types = {signal.check: signal.weight for signal in self.types if signal.child == child}
         return max(sum(lines.values()), sum(types.values()))
+
+    def failed_at(self, child: str) -> frozenset[float]:
+        """Values of the joint of a part at which it failed for its line or its type [rad or m]."""
+        signals: tuple[LineSignal | TypeSignal, ...] = (*self.lines, *self.types)
+        return frozenset(item.at for item in signals if item.child == child and item.at is not None)
 
     def as_json(self) -> dict[str, Any]:
         """JSON values."""
@@ -195,14 +204,22 @@ class _Case:
         """Add a signal against the line of a joint, if the failure is more frequent where it is wrong."""
         weight = self.rates.weight(finding.check, LINE)
         if weight > 0.0:
-            self.lines.append(LineSignal(child=joint.child, weight=weight, check=finding.check, reason=reason))
+            at = _value_of(finding, joint)
+            self.lines.append(LineSignal(child=joint.child, weight=weight, check=finding.check, reason=reason, at=at))
 
     def against_type(self, finding: Finding, joint: Joint, reason: str) -> None:
         """Add a signal against the type of a joint, if the failure is more frequent where it is wrong."""
         weight = self.rates.weight(finding.check, TYPE)
         if weight > 0.0:
             self.types.append(
-                TypeSignal(child=joint.child, kind=joint.kind.value, weight=weight, check=finding.check, reason=reason)
+                TypeSignal(
+                    child=joint.child,
+                    kind=joint.kind.value,
+                    weight=weight,
+                    check=finding.check,
+                    reason=reason,
+                    at=_value_of(finding, joint),
+                )
             )
 
     def against_parent(self, finding: Finding, joint: Joint, reason: str, better: str | None = None) -> None:
@@ -359,6 +376,10 @@ def _out_of_guide(case: _Case, finding: Finding, joint: Joint) -> None:
         case.end(finding, joint, (None if other is None else -other, end), reason, lost=True)
     else:
         case.end(finding, joint, (-end, other), reason, lost=True)
+
+
+def _value_of(finding: Finding, joint: Joint) -> float | None:
+    return (finding.q or {}).get(joint.name)
 
 
 def _upwards(finding: Finding) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
     from kinematify.config import CavlConfig, Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.paper.cavl import CavlScene, VirtualMotions
+    from kinematify.paper.cavl import CavlScene, FailedMotions, VirtualMotions
     from kinematify.paper.contact_region import ContactRegion
     from kinematify.robot.arrays import FloatArray
 
@@ -30,8 +31,8 @@ def estimate_paper_joints(
     """Choose the joint of every edge by DW-CAVL alone (paper III-D).
 
     The paper leaves three things open. Sign: the axis has none, so neither direction counts as opening. Limits: a full
-    turn, half of it either way, or the child's own length along the axis either way. Confidence: the score of the
-    chosen joint over the sum of its score and that of the best joint of the other type.
+    turn, half of it either way, or the child's own length along the axis either way. Confidence: the likelihood of the
+    chosen joint over the sum of its own and that of the best joint of the other type; a likelihood is exp(-J / noise).
 
     Args:
         assembly: The parts, world frame.
@@ -42,22 +43,102 @@ def estimate_paper_joints(
     Returns:
         One estimate per edge, in the order given.
     """
-    field_of = field_source(assembly.parts, config.sdf, seed=config.seed)
-    samples = [sample_surface(part, config.joints.samples, config.seed) for part in assembly.parts]
-    estimates = []
-    for parent, child in edges:
-        scene = cavl_scene(
-            _edge_between(graph, parent, child),
+    return PaperJoints(assembly, graph, config).choose(edges)
+
+
+NOISE = "cavl_noise"
+"""What J is divided by to be a likelihood, in `JointEstimate.evidence`."""
+
+
+class PaperJoints:
+    """DW-CAVL over the edges of one assembly; fields and samples are made once."""
+
+    def __init__(self, assembly: Assembly, graph: ContactGraph, config: Config) -> None:
+        """Make samples and fields; networks are trained here.
+
+        Args:
+            assembly: The parts, world frame.
+            graph: Contact graph with samples.
+            config: `cavl`, `sdf`, `joints.samples` and `seed` are used.
+        """
+        self._assembly, self._graph, self._config, self._seed = assembly, graph, config.cavl, config.seed
+        self._field_of = field_source(assembly.parts, config.sdf, seed=config.seed)
+        self._samples = [sample_surface(part, config.joints.samples, config.seed) for part in assembly.parts]
+
+    def scene(self, parent: int, child: int) -> CavlScene:
+        """What DW-CAVL knows of one edge."""
+        return cavl_scene(
+            _edge_between(self._graph, parent, child),
             parent=parent,
             child=child,
-            fields=lambda index: field_of(assembly.parts[index]),
-            samples=samples,
-            diagonal=assembly.diagonal,
-            config=config.cavl,
+            fields=lambda index: self._field_of(self._assembly.parts[index]),
+            samples=self._samples,
+            diagonal=self._assembly.diagonal,
+            config=self._config,
         )
-        ranked = estimate_paper_joint(scene, config.cavl, config.seed)
-        estimates.append(_estimate(ranked, parent, child, assembly.parts[child]))
-    return tuple(estimates)
+
+    def choose(self, edges: Sequence[tuple[int, int]]) -> tuple[JointEstimate, ...]:
+        """The joint of every edge, from parent to child, in the order given."""
+        ranked = [estimate_paper_joint(self.scene(*edge), self._config, self._seed) for edge in edges]
+        noise = noise_of([_cost(candidates[0]) for candidates in ranked], self._config)
+        return tuple(
+            _estimate(_as_likelihoods(candidates, noise), edge, self._assembly.parts[edge[1]], noise)
+            for edge, candidates in zip(edges, ranked, strict=True)
+        )
+
+    def realise(self, joint: JointEstimate, candidate: JointCandidate) -> JointEstimate:
+        """The joint that a candidate of an edge would have been, had it been chosen."""
+        reach = _reach(candidate, self._assembly.parts[joint.child])
+        return replace(
+            joint, kind=candidate.kind, axis=candidate.axis, pivot=candidate.pivot, lower=-reach, upper=reach
+        )
+
+    def measure(self, joint: JointEstimate) -> JointCandidate:
+        """A joint as a candidate of its edge, with its log-likelihood."""
+        scene = self.scene(joint.parent, joint.child)
+        fine, motions = scene.thinned(self._config.refine_points), self._motions(scene, joint)
+        own = rank_candidates(fine, [_as_candidate(joint)], self._config, motions)
+        return _as_likelihoods(own, joint.evidence[NOISE])[0]
+
+    def optimise_again(self, joint: JointEstimate, failed: FailedMotions, against: float) -> JointEstimate:
+        """The same joint with other candidates, after motions of the edge failed in simulation.
+
+        What failed adds to L_coll, so much that the failed joint pays what the failures weigh. Under this penalty the
+        optimiser runs from every candidate, and from the next best of the pool, for each motion that failed as many of
+        either type as were refined at first. Their scores are without the penalty: the simulation judges them anew.
+
+        Args:
+            joint: The chosen one, which failed; it stays among the candidates and does not move.
+            failed: All motions of the edge that have failed so far.
+            against: What the failures weigh [log odds].
+        """
+        scene, noise = self.scene(joint.parent, joint.child), joint.evidence[NOISE]
+        motions = self._motions(scene, joint)
+        fine = scene.thinned(self._config.refine_points)
+        (own,) = rank_candidates(replace(fine, failed=failed), [_as_candidate(joint)], self._config, motions)
+        penalty = own.evidence["cavl_failures"]
+        weight = against * noise / (self._config.collision_weight * penalty) if penalty > 0.0 else 0.0
+        starts = [*joint.alternatives, *self._next_best(scene, motions, len(failed.angles) + len(failed.travels))]
+        penalised = replace(fine, failed=replace(failed, weight=weight))
+        moved = _distinct(refine(penalised, starts, self._config, motions))
+        ranked = rank_candidates(fine, [own, *moved], self._config, motions)
+        return replace(joint, alternatives=_as_likelihoods(ranked, noise))
+
+    def _next_best(self, scene: CavlScene, motions: VirtualMotions, failures: int) -> list[JointCandidate]:
+        """Candidates of the pool after those that were refined at first, of either type as many for each failure."""
+        pool = paper_candidates(scene.contact, scene.diagonal, self._config, self._seed)
+        coarse, top = scene.thinned(self._config.rank_points), self._config.top
+        found = []
+        for turns in (True, False):
+            ranked = rank_candidates(coarse, [item for item in pool if item.kind.turns == turns], self._config, motions)
+            found += _distinct(ranked)[top : (1 + failures) * top]
+        return found
+
+    def _motions(self, scene: CavlScene, joint: JointEstimate) -> VirtualMotions:
+        """Theta as it was when the candidates of a joint were ranked first."""
+        turning = next(item for item in joint.alternatives if item.kind.turns)
+        lever = scene.contact.lever(turning.axis, turning.pivot)
+        return virtual_motions(scene, self._config, lever)
 
 
 def _edge_between(graph: ContactGraph, parent: int, child: int) -> ContactEdge:
@@ -73,22 +154,55 @@ def _edge_between(graph: ContactGraph, parent: int, child: int) -> ContactEdge:
     )
 
 
-def _estimate(ranked: tuple[JointCandidate, ...], parent: int, child: int, moving: Part) -> JointEstimate:
+def noise_of(costs: Sequence[float], config: CavlConfig) -> float:
+    """What J is divided by to be a likelihood: the typical J of an object's best joints, each right or nearly so.
+
+    Gaps, closed fronts and samples leave every joint with some cost, and how much differs from object to object. It is
+    at least that of a separation by the volume margin, below which distances count as touching.
+
+    Args:
+        costs: J of the best joint of every edge.
+        config: `volume_margin` and `length_unit` are used.
+    """
+    return max(2.0 * float(np.median(costs)), (config.volume_margin / config.length_unit) ** 2)
+
+
+def _cost(candidate: JointCandidate) -> float:
+    """J behind a score 1 / (1 + J), with the share of the type rule in it."""
+    return 1.0 / candidate.score - 1.0
+
+
+def _as_candidate(joint: JointEstimate) -> JointCandidate:
+    kind = JointType.REVOLUTE if joint.kind.turns else JointType.PRISMATIC
+    return _candidate(kind, "chosen", joint.axis, joint.pivot)
+
+
+def _as_likelihoods(ranked: Sequence[JointCandidate], noise: float) -> tuple[JointCandidate, ...]:
+    """Candidates with the logarithm of their likelihood exp(-J / noise) for a score, in their order."""
+    return tuple(replace(item, score=-_cost(item) / noise) for item in ranked)
+
+
+def _estimate(ranked: tuple[JointCandidate, ...], edge: tuple[int, int], moving: Part, noise: float) -> JointEstimate:
     best = ranked[0]
     other = max(candidate.score for candidate in ranked if candidate.kind is not best.kind)
-    reach = float(np.pi) if best.kind.turns else float(np.ptp(moving.vertices @ best.axis))
+    reach = _reach(best, moving)
     return JointEstimate(
-        parent=parent,
-        child=child,
+        parent=edge[0],
+        child=edge[1],
         kind=best.kind,
         axis=best.axis,
         pivot=best.pivot,
         lower=-reach,
         upper=reach,
-        confidence=best.score / (best.score + other),
+        confidence=1.0 / (1.0 + float(np.exp(other - best.score))),
         alternatives=ranked,
-        evidence=best.evidence,
+        evidence={**best.evidence, NOISE: noise},
     )
+
+
+def _reach(candidate: JointCandidate, moving: Part) -> float:
+    """How far a joint goes either way [rad or m]; the paper says nothing of it."""
+    return float(np.pi) if candidate.kind.turns else float(np.ptp(moving.vertices @ candidate.axis))
 
 
 def estimate_paper_joint(scene: CavlScene, config: CavlConfig, seed: int) -> tuple[JointCandidate, ...]:
@@ -155,7 +269,7 @@ def _candidate(kind: JointType, source: str, axis: FloatArray, pivot: FloatArray
     return JointCandidate(kind=kind, axis=axis, pivot=pivot, score=0.0, source=source)
 
 
-def _distinct(ranked: tuple[JointCandidate, ...]) -> list[JointCandidate]:
+def _distinct(ranked: Sequence[JointCandidate]) -> list[JointCandidate]:
     """Keep the best of those that differ only by rounding or by the position of the pivot along the axis."""
     kept: list[JointCandidate] = []
     for candidate in ranked:

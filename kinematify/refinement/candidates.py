@@ -1,12 +1,14 @@
 """Every near-best joint of a tree edge as a joint of its own: with opening direction, limits and evidence.
 
 The inference keeps its candidates as lines with scores; to be simulated, a candidate needs the range that it would
-have been given had it been chosen. A joint that is none of them is scored as the inference would have scored it.
+have been given had it been chosen. A joint that is none of them is scored as the inference would have scored it. Under
+the paper's method, the optimiser makes candidates anew after a joint has failed.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +24,7 @@ from kinematify.joints.measure.workspace import PartCache
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.joints.hypotheses.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
+    from kinematify.paper.cavl import FailedMotions
+    from kinematify.paper.joints import PaperJoints
     from kinematify.topology.tree import KinematicTree
 
 _SAME = np.cos(np.radians(1.0))  # directions that no check tells apart
@@ -43,12 +47,38 @@ class CandidateJoints:
         self, assembly: Assembly, graph: ContactGraph, bearings: Mapping[Pair, EdgeBearing], config: Config
     ) -> None:
         """Keep what the inference had; samples and ray scenes are made when first asked for."""
-        self._bearings = bearings
+        self._assembly, self._graph, self._bearings, self._all = assembly, graph, bearings, config
         self._config = config.joints
         self._cache = PartCache(assembly, graph, samples=config.joints.samples, seed=config.seed)
         self._frames: dict[tuple[int, ...], dict[int, BoxFrame]] = {}
         self._scenes: dict[tuple[tuple[int, ...], int], JointScene] = {}
         self._scores: dict[tuple[object, ...], float] = {}
+        self._failed: dict[tuple[int, int], FailedMotions] = {}
+
+    @cached_property
+    def _paper(self) -> PaperJoints:
+        # torch takes seconds to import, and only the paper's method needs it.
+        from kinematify.paper.joints import PaperJoints  # noqa: PLC0415
+
+        return PaperJoints(self._assembly, self._graph, self._all)
+
+    def after_failures(self, joint: JointEstimate, values: Iterable[float], against: float) -> JointEstimate:
+        """A joint with the candidates that its edge has after failures.
+
+        They stay the same but under the paper's method, which optimises under a penalty for all that has failed.
+
+        Args:
+            joint: The chosen one.
+            values: At which it failed [rad or m].
+            against: What the failures weigh [log odds].
+        """
+        if self._config.method != "cavl" or not joint.alternatives or joint.kind is JointType.FIXED:
+            return joint
+        from kinematify.paper.cavl import FailedMotions  # noqa: PLC0415
+
+        edge = joint.parent, joint.child
+        self._failed[edge] = self._failed.get(edge, FailedMotions()).and_at(values, turns=joint.kind.turns)
+        return self._paper.optimise_again(joint, self._failed[edge], against)
 
     def realise(self, tree: KinematicTree, joint: JointEstimate, candidate: JointCandidate) -> JointEstimate:
         """The joint that a candidate of an edge would be.
@@ -60,6 +90,8 @@ class CandidateJoints:
         """
         if is_same(joint, candidate):
             return joint
+        if self._config.method == "cavl":
+            return self._paper.realise(joint, candidate)
         scene = self.scene(tree, (joint.parent, joint.child))
         found = find_range(scene, candidate.kind, candidate.axis, candidate.pivot, self._config)
         return replace(
@@ -100,11 +132,15 @@ class CandidateJoints:
         known = next((candidate.score - best for candidate in joint.alternatives if is_same(joint, candidate)), None)
         if known is not None:
             return known
-        if joint.kind is JointType.FIXED or not joint.alternatives or self._config.method != "geometry":
+        if joint.kind is JointType.FIXED or not joint.alternatives:
             return 0.0
         key = (tree.parents, joint.child, joint.kind.turns, joint.axis.tobytes(), joint.pivot.tobytes())
         if key not in self._scores:
-            self._scores[key] = self._measured(tree, joint)
+            self._scores[key] = (
+                self._paper.measure(joint).score - best
+                if self._config.method == "cavl"
+                else self._measured(tree, joint)
+            )
         return self._scores[key]
 
     def _measured(self, tree: KinematicTree, joint: JointEstimate) -> float:

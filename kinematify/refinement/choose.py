@@ -94,6 +94,10 @@ class Chooser:
         doubted = [child for child in odds if child in blamed or odds[child] > self.config.lead_elsewhere]
         doubted = [child for child in doubted if child not in hinted]
         for child in sorted(doubted, key=lambda child: (-odds[child], child)):
+            if child in blamed:
+                joint = plan.joints[plan.index(child)]
+                values, against = feedback.failed_at(child), feedback.against(child)
+                plan = plan.with_joint(self.candidates.after_failures(joint, values, against))
             plan, change = self._again(plan, child, feedback.against(child), _failed_in(feedback, child))
             changes += [change] if change is not None else []
         moved = {change.part for change in changes}
@@ -104,7 +108,9 @@ class Chooser:
         return plan, changes
 
     def trials(self, plan: Plan, joint: JointEstimate, against: float, tier: str = GEOMETRY) -> list[Trial]:
-        """The chosen joint and every near-best candidate of an edge, simulated, as many as there is time for.
+        """The chosen joint and the near-best candidates of an edge, simulated, as many as there is time for.
+
+        Where those that are tried are all blocked, the others are tried too, until one can move.
 
         Args:
             plan: Where the other joints are as they are.
@@ -115,8 +121,9 @@ class Chooser:
         best = max((candidate.score for candidate in joint.alternatives), default=0.0)
         first = _known(joint, self.candidates.score(plan.tree, joint), against, tier)
         others: list[Trial] = []
-        for candidate in self._near_best(joint, best):
-            if not self.in_time():
+        for number, candidate in enumerate(self._near_best(joint, best)):
+            enough = number >= self.config.near_best and not all(trial.blocked for trial in (first, *others))
+            if enough or not self.in_time():
                 break
             realised = self.candidates.realise(plan.tree, joint, candidate)
             others.append(self.trial(plan, realised, candidate.score - best))
@@ -128,13 +135,14 @@ class Chooser:
         return [first, *others]
 
     def _near_best(self, joint: JointEstimate, best: float) -> list[JointCandidate]:
-        """Candidates within the margin that are not the chosen one, the best of either type at least."""
+        """Candidates within the margin that are not the chosen one, the best of either type among the first."""
         others = [item for item in joint.alternatives if not is_same(joint, item)]
         near = [item for item in others if item.score >= best - self.config.margin]
         kinds = {item.kind.turns: item for item in reversed(near)}
         firsts = sorted(kinds.values(), key=lambda item: -item.score)
         rest = [item for item in near if all(item is not first for first in firsts)]
-        return sorted((firsts + rest)[: self.config.near_best], key=lambda item: -item.score)
+        some = self.config.near_best
+        return sorted((firsts + rest)[:some], key=lambda item: -item.score) + rest[max(some - len(firsts), 0) :]
 
     def trial(self, plan: Plan, joint: JointEstimate, score: float, tier: str = GEOMETRY) -> Trial:
         """Simulate one joint for a part of a plan, whose inference scored it so."""

@@ -161,9 +161,11 @@ def ball_scene(
     sides = []
     for ball, points, direction in zip(balls, (placed(child), placed(parent)), (1.0, -1.0), strict=True):
         tensor = torch.from_numpy(points)
-        near, free = motion_weights(ball.value(tensor), diagonal, config)
-        share = 1.0 / len(points)
-        sides.append(CavlSide(field=ball, points=tensor, anchored=near * share, free=free * share, direction=direction))
+        initial = ball.value(tensor)
+        near, free = (weights / len(points) for weights in motion_weights(initial, diagonal, config))
+        sides.append(
+            CavlSide(field=ball, points=tensor, initial=initial, anchored=near, free=free, direction=direction)
+        )
     contact = [
         ContactSamples(
             points=points, normals=np.zeros_like(points), distances=np.zeros(len(points)), areas=np.ones(len(points))
