@@ -23,7 +23,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
     from pathlib import Path
@@ -38,11 +38,10 @@ _GRACE = 2.0
 """Processor time after which a stage that should have ended by itself at the deadline is stopped [s]."""
 _PATIENCE = 10.0
 """Time on the clock over processor time after which a stage waits for what never comes, however busy the machine is."""
-_VARIABLES = {
-    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
-    "MUJOCO_GL": "disable",
-}
-"""Of the workers: one thread per library, as there are as many workers as cores, and no search for a display."""
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""Variables of workers: one thread per library, as there are as many workers as cores."""
+_VARIABLES = {**ONE_THREAD, "MUJOCO_GL": "disable"}
+"""Of the workers: one thread, and no search for a display."""
 _PRELOADED = (
     "kinematify.validation.isolation",
     "kinematify.validation.stage",
@@ -105,7 +104,7 @@ def start_server() -> None:
     """Start the server that workers are forked from; returns at once, the imports go on beside the caller's work."""
     multiprocessing.get_context("forkserver").set_forkserver_preload(list(_PRELOADED))
     resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
-    with _variables(), _without_main(), _deaf():
+    with environment_variables(_VARIABLES), _without_main(), _deaf():
         forkserver.ensure_running()
 
 
@@ -241,10 +240,10 @@ def _stop(receiver: Connection, process: BaseProcess) -> None:
 
 
 @contextmanager
-def _variables() -> Iterator[None]:
-    """Start the server with the environment of the workers, and keep it from the caller's."""
-    before = {name: os.environ.get(name) for name in _VARIABLES}
-    os.environ.update(_VARIABLES)
+def environment_variables(values: Mapping[str, str]) -> Iterator[None]:
+    """Give what is started meanwhile some variables of the environment, and keep them from the caller's."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
     try:
         yield
     finally:

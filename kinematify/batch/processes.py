@@ -17,14 +17,13 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from kinematify.batch.engine import TaskFailure
+from kinematify.validation.isolation import ONE_THREAD, environment_variables
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.context import ForkServerContext
     from multiprocessing.process import BaseProcess
-
-_THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 class Processes:
@@ -42,16 +41,8 @@ class Processes:
         self._memory = memory
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload([__name__, *preload])
-        before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
-        os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
-        try:
+        with environment_variables(ONE_THREAD):
             forkserver.ensure_running()
-        finally:
-            for name, value in before.items():
-                if value is None:
-                    del os.environ[name]
-                else:
-                    os.environ[name] = value
 
     def start(self) -> WorkerProcess:
         """Return a new process."""
@@ -72,7 +63,7 @@ class WorkerProcess:
         self.channel, other = context.Pipe()
         # No daemon, which could not start processes, as validation does.
         # The server may have been started under another environment, before credentials of a store were set.
-        environment = {name: value for name, value in os.environ.items() if name not in _THREAD_VARIABLES}
+        environment = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
         self._process: BaseProcess = context.Process(target=_serve, args=(other, memory, environment))
         self._process.start()
         other.close()  # only the process may hold its end: then its death is seen as the end of the stream

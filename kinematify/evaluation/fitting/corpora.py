@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 import zlib
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,8 +14,11 @@ import numpy as np
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import run_tasks
+from kinematify.batch.processes import Processes
 from kinematify.config import load_config
-from kinematify.errors import InputError, KinematifyError
+from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.evaluation.fitting.broken_off import with_pieces_broken_off
 from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
 from kinematify.evaluation.fitting.objects import OBJECTS, drawn_object
@@ -41,6 +44,8 @@ _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the
 _BROKEN_ROUNDS = 2
 _MOST_PARTS = 25  # of an object with pieces broken off
 _AJAR = 0.25  # of the generated objects
+_TIMEOUT = 3600.0  # [s] of one object, on a busy machine
+_REUSE = 50  # objects of one worker: libraries leak
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,16 +105,23 @@ def gather_examples(
         seed: Draws the generated objects.
         workers: Processes at a time.
         progress: Told the object and the share done.
+
+    Raises:
+        EnvironmentFault: An object killed its worker or took an hour.
     """
     cache.mkdir(parents=True, exist_ok=True)
     paths = [cache / f"{_key(source, seed)}.npz" for source in sources]
-    missing = [(source, path) for source, path in zip(sources, paths, strict=True) if not path.exists()]
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        running = {pool.submit(_measure, source, path, seed): source for source, path in missing}
-        for done, future in enumerate(as_completed(running), start=len(sources) - len(missing) + 1):
-            future.result()
-            progress(running[future].name, done / len(sources))
+    missing = {path: source for source, path in zip(sources, paths, strict=True) if not path.exists()}
+    tasks = [(str(path), partial(_measure, source, path, seed)) for path, source in missing.items()]
+    running = run_tasks(tasks, Processes(workers, preload=(__name__,)), timeout=_TIMEOUT, reuse=_REUSE)
+    with closing(running):
+        for done, (path, failure) in enumerate(running, start=len(sources) - len(missing) + 1):
+            name = missing[Path(path)].name
+            if isinstance(failure, TaskFailure):
+                raise EnvironmentFault(
+                    f"{name} could not be measured: {failure.message}. Start again; {cache} keeps what was measured."
+                )
+            progress(name, done / len(sources))
     return [example for path in paths for example in read_examples(path)]
 
 
