@@ -7,6 +7,7 @@ between triangles.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +19,7 @@ from kinematify.contact.symmetry import find_clusters
 from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -29,7 +30,12 @@ if TYPE_CHECKING:
 
 
 def build_contact_graph(
-    assembly: Assembly, surfaces: Sequence[PartSurface], *, config: ContactConfig, seed: int
+    assembly: Assembly,
+    surfaces: Sequence[PartSurface],
+    *,
+    config: ContactConfig,
+    seed: int,
+    gap_of: Callable[[Pair], float] | None = None,
 ) -> ContactGraph:
     """Find which parts touch, keep samples near each contact and join what is left apart.
 
@@ -38,12 +44,14 @@ def build_contact_graph(
         surfaces: Derived geometry of each part, same order.
         config: Tolerances as fractions of the assembly's diagonal.
         seed: Seed of the surface samples.
+        gap_of: Distance between the parts of a pair [m]; the exact one if absent.
 
     Returns:
         A connected graph: components that do not touch are joined by their smallest gap, marked as bridges.
     """
     tolerance = config.tolerance * assembly.diagonal
-    gaps = {pair: gap for pair in near_pairs(assembly, tolerance) if (gap := exact_gap(surfaces, pair)) <= tolerance}
+    gap_of = gap_of or partial(exact_gap, surfaces)
+    gaps = {pair: gap for pair in near_pairs(assembly, tolerance) if (gap := gap_of(pair)) <= tolerance}
     band = config.band * assembly.diagonal
     bridges = find_bridges(assembly, surfaces, list(gaps), near=config.bridge_ratio, limit=band)
     raw = [

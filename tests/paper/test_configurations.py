@@ -7,16 +7,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 import torch
+import trimesh
 
+from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.errors import InputError
+from kinematify.evaluation.paper_configurations import with_types
+from kinematify.evaluation.prediction import Prediction
 from kinematify.evaluation.study import load_study_report
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _surviving_mean
+from kinematify.paper.contacts import field_gaps
 from kinematify.pipeline import infer, write_inference
 from kinematify.pipeline.stages import rank_trees
+from kinematify.robot.joint_type import JointType
 from kinematify.topology.evidence import EdgeEvidence
 from tests.objects import BUILDERS
 from tests.topology.topology_objects import graph_of, stat
@@ -79,4 +86,48 @@ def test_bench_tells_the_cost_of_the_true_joint_beside_that_of_the_chosen_one(
     joints = {row["objective"]: row for row in records if row["part"] == "joints"}
     assert set(joints) == {"DW-CAVL", "DW-CAVL+"}
     assert joints["DW-CAVL+"]["j_true"] < joints["DW-CAVL"]["j_true"], "a closed door leaves most of its contact"
-    assert "J(true)" in (tmp_path / "out" / "paper.md").read_text()
+    wholes = {(row["rules"], row["without"], row["types_by"]): row for row in records if row["part"] == "whole"}
+    assert len(wholes) == (3 * 3 + 2) * 4, "the default has no DW-CAVL to leave out"
+    assert all(row["types"] == 1.0 for key, row in wholes.items() if key[2] == "oracle 100 %" and row["matched"] == 1.0)
+    assert wholes["paper", "", "own rule"]["types"] == 0.0, "DW-CAVL lets the closed door slide"
+    text = (tmp_path / "out" / "paper.md").read_text()
+    assert "J(true)" in text
+    assert "| everyday | paper-open | oracle 90 % | 1 |" in text
+
+
+def test_congruent_parts_outvote_what_the_oracle_said_of_one() -> None:
+    candidates = tuple(
+        JointCandidate(kind=kind, axis=np.eye(3)[k], pivot=np.zeros(3), score=-k, source="made")
+        for k, kind in enumerate((JointType.PRISMATIC, JointType.REVOLUTE))
+    )
+    joints = tuple(
+        JointEstimate(
+            parent=0, child=child, kind=JointType.PRISMATIC, axis=np.eye(3)[0], pivot=np.zeros(3), lower=0.0, upper=1.0,
+            confidence=0.5, alternatives=candidates,
+        )
+        for child in (1, 2, 3)
+    )  # fmt: skip
+    answer = Prediction(parents={0: -1, 1: 0, 2: 0, 3: 0}, joints=joints)
+    turns = {frozenset((0, child)): True for child in (1, 2, 3)}
+    errs_on_the_second = next(
+        seed for seed in range(1000) if [*(np.random.default_rng(seed).random(3) < 0.9)] == [True, False, True]
+    )
+    alone, together = (
+        with_types(answer, turns, clusters, 0.9, np.random.default_rng(errs_on_the_second)).joints
+        for clusters in ((), ((1, 2, 3),))
+    )
+    assert [joint.kind.turns for joint in alone] == [True, False, True]
+    assert [joint.kind.turns for joint in together] == [True, True, True]
+    assert np.allclose(together[1].axis, np.eye(3)[1]), "the best candidate of that type"
+
+
+def test_gaps_by_fields_are_those_of_the_nearest_sample_and_nothing_inside() -> None:
+    shapes = {"one": (0.0, 0.2), "beside": (0.21, 0.2), "inside": (0.05, 0.2)}
+    parts = []
+    for name, (place, size) in shapes.items():
+        mesh = trimesh.creation.box(extents=[size] * 3).apply_translation([place, 0.0, 0.0])
+        parts.append(Part(name=name, vertices=mesh.vertices, faces=mesh.faces))
+    config = OPEN.model_copy(update={"sdf": OPEN.sdf.model_copy(update={"kind": "grid"})})
+    gap = field_gaps(Assembly(parts=tuple(parts), source="made"), config)
+    assert gap((0, 1)) == pytest.approx(0.01, abs=2e-3)
+    assert gap((0, 2)) == 0.0
