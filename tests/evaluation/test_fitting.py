@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from kinematify.evaluation.fitting.categories import ALIKE, category_of
 from kinematify.evaluation.fitting.corpora import gather_examples, generated_sources
 from kinematify.evaluation.fitting.judged import cause_of, folds_of
+from kinematify.evaluation.fitting.objects import OBJECTS
 from kinematify.evaluation.fitting.run import run_fit
+from kinematify.generate.procedural.families import FAMILIES
 from kinematify.joints.choice.scorer import WEIGHTS
 
 if TYPE_CHECKING:
@@ -47,6 +50,21 @@ def test_groups_of_one_name_share_a_fold(tmp_path: Path) -> None:
     folds = folds_of(examples, lambda example: example.category)
     by_category = {(example.category, fold) for example, fold in zip(examples, folds, strict=True)}
     assert len(by_category) == len({category for category, _ in by_category}) == len(set(folds)) == 2
+
+
+def test_a_recipe_is_left_out_with_the_real_objects_of_its_kind(tmp_path: Path) -> None:
+    example = gather_examples(generated_sources(0, 1), tmp_path, seed=0, workers=1, progress=silent)[0]
+    names = ("microwave", "slab_microwave", "oven", "slab_oven", "carousel")
+    of_names = [category_of(replace(example, category=name)) for name in names]
+    assert of_names == ["microwave", "microwave", "oven", "oven", "carousel"]
+    assert category_of(example) == example.category, "of nothing but itself"
+
+
+def test_categories_name_recipes_and_families_once_and_no_category_is_of_another() -> None:
+    named = [name for names in ALIKE.values() for name in names]
+    assert len(named) == len(set(named))
+    assert set(named) <= set(OBJECTS) | set(FAMILIES)
+    assert not set(named) & set(ALIKE)
 
 
 def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.config import load_config
+from kinematify.evaluation.fitting.categories import category_of
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
 from kinematify.evaluation.fitting.trees import fit_rigidity, fit_scorer, is_fixed, rigidity_odds
 from kinematify.joints.choice.judge import Judgement, lead_of
@@ -112,7 +113,7 @@ class RigidityRow:
 def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRow]:
     """What is fixed, by trees whose fit had nothing of the category; by set."""
     odds = np.zeros(len(examples))
-    folds = np.array(folds_of(examples, lambda example: example.category))
+    folds = np.array(folds_of(examples, category_of))
     for fold in sorted(set(folds.tolist())):
         fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
         judged = np.flatnonzero(folds == fold).tolist()

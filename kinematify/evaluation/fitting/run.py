@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify import __version__
+from kinematify.evaluation.fitting.categories import category_of
 from kinematify.evaluation.fitting.corpora import (
     GENERATED,
     broken_sources,
@@ -124,7 +125,7 @@ def fit_and_judge(
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
     write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
-    likely = {"left out by category": judge_left_out(examples, lambda example: example.category, progress)}
+    likely = {"left out by category": judge_left_out(examples, category_of, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
     shipped = [scorer.probabilities(example.kinds, example.measured) for example in examples]
@@ -202,7 +203,7 @@ def _draw(example: Example) -> float:
 
 def _surprises(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, float]:
     """Of the sets of real objects, left out by category."""
-    likely = judge_left_out(examples, lambda example: example.category, progress)
+    likely = judge_left_out(examples, category_of, progress)
     return {
         name: surprise_of([examples[k] for k in index], [likely[k] for k in index])
         for name, index in sets_of(examples).items()

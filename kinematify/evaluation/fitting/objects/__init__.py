@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.evaluation.fitting.objects import furniture, household, machines, pastimes, vehicles
+from kinematify.evaluation.fitting.objects import (
+    appliances,
+    furniture,
+    household,
+    machines,
+    openings,
+    pastimes,
+    storage,
+    vehicles,
+)
 from kinematify.evaluation.fitting.objects.draft import Draft, Hand
 
 if TYPE_CHECKING:
@@ -18,7 +27,7 @@ if TYPE_CHECKING:
 
 OBJECTS: Mapping[str, Callable[[Draft], None]] = {
     name: recipe
-    for module in (furniture, household, machines, pastimes, vehicles)
+    for module in (furniture, household, machines, pastimes, vehicles, openings, appliances, storage)
     for name, recipe in vars(module).items()
     if isinstance(recipe, FunctionType) and recipe.__module__ == module.__name__ and not name.startswith("_")
 }

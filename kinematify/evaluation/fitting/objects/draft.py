@@ -139,10 +139,19 @@ class Draft:
     # ---- joints ----------------------------------------------------------------------------------------------------
 
     def hinge(
-        self, child: str, parent: str, axis: Point, pivot: Point, upper: float, lower: float = 0.0, *, ajar: bool = True
+        self,
+        child: str,
+        parent: str,
+        axis: Point,
+        pivot: Point,
+        upper: float,
+        lower: float = 0.0,
+        *,
+        ajar: bool = True,
+        rest: float = 0.0,
     ) -> None:
-        """Let a part turn within limits [rad]."""
-        self._join("revolute", child, parent, axis, pivot, lower, upper, ajar)
+        """Let a part turn within limits [rad]; `rest` is where it stands unless it is drawn ajar."""
+        self._join("revolute", child, parent, axis, pivot, lower, upper, ajar, rest)
 
     def spin(self, child: str, parent: str, axis: Point, pivot: Point) -> None:
         """Let a part turn without end."""
@@ -166,9 +175,18 @@ class Draft:
         joint |= {"value": 0.0, "mimic": {"leader": leader, "multiplier": multiplier}}
 
     def _join(
-        self, kind: str, child: str, parent: str, axis: Point, pivot: Point, lower: float, upper: float, ajar: bool
+        self,
+        kind: str,
+        child: str,
+        parent: str,
+        axis: Point,
+        pivot: Point,
+        lower: float,
+        upper: float,
+        ajar: bool,
+        rest: float = 0.0,
     ) -> None:
-        value = self.hand.ajar * upper * self.u(0.3, 1.0) if ajar and self.maybe(0.7) else 0.0
+        value = self.hand.ajar * upper * self.u(0.3, 1.0) if ajar and self.maybe(0.7) else rest
         placed = {"axis": list(map(float, axis)), "pivot": list(map(float, pivot))}
         limits = {"lower": float(lower), "upper": float(upper), "value": value}
         self._joints.append({"type": kind, "child": child, "parent": parent, **placed, **limits})
@@ -202,5 +220,5 @@ def _seen(joint: BlueprintJoint, placed: FloatArray, mirrored: bool) -> Blueprin
 
 def spread(count: int, low: float, high: float) -> Sequence[float]:
     """Middles of `count` equal fields between two bounds [m]."""
-    step = (high - low) / count
+    step = (high - low) / max(count, 1)
     return [low + (k + 0.5) * step for k in range(count)]

@@ -1,0 +1,80 @@
+"""Which objects are of one category: what is judged left out by category is fitted to nothing of the same kind."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kinematify.evaluation.fitting.examples import Example
+
+ALIKE: Mapping[str, tuple[str, ...]] = {
+    "aircraft": ("light_aircraft",),
+    "bottle": ("spray_bottle", "soap_dispenser", "jar_with_clip"),
+    "box": ("toolbox", "treasure_chest", "jack_in_the_box", "bread_bin", "lidded_box"),
+    "button": ("button_panel", "control_box"),
+    "cabinet": (
+        "wardrobe",
+        "nightstand",
+        "kitchen_block",
+        "wall_cupboard",
+        "sideboard_with_sliding_doors",
+        "roller_shutter_cabinet",
+        "slab_cabinet",
+        "slab_wardrobe",
+        "doors_and_drawers",
+    ),
+    "cart": ("bar_cart", "shopping_cart", "tool_cart", "hand_truck", "pallet_truck"),
+    "clock": ("wall_clock",),
+    "coffee_machine": ("plain_coffee_machine",),
+    "desk_lamp": ("reading_lamp",),
+    "dishwasher": ("dishwasher_with_racks", "slab_dishwasher"),
+    "door": (
+        "interior_door",
+        "garage_door",
+        "revolving_door",
+        "room_door",
+        "double_door",
+        "dutch_door",
+        "sliding_room_door",
+        "folding_door",
+        "slab_garage_door",
+    ),
+    "drawer_cabinet": ("chest_of_drawers", "office_drawer_unit", "drawer_stack", "tray_rack"),
+    "fan": ("desk_fan", "tower_fan", "ceiling_fan"),
+    "faucet": ("tap", "shower_mixer"),
+    "fridge": ("slab_fridge",),
+    "gate": ("garden_gate", "slab_gate"),
+    "gimbal": ("camera_on_tripod",),
+    "kettle": ("plain_kettle",),
+    "kitchen_pot": ("pot_with_lid",),
+    "laptop": ("folding_phone",),
+    "microwave": ("slab_microwave",),
+    "office_chair": ("piano_stool",),
+    "oven": ("range_cooker", "slab_oven"),
+    "piano": ("upright_piano",),
+    "pliers": ("nutcracker",),
+    "safe": ("slab_safe",),
+    "satellite_dish": ("dish_antenna",),
+    "solar_panel": ("solar_tracker",),
+    "stapler": ("hole_punch",),
+    "suitcase": ("plain_suitcase",),
+    "switch": ("switch_panel", "knife_switch", "fuse_box"),
+    "table": ("gateleg_table", "desk_with_pedestal", "standing_desk", "drawer_table"),
+    "toaster": ("lever_toaster",),
+    "toilet": ("cistern",),
+    "trash_can": ("pedal_bin", "plain_bin"),
+    "valve": ("gate_valve", "ball_valve"),
+    "vehicle": ("box_car", "pickup_truck", "van", "bus_or_tram", "tractor"),
+    "washing_machine": ("top_loader", "round_door_washer"),
+    "window": ("casement_window", "sash_window", "house_shutters", "pane_window", "plain_sliding_window"),
+}
+"""Category -> recipes and families that are of it under other names; all others are what they are called."""
+
+_OF_NAME = {name: category for category, names in ALIKE.items() for name in names}
+
+
+def category_of(example: Example) -> str:
+    """The word that real objects of the same kind carry."""
+    return _OF_NAME.get(example.category, example.category)
