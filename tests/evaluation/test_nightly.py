@@ -26,6 +26,7 @@ from kinematify.evaluation.nightly.run import NightRequest, run_night
 from kinematify.evaluation.nightly.settings import NightlySettings, load_nightly
 from kinematify.evaluation.nightly.smoke import write_smoke_objects
 from kinematify.evaluation.nightly.store import accept, load_nights, locked
+from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def settings(data: Path, **changed: Any) -> NightlySettings:
-    quick = {"conditions": ["rest"], "sources": [], "engines": [], "data": str(data)}
+    quick = {"conditions": ["rest"], "sources": [], "pulled": [], "engines": [], "data": str(data)}
     return SETTINGS.model_copy(update={**quick, **changed})
 
 
@@ -203,6 +204,35 @@ def test_planted_axis_and_limit_faults_are_new_problems(tmp_path: Path) -> None:
     }
     assert ("new", "validation", "KV320") in against_sound, "the drawer leaves the cabinet"
     assert ("new", "accuracy", "limits") in against_sound
+
+
+def test_a_regression_that_only_engines_see_turns_the_night_red(tmp_path: Path) -> None:
+    """Parts, tree, joints and surfaces are the same; no hand moves the file as it is loaded."""
+    data, out = tmp_path / "data", tmp_path / "nights"
+    write_smoke_objects(data, ["a cabinet with one drawer"])
+    asked = {"sources": ["inferred"], "checks": ["KV3*", "KV8*"], "engines": ["mujoco"]}
+    sound = night(data, out, "planted_inferences:sound", **asked)
+    assert next(run.values["as_loaded"] for run in sound.night.runs if run.what == "validation") == 1.0
+    stuck = night(data, out, "planted_inferences:with_friction_in_the_wrong_unit", **asked)
+    gates = [change for change in stuck.night.changes if change.gate]
+    assert stuck.night.failed
+    assert "as_loaded" in {change.subject for change in gates}
+    assert {change.subject[:3] for change in gates} <= {"KV8", "as_"}, "neither accuracy nor geometry sees it"
+    assert "move as loaded" in (stuck.place / "index.html").read_text()
+
+
+def test_an_arm_opens_what_is_named_and_the_share_is_kept(tmp_path: Path) -> None:
+    data, out = tmp_path / "data", tmp_path / "nights"
+    (data / "cabinet").mkdir(parents=True)
+    write_drawer_cabinet(data / "cabinet" / "model.urdf")
+    opened = night(data, out, pulled=["*"], engines=["mujoco"])
+    (run,) = (run for run in opened.night.runs if run.case == "pulled")
+    assert run.values["opened"] is not None
+    assert run.values["opened"] > 0.9
+    assert set(run.families) == {"KV7"}
+    worse = replace(run, values={**run.values, "opened": 0.3})
+    found = compare([worse], {run.place: [run]}, SETTINGS, same_machine=True)
+    assert [(change.kind, change.subject, change.gate) for change in found] == [(Class.WORSE, "opened", True)]
 
 
 # Killed and resumed.

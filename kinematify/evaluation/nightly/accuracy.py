@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 LESS_IS_BETTER = ("angle_deg", "line_m", "ted")
 MORE_IS_BETTER = ("types", "root", "limit_iou", "opens")
+AS_LOADED, OPENED = "as_loaded", "opened"
+"""Metrics of a validation: shares of joints that move as loaded, and of ranges that an arm opens."""
 METRICS = (*LESS_IS_BETTER, *MORE_IS_BETTER)
 UNITS = {"angle_deg": "deg", "line_m": "m"}
 

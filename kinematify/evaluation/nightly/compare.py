@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.nightly.accuracy import MORE_IS_BETTER, UNITS
+from kinematify.evaluation.nightly.accuracy import AS_LOADED, MORE_IS_BETTER, OPENED, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -132,13 +132,11 @@ def _unanswered(run: Run, same: Run, settings: NightlySettings) -> Iterator[Chan
 
 
 def _metrics(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
-    if run.what != "accuracy":
-        return
     for metric, slack in settings.gates.model_dump().items():
         before, now = same.values.get(metric), run.values.get(metric)
         if before is None or now is None:
             continue
-        worse = before - now if metric in MORE_IS_BETTER else now - before
+        worse = before - now if metric in (*MORE_IS_BETTER, AS_LOADED, OPENED) else now - before
         if abs(worse) > slack:
             unit = f" {UNITS[metric]}" if metric in UNITS else ""
             text = f"from {before:.4g} to {now:.4g}{unit}"

@@ -39,7 +39,7 @@ class Run:
     category: str
     what: What
     case: str
-    """Condition of the benchmark, or ``truth`` or ``inferred``."""
+    """Condition of the benchmark, or ``truth``, ``inferred`` or ``pulled``."""
     status: str
     """``ok``, ``error``, ``timeout``, ``crash``, ``unreadable``; of a validation its verdict, if it came to one."""
     message: str = ""

@@ -22,7 +22,7 @@ from kinematify.evaluation.nightly.junit import as_junit
 from kinematify.evaluation.nightly.pages.night import night_page
 from kinematify.evaluation.nightly.pages.trends import trend_page
 from kinematify.evaluation.nightly.record import RUN, SCHEMA
-from kinematify.evaluation.nightly.scenario import accuracy_scenario, digest, validation_scenario
+from kinematify.evaluation.nightly.scenario import PULLED, accuracy_scenario, digest, validation_scenario
 from kinematify.evaluation.nightly.smoke import write_smoke_objects
 from kinematify.evaluation.nightly.state import open_state
 from kinematify.evaluation.nightly.store import (
@@ -202,8 +202,9 @@ class _Work:
         ]
 
     def _validations(self) -> Iterator[NightValidation]:
+        pulled = {item.name for item in matching(self.objects, self.settings.pulled)} if self.settings.pulled else ()
         for item in self.objects:
-            for source in self.settings.sources:
+            for source in (*self.settings.sources, *([PULLED] if item.name in pulled else [])):
                 yield NightValidation(
                     item=item,
                     scenario=validation_scenario(item, source, self.settings, self.thresholds),
@@ -212,8 +213,8 @@ class _Work:
                     infer_config=self.settings.infer_config,
                     validation_config=self.settings.validation_config,
                     engines=tuple(self.settings.engines),
-                    checks=tuple(self.settings.checks),
-                    budget=self.settings.budget,
+                    checks=("KV7*",) if source == PULLED else tuple(self.settings.checks),
+                    budget=self.settings.pull_budget if source == PULLED else self.settings.budget,
                     pages=self.pages,
                 )
 

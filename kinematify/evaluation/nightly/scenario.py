@@ -13,11 +13,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kinematify.manipulation.request import PULL
+
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
     from kinematify.evaluation.datasets import BenchObject, Condition
     from kinematify.evaluation.nightly.settings import NightlySettings
 
+PULLED = "pulled"
+"""Source of a validation in which an arm opens the published model."""
 _JUDGES = ("problem_angle", "problem_line", "problem_limits")
 """Settings that say from when on a joint is wrong."""
 
@@ -47,7 +51,7 @@ def validation_scenario(
             "source": source,
             "config": Path(settings.infer_config).stem if source == "inferred" else None,
             "engines": list(settings.engines),
-            "checks": list(settings.checks),
+            "checks": [f"{PULL} within {settings.pull_budget:g} s"] if source == PULLED else list(settings.checks),
             "thresholds": thresholds.model_dump(mode="json"),
         }
     )

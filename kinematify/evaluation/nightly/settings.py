@@ -29,6 +29,10 @@ class GateSettings(StageConfig):
     """Mean overlap of limits."""
     opens: float = Field(ge=0.0)
     """Share of joints that open in the positive direction."""
+    as_loaded: float = Field(ge=0.0)
+    """Share of joints that move in the untouched file, in the engine that moves the fewest."""
+    opened: float = Field(ge=0.0)
+    """Mean share of the ranges that an arm opens."""
 
 
 class SmokeSettings(StageConfig):
@@ -58,6 +62,10 @@ class NightlySettings(StageConfig):
     """Poses in which every object is inferred."""
     sources: list[Literal["truth", "inferred"]]
     """Models of every object that are validated."""
+    pulled: list[str]
+    """Names or patterns of objects whose published model an arm opens."""
+    pull_budget: float = Field(gt=0.0)
+    """Time budget of that [s]."""
     engines: list[Literal["mujoco", "pybullet", "pinocchio"]]
     """Engines of the validation."""
     checks: list[str] = Field(min_length=1)

@@ -8,14 +8,19 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
+from statistics import fmean
 from typing import TYPE_CHECKING, Literal
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject
 from kinematify.evaluation.job import erased_item, imported, shown_parts
+from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.record import Problem, Run
-from kinematify.model.urdf import write_urdf
+from kinematify.evaluation.nightly.scenario import PULLED
+from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
@@ -31,6 +36,8 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.report import ValidationReport
 
+_OPENED = " opened"
+"""After the name of a joint, in what KV705 measures."""
 _STATES = ("fail", "warn", "blocked", "pass", "skipped")
 """Of a family, the worst first; skipped only where nothing else is left, for much does not apply to every model."""
 
@@ -42,7 +49,7 @@ class NightValidation:
     item: BenchObject
     scenario: str
     source: str
-    """``truth``: the file as it is; ``inferred``: what the inference makes of its parts at rest."""
+    """``truth``: the file as it is; ``inferred``: what `kinematify infer` writes of its parts at rest; `PULLED`."""
     infer: str
     """Function under test, as ``module:name``."""
     infer_config: str
@@ -84,6 +91,7 @@ def run_validation(validation: NightValidation) -> Run:
             settings=_patient(load_settings(validation.validation_config), validation.budget),
             selected=selected,
             engines=validation.engines,
+            task=TaskRequest(kind=PULL) if validation.source == PULLED else None,
             workers=1,
         )
         if validation.pages is not None:
@@ -111,8 +119,7 @@ def _inferred(validation: NightValidation, folder: Path) -> Path:
     """Write the model that the inference makes of the anonymous parts of an object at rest."""
     parts = shown_parts(erased_item(validation.item, CONDITIONS[0]))
     inference = imported(validation.infer)(parts, config=load_config(validation.infer_config))
-    write_urdf(inference.model, folder)
-    return folder / "model.urdf"
+    return write_model(simulable_model(inference.model, inference.config).robot, folder)
 
 
 def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings:
@@ -141,11 +148,25 @@ def kept(validation: NightValidation, report: ValidationReport, seconds: float, 
     }
     return replace(
         validation.run(report.verdict, seconds),
-        values={name: float(count) for name, count in counts.items()},
+        values={**{name: float(count) for name, count in counts.items()}, **_shares(checks)},
         problems=_problems(checks),
         not_run=left,
         families=_families(checks),
     )
+
+
+def _shares(checks: Sequence[CheckResult]) -> dict[str, float]:
+    """Shares of joints that move as loaded, in the engine that moves the fewest, and of ranges that an arm opens."""
+    moved = [item.measured for item in checks if item.check == "KV804" and item.measured.get("joints")]
+    opened = [
+        value
+        for item in checks
+        if item.check == "KV705"
+        for name, value in item.measured.items()
+        if name.endswith(_OPENED)
+    ]
+    found = {AS_LOADED: min(item["right"] / item["joints"] for item in moved)} if moved else {}
+    return found | ({OPENED: fmean(opened)} if opened else {})
 
 
 def check_key(item: CheckResult | Finding) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.compare import QUALITY, Class
 from kinematify.evaluation.nightly.store import MODELS
 from kinematify.evaluation.nightly.validity import page_name
@@ -28,6 +29,7 @@ METRIC_TITLES = {
     "limit_iou": "limit overlap",
     "opens": "opens right",
 }
+_COUNTED = ("errors", "warnings", "move as loaded", "opened by an arm", "s")
 METRIC_SCALES = {"line_m": 1000.0}
 
 
@@ -125,12 +127,14 @@ def _matrix(night: Night, pages: Collection[str]) -> list[str]:
             *(run.families.get(family, "") for family in families),
             f"{run.values.get('errors') or 0:.0f}",
             f"{run.values.get('warnings') or 0:.0f}",
+            _metric(run, AS_LOADED),
+            _metric(run, OPENED),
             f"{run.seconds:.1f}",
         )
         for run in runs
     ]
-    headings = ("object", "model", "verdict", *(f"{f} {FAMILIES[f]}" for f in families), "errors", "warnings", "s")
-    classes = ("", "", "state", *["state"] * len(families), "number", "number", "number")
+    headings = ("object", "model", "verdict", *(f"{f} {FAMILIES[f]}" for f in families), *_COUNTED)
+    classes = ("", "", "state", *["state"] * len(families), *["number"] * len(_COUNTED))
     return ["<h2>Validation</h2>", _legend(), table(headings, rows, name="validation", classes=classes)]
 
 
@@ -142,7 +146,8 @@ def _model(run: Run, pages: Collection[str]) -> str:
 
 def _legend() -> str:
     return (
-        '<p class="faint">truth: the published model; inferred: what the inference makes of its parts at rest. '
+        '<p class="faint">truth: the published model; inferred: what the inference makes of its parts at rest; '
+        "pulled: the published model, opened by an arm. "
         "Skipped: none of the family's checks applied; blocked: something kept a check from running.</p>"
     )
 

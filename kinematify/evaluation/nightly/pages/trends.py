@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import TYPE_CHECKING
 
+from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.pages.night import METRIC_SCALES, METRIC_TITLES
+from kinematify.evaluation.nightly.scenario import PULLED
 from kinematify.validation.formats.chart import Axes, Series, line_chart, sparkline
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
@@ -110,8 +112,18 @@ def _measures() -> list[tuple[str, str, Callable[[Sequence[Run]], float | None]]
         ("inference", "time [s]", _seconds("accuracy")),
         ("findings, published model", "errors and warnings", _findings("truth")),
         ("findings, inferred model", "errors and warnings", _findings("inferred")),
+        ("joints that move as loaded, inferred model", "", _share(AS_LOADED, "inferred")),
+        ("opened by an arm", "", _share(OPENED, PULLED)),
         ("validation", "time [s]", _seconds("validation")),
     ]
+
+
+def _share(metric: str, case: str) -> Callable[[Sequence[Run]], float | None]:
+    def value(runs: Sequence[Run]) -> float | None:
+        known = [run.values[metric] for run in runs if run.case == case and run.values.get(metric) is not None]
+        return fmean(item for item in known if item is not None) if known else None
+
+    return value
 
 
 def _metric_value(metric: str) -> Callable[[Sequence[Run]], float | None]:
