@@ -6,6 +6,7 @@ import os
 import shutil
 import time
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -202,9 +203,9 @@ class _Work:
         ]
 
     def _validations(self) -> Iterator[NightValidation]:
-        pulled = {item.name for item in matching(self.objects, self.settings.pulled)} if self.settings.pulled else ()
         for item in self.objects:
-            for source in (*self.settings.sources, *([PULLED] if item.name in pulled else [])):
+            pulled = any(fnmatchcase(item.name, pattern) for pattern in self.settings.pulled)
+            for source in (*self.settings.sources, *([PULLED] if pulled else [])):
                 yield NightValidation(
                     item=item,
                     scenario=validation_scenario(item, source, self.settings, self.thresholds),
