@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from kinematify.config import PreviewConfig
     from kinematify.generate.blueprint import Blueprint
-    from kinematify.generate.procedural.family import Family, Parameter
+    from kinematify.generate.procedural.family import Family
+    from kinematify.generate.procedural.parameter import Parameter
     from kinematify.model.kinematic_model import KinematicModel
 
 PAGE = "gallery.md"

@@ -11,6 +11,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
+from kinematify.generate.procedural.parameter import angle, choice, length, share
 from kinematify.generate.procedural.styles import STYLES
 from kinematify.generate.procedural.workshop import Workshop
 from kinematify.robot.joint_type import JointType
@@ -19,32 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from kinematify.generate.blueprint import Blueprint
-
-Value = float | int | str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Parameter:
-    """One thing that may be asked for."""
-
-    name: str
-    default: Value
-    """Its type is the parameter's: float with a unit, int for a count, str for a choice."""
-    help: str
-    unit: str = ""
-    """``m``, ``rad`` or empty."""
-    bounds: tuple[float, float] | None = None
-    """Values that can be built, both ends included."""
-    usual: tuple[float, float] | None = None
-    """Values that a seed draws from; the default alone if absent."""
-    choices: tuple[str, ...] = ()
-    """Of a choice; a seed draws from all of them."""
-    words: tuple[str, ...] = ()
-    """How people call what is counted, measured or chosen, singular; the name itself and its singular count anyway."""
-    choice_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """How people call a choice, besides its own name."""
-    drawn: bool = True
-    """False: a seed draws no value, and no number either, so that what else it draws stays the same without it."""
+    from kinematify.generate.procedural.parameter import Parameter, Value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,42 +72,30 @@ class Values:
 
 
 COMMON = (
-    Parameter(name="open", default=0.0, bounds=(0.0, 1.0), help="Share of the way that moving parts stand open."),
-    Parameter(
-        name="clearance",
-        default=0.001,
-        unit="m",
-        bounds=(0.0, 0.003),
-        usual=(0.0002, 0.003),
-        help="Gap between parts that move past each other.",
-    ),
-    Parameter(name="style", default="clean", choices=STYLES, help="Of the meshes: as drawn, or as from elsewhere."),
-    Parameter(name="material", default="", choices=("", *MATERIALS), help="What the base is made of."),
-    Parameter(name="color", default="", choices=("", *COLORS), help="Colour of what names no material of its own."),
-    Parameter(
-        name="handle_material",
-        default="metal",
-        choices=tuple(MATERIALS),
-        help="What handles are made of.",
+    share("open", 0.0, (0.0, 1.0), "Share of the way that moving parts stand open."),
+    length("clearance", 0.001, (0.0, 0.003), "Gap between parts that move past each other.", usual=(0.0002, 0.003)),
+    choice("style", STYLES, "Of the meshes: as drawn, or as from elsewhere."),
+    choice("material", ("", *MATERIALS), "What the base is made of."),
+    choice("color", ("", *COLORS), "Colour of what names no material of its own."),
+    choice(
+        "handle_material",
+        ("metal", *(name for name in MATERIALS if name != "metal")),
+        "What handles are made of.",
         drawn=False,
     ),
-    Parameter(
-        name="handle_color", default="", choices=("", *COLORS), help="Colour of handles, if painted.", drawn=False
-    ),
-    Parameter(
-        name="open_angle",
-        default=0.0,
-        unit="rad",
-        bounds=(0.0, math.pi),
-        help="How far hinges stand open instead of a share; slides stay closed.",
+    choice("handle_color", ("", *COLORS), "Colour of handles, if painted.", drawn=False),
+    angle(
+        "open_angle",
+        0.0,
+        (0.0, math.pi),
+        "How far hinges stand open instead of a share; slides stay closed.",
         drawn=False,
     ),
-    Parameter(
-        name="open_distance",
-        default=0.0,
-        unit="m",
-        bounds=(0.0, 5.0),
-        help="How far slides stand open instead of a share; hinges stay closed.",
+    length(
+        "open_distance",
+        0.0,
+        (0.0, 5.0),
+        "How far slides stand open instead of a share; hinges stay closed.",
         drawn=False,
     ),
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.generate.procedural.family import Parameter
+    from kinematify.generate.procedural.parameter import Parameter
 
 PARAMETER_HEADINGS = ("parameter", "default", "values", "what it is")
 

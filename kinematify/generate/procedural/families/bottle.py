@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box, cylinder, turned
 
@@ -112,30 +113,18 @@ FAMILY = Family(
     words=("bottle", "water bottle", "wine bottle", "drinking bottle", "flask", "milk bottle", "bottle of water"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="width",
-            default=0.075,
-            unit="m",
-            bounds=(0.04, 0.3),
-            usual=(0.055, 0.1),
-            words=("diameter",),
-            help="Outer diameter.",
-        ),
-        Parameter(
-            name="height", default=0.24, unit="m", bounds=(0.1, 0.6), usual=(0.16, 0.32), help="Without the cap."
-        ),
-        Parameter(name="neck", default=0.03, unit="m", bounds=(0.024, 0.08), usual=(0.026, 0.04), help="Its diameter."),
-        Parameter(
-            name="cap",
-            default="screw",
-            choices=("screw", "pull", "flip"),
-            words=("lid", "top"),
-            help="How it opens.",
-            choice_words={
-                "screw": ("screw top", "screw on", "twist", "twist off", "twisting"),
-                "pull": ("stopper", "cork", "plug", "push on", "pull off"),
-                "flip": ("flip top", "hinged", "flip up", "snap"),
+        length("width", 0.075, (0.04, 0.3), "Outer diameter.", usual=(0.055, 0.1), words="diameter"),
+        length("height", 0.24, (0.1, 0.6), "Without the cap.", usual=(0.16, 0.32)),
+        length("neck", 0.03, (0.024, 0.08), "Its diameter.", usual=(0.026, 0.04)),
+        choice(
+            "cap",
+            {
+                "screw": "screw top, screw on, twist, twist off, twisting",
+                "pull": "stopper, cork, plug, push on, pull off",
+                "flip": "flip top, hinged, flip up, snap",
             },
+            "How it opens.",
+            words="lid, top",
         ),
     ),
     build=_build,

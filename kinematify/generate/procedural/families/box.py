@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box, cylinder, tray
 
@@ -84,58 +85,25 @@ def _loose(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="box",
     title="box with a lid",
-    words=(
-        "box",
-        "chest box",
-        "treasure chest",
-        "treasure chest box",
-        "toolbox",
-        "tool box",
-        "jewelry box",
-        "jewellery box",
-        "crate",
-        "case",
-        "container",
-        "casket",
-        "trunk",
-        "lunch box",
-        "pencil box",
-        "storage box",
+    words=phrases(
+        "box, chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, "
+        "crate, case, container, casket, trunk, lunch box, pencil box, storage box"
     ),
     material="wood",
     parameters=(
-        Parameter(name="width", default=0.3, unit="m", bounds=(0.06, 2.0), usual=(0.15, 0.6), help="Outer width."),
-        Parameter(name="depth", default=0.2, unit="m", bounds=(0.05, 1.5), usual=(0.1, 0.4), help="Outer depth."),
-        Parameter(
-            name="height", default=0.15, unit="m", bounds=(0.04, 1.5), usual=(0.06, 0.35), help="Without the lid."
+        length("width", 0.3, (0.06, 2.0), "Outer width.", usual=(0.15, 0.6)),
+        length("depth", 0.2, (0.05, 1.5), "Outer depth.", usual=(0.1, 0.4)),
+        length("height", 0.15, (0.04, 1.5), "Without the lid.", usual=(0.06, 0.35)),
+        length("wall", 0.006, (0.003, 0.015), "Of the boards.", usual=(0.004, 0.012)),
+        choice(
+            "lid",
+            {"hinged": "hinge, flip", "sliding": "slide, slider", "loose": "lift off, removable"},
+            "How the lid moves.",
         ),
-        Parameter(
-            name="wall", default=0.006, unit="m", bounds=(0.003, 0.015), usual=(0.004, 0.012), help="Of the boards."
+        choice(
+            "hinge", ("edge", "barrel", "piano"), "Of a hinged lid: hidden, two barrels, or one along the whole edge."
         ),
-        Parameter(
-            name="lid",
-            default="hinged",
-            choices=("hinged", "sliding", "loose"),
-            help="How the lid moves.",
-            choice_words={
-                "hinged": ("hinge", "flip"),
-                "sliding": ("slide", "slider"),
-                "loose": ("lift off", "removable"),
-            },
-        ),
-        Parameter(
-            name="hinge",
-            default="edge",
-            choices=("edge", "barrel", "piano"),
-            help="Of a hinged lid: hidden, two barrels, or one along the whole edge.",
-        ),
-        Parameter(
-            name="top",
-            default="flat",
-            choices=("flat", "round"),
-            help="Of a hinged lid.",
-            choice_words={"round": ("vaulted", "domed", "curved")},
-        ),
+        choice("top", {"flat": "", "round": "vaulted, domed, curved"}, "Of a hinged lid."),
     ),
     build=_build,
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length, share
 from kinematify.generate.procedural.solids import bore, cylinder, ring, turned, union
 
 if TYPE_CHECKING:
@@ -80,27 +81,22 @@ FAMILY = Family(
     words=("bucket", "pail", "water bucket", "paint bucket", "cleaning bucket"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="width",
-            default=0.28,
-            unit="m",
-            bounds=(0.12, 0.8),
+        length(
+            "width",
+            0.28,
+            (0.12, 0.8),
+            "Outer diameter of the rim, without the bead.",
             usual=(0.2, 0.36),
-            words=("diameter",),
-            help="Outer diameter of the rim, without the bead.",
+            words="diameter",
         ),
-        Parameter(name="height", default=0.27, unit="m", bounds=(0.1, 0.8), usual=(0.2, 0.35), help="To the rim."),
-        Parameter(name="taper", default=0.72, bounds=(0.5, 0.95), usual=(0.62, 0.85), help="Foot over rim."),
-        Parameter(
-            name="wire", default=0.003, unit="m", bounds=(0.002, 0.006), usual=(0.0025, 0.004), help="Its radius."
-        ),
-        Parameter(
-            name="handle",
-            default="grip",
-            choices=("grip", "wire"),
-            words=("bail",),
-            help="A bail with a grip around its top, or the wire alone.",
-            choice_words={"grip": ("with a grip",), "wire": ("bare wire",)},
+        length("height", 0.27, (0.1, 0.8), "To the rim.", usual=(0.2, 0.35)),
+        share("taper", 0.72, (0.5, 0.95), "Foot over rim.", usual=(0.62, 0.85)),
+        length("wire", 0.003, (0.002, 0.006), "Its radius.", usual=(0.0025, 0.004)),
+        choice(
+            "handle",
+            {"grip": "with a grip", "wire": "bare wire"},
+            "A bail with a grip around its top, or the wire alone.",
+            words="bail",
         ),
     ),
     build=_build,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.solids import box
 
@@ -58,46 +59,20 @@ def _add_buttons(values: Values, workshop: Workshop, bottom: float, top: float) 
 FAMILY = Family(
     name="button_panel",
     title="button panel",
-    words=(
-        "button panel",
-        "keypad",
-        "control panel",
-        "push button panel",
-        "number pad",
-        "elevator panel",
-        "key pad",
-        "remote control",
-        "calculator",
+    words=phrases(
+        "button panel, keypad, control panel, push button panel, number pad, elevator panel, key pad, "
+        "remote control, calculator"
     ),
     material="plastic",
     parameters=(
-        Parameter(name="width", default=0.12, unit="m", bounds=(0.06, 0.6), usual=(0.08, 0.25), help="Outer width."),
-        Parameter(name="height", default=0.18, unit="m", bounds=(0.08, 0.8), usual=(0.12, 0.3), help="Outer height."),
-        Parameter(name="depth", default=0.03, unit="m", bounds=(0.02, 0.2), usual=(0.02, 0.06), help="Of the housing."),
-        Parameter(
-            name="buttons",
-            default=12,
-            bounds=(1, 24),
-            usual=(2, 16),
-            words=("key", "push button"),
-            help="In rows, from the top left.",
-        ),
-        Parameter(name="columns", default=3, bounds=(1, 6), usual=(1, 4), words=("column",), help="Of buttons."),
-        Parameter(name="knobs", default=0, bounds=(0, 4), usual=(0, 3), words=("dial",), help="Above the buttons."),
-        Parameter(
-            name="shape",
-            default="square",
-            choices=("square", "round"),
-            help="Of the buttons.",
-            choice_words={"square": ("rectangular",), "round": ("circular",)},
-        ),
-        Parameter(
-            name="display",
-            default="none",
-            choices=("none", "display"),
-            help="A recess for a screen.",
-            choice_words={"display": ("screen",)},
-        ),
+        length("width", 0.12, (0.06, 0.6), "Outer width.", usual=(0.08, 0.25)),
+        length("height", 0.18, (0.08, 0.8), "Outer height.", usual=(0.12, 0.3)),
+        length("depth", 0.03, (0.02, 0.2), "Of the housing.", usual=(0.02, 0.06)),
+        counted("buttons", 12, (1, 24), "In rows, from the top left.", usual=(2, 16), words="key, push button"),
+        counted("columns", 3, (1, 6), "Of buttons.", usual=(1, 4), words="column"),
+        counted("knobs", 0, (0, 4), "Above the buttons.", usual=(0, 3), words="dial"),
+        choice("shape", {"square": "rectangular", "round": "circular"}, "Of the buttons."),
+        choice("display", {"none": "", "display": "screen"}, "A recess for a screen."),
     ),
     build=_build,
 )

@@ -5,8 +5,9 @@ from __future__ import annotations
 from itertools import count
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.layout import parse_layout
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, carcass
 from kinematify.generate.procedural.pieces.handles import HANDLES
 
@@ -91,62 +92,25 @@ _KINDS: dict[str, Mapping[str, float | int | str]] = {
 FAMILY = Family(
     name="cabinet",
     title="cabinet or chest",
-    words=(
-        "cabinet",
-        "cupboard",
-        "wardrobe",
-        "closet",
-        "chest",
-        "chest of drawers",
-        "dresser",
-        "sideboard",
-        "nightstand",
-        "bedside table",
-        "drawer unit",
-        "commode",
-        "locker",
-        "bookcase",
-        "shelf",
-        "pantry",
-        "credenza",
-        "kitchen unit",
-        "base unit",
-        "wall unit",
-        "tv stand",
-        "tv unit",
-        "tallboy",
-        "storage unit",
-        "filing cabinet",
-        "file cabinet",
-        "bureau",
-        "chiffonier",
-        "vitrine",
-        "armoire",
+    words=phrases(
+        "cabinet, cupboard, wardrobe, closet, chest, chest of drawers, dresser, sideboard, nightstand, "
+        "bedside table, drawer unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, "
+        "wall unit, tv stand, tv unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, "
+        "vitrine, armoire"
     ),
     material="wood",
     kinds=_KINDS,
     parameters=(
-        Parameter(name="width", default=0.8, unit="m", bounds=(0.1, 5.0), usual=(0.4, 1.2), help="Outer width."),
-        Parameter(name="height", default=0.9, unit="m", bounds=(0.1, 4.0), usual=(0.5, 1.8), help="Outer height."),
-        Parameter(name="depth", default=0.5, unit="m", bounds=(0.1, 2.0), usual=(0.3, 0.6), help="Outer depth."),
-        Parameter(
-            name="wall",
-            default=0.018,
-            unit="m",
-            bounds=(0.004, 0.05),
-            usual=(0.012, 0.025),
-            help="Of the boards.",
-        ),
-        Parameter(name="doors", default=2, bounds=(0, 12), usual=(0, 3), help="Doors, side by side."),
-        Parameter(name="drawers", default=3, bounds=(0, 12), usual=(1, 4), help="Drawers, stacked below the doors."),
-        Parameter(
-            name="shelves", default=0, bounds=(0, 12), words=("shelf", "open shelf", "compartment"), help="Open fields."
-        ),
-        Parameter(
-            name="layout", default="", help="Any other arrangement, e.g. '(3*drawer) | door'; overrides the counts."
-        ),
-        Parameter(name="handle", default="bar", choices=HANDLES, help="What doors and drawers are pulled by."),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+        length("width", 0.8, (0.1, 5.0), "Outer width.", usual=(0.4, 1.2)),
+        length("height", 0.9, (0.1, 4.0), "Outer height.", usual=(0.5, 1.8)),
+        length("depth", 0.5, (0.1, 2.0), "Outer depth.", usual=(0.3, 0.6)),
+        length("wall", 0.018, (0.004, 0.05), "Of the boards.", usual=(0.012, 0.025)),
+        counted("doors", 2, (0, 12), "Doors, side by side.", usual=(0, 3)),
+        counted("drawers", 3, (0, 12), "Drawers, stacked below the doors.", usual=(1, 4)),
+        counted("shelves", 0, (0, 12), "Open fields.", words="shelf, open shelf, compartment"),
+        choice("layout", (), "Any other arrangement, e.g. '(3*drawer) | door'; overrides the counts."),
+        choice("handle", HANDLES, "What doors and drawers are pulled by."),
+        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length, share
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, off
 
 if TYPE_CHECKING:
@@ -79,26 +80,12 @@ FAMILY = Family(
     words=("clock", "wall clock", "kitchen clock", "station clock", "table clock", "analog clock", "watch"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="width",
-            default=0.3,
-            unit="m",
-            bounds=(0.12, 1.0),
-            usual=(0.2, 0.45),
-            words=("diameter",),
-            help="Outer width or diameter.",
-        ),
-        Parameter(name="depth", default=0.05, unit="m", bounds=(0.04, 0.12), usual=(0.04, 0.07), help="Of the case."),
-        Parameter(name="frame", default=0.015, unit="m", bounds=(0.006, 0.03), usual=(0.01, 0.025), help="Of the rim."),
-        Parameter(name="hands", default=3, bounds=(1, 3), usual=(2, 3), words=("hand", "pointer"), help="Hours first."),
-        Parameter(name="time", default=10.15, bounds=(0.0, 12.0), usual=(0.0, 12.0), help="That it shows [h]."),
-        Parameter(
-            name="shape",
-            default="round",
-            choices=("round", "square"),
-            help="Of the case.",
-            choice_words={"square": ("rectangular",), "round": ("circular",)},
-        ),
+        length("width", 0.3, (0.12, 1.0), "Outer width or diameter.", usual=(0.2, 0.45), words="diameter"),
+        length("depth", 0.05, (0.04, 0.12), "Of the case.", usual=(0.04, 0.07)),
+        length("frame", 0.015, (0.006, 0.03), "Of the rim.", usual=(0.01, 0.025)),
+        counted("hands", 3, (1, 3), "Hours first.", usual=(2, 3), words="hand, pointer"),
+        share("time", 10.15, (0.0, 12.0), "That it shows [h].", usual=(0.0, 12.0)),
+        choice("shape", {"round": "circular", "square": "rectangular"}, "Of the case."),
     ),
     build=_build,
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, room
@@ -158,22 +159,16 @@ FAMILY = Family(
     words=("coffee machine", "coffee maker", "espresso machine", "coffeemaker", "coffee brewer", "coffee pot"),
     material="plastic",
     parameters=(
-        Parameter(name="width", default=0.22, unit="m", bounds=(0.16, 0.8), usual=(0.18, 0.3), help="Outer width."),
-        Parameter(name="depth", default=0.26, unit="m", bounds=(0.22, 0.5), usual=(0.24, 0.34), help="Outer depth."),
-        Parameter(name="height", default=0.34, unit="m", bounds=(0.28, 0.6), usual=(0.3, 0.42), help="Outer height."),
-        Parameter(
-            name="kind",
-            default="filter",
-            choices=("filter", "espresso"),
-            help="A jug under a filter, or portafilters.",
-            choice_words={"filter": ("drip", "jug", "carafe"), "espresso": ("portafilter",)},
+        length("width", 0.22, (0.16, 0.8), "Outer width.", usual=(0.18, 0.3)),
+        length("depth", 0.26, (0.22, 0.5), "Outer depth.", usual=(0.24, 0.34)),
+        length("height", 0.34, (0.28, 0.6), "Outer height.", usual=(0.3, 0.42)),
+        choice(
+            "kind", {"filter": "drip, jug, carafe", "espresso": "portafilter"}, "A jug under a filter, or portafilters."
         ),
-        Parameter(
-            name="groups", default=1, bounds=(1, 3), usual=(1, 2), words=("group", "spout"), help="For espresso."
-        ),
-        Parameter(name="buttons", default=2, bounds=(0, 5), usual=(0, 4), words=("key",), help="In a row."),
-        Parameter(name="button", default="square", choices=("square", "round"), help="Their shape."),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Of the filter: hidden or visible."),
+        counted("groups", 1, (1, 3), "For espresso.", usual=(1, 2), words="group, spout"),
+        counted("buttons", 2, (0, 5), "In a row.", usual=(0, 4), words="key"),
+        choice("button", ("square", "round"), "Their shape."),
+        choice("hinge", ("edge", "barrel"), "Of the filter: hidden or visible."),
     ),
     build=_build,
 )

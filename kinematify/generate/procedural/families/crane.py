@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, off, rod, union
@@ -170,39 +171,15 @@ FAMILY = Family(
     words=("crane", "tower crane", "mobile crane", "construction crane", "hoist"),
     material="steel",
     parameters=(
-        Parameter(
-            name="kind",
-            default="tower",
-            choices=("tower", "mobile"),
-            help="A tower with a trolley on its jib, or a boom on tracks.",
-            choice_words={"mobile": ("crawler", "tracked", "telescopic", "telescoping")},
+        choice(
+            "kind",
+            {"tower": "", "mobile": "crawler, tracked, telescopic, telescoping"},
+            "A tower with a trolley on its jib, or a boom on tracks.",
         ),
-        Parameter(
-            name="height",
-            default=3.0,
-            unit="m",
-            bounds=(1.5, 20.0),
-            usual=(2.0, 5.0),
-            help="Of a tower; sets the scale.",
-        ),
-        Parameter(
-            name="jib",
-            default=2.4,
-            unit="m",
-            bounds=(1.0, 20.0),
-            usual=(1.6, 3.0),
-            words=("jib", "boom"),
-            help="Its length; of a boom drawn out.",
-        ),
-        Parameter(
-            name="sections",
-            default=2,
-            bounds=(0, 4),
-            usual=(0, 3),
-            words=("section",),
-            help="That a boom lengthens by.",
-        ),
-        Parameter(name="wheels", default=0, bounds=(0, 4), usual=(0, 3), words=("wheel",), help="Seen on each side."),
+        length("height", 3.0, (1.5, 20.0), "Of a tower; sets the scale.", usual=(2.0, 5.0)),
+        length("jib", 2.4, (1.0, 20.0), "Its length; of a boom drawn out.", usual=(1.6, 3.0), words="jib, boom"),
+        counted("sections", 2, (0, 4), "That a boom lengthens by.", usual=(0, 3), words="section"),
+        counted("wheels", 0, (0, 4), "Seen on each side.", usual=(0, 3), words="wheel"),
     ),
     build=_build,
 )

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
 from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button, add_knob
 from kinematify.generate.procedural.solids import ball, cylinder, rod
@@ -83,22 +84,22 @@ def _add_switch(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="desk_lamp",
     title="desk lamp",
-    words=("desk lamp", "lamp", "table lamp", "reading lamp", "task lamp", "work lamp", "desk light"),
+    words=phrases("desk lamp, lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light"),
     material="metal",
     part_words={"arm": ("arm segment", "segment")},
     parameters=(
-        Parameter(
-            name="joints",
-            default=3,
-            bounds=(1, 4),
+        counted(
+            "joints",
+            3,
+            (1, 4),
+            "Hinges; the fourth lets the post turn.",
             usual=(1, 4),
-            words=("joint", "hinge", "degree of freedom", "dof"),
-            help="Hinges; the fourth lets the post turn.",
+            words="joint, hinge, degree of freedom, dof",
         ),
-        Parameter(name="arm", default=0.3, unit="m", bounds=(0.15, 0.8), usual=(0.2, 0.4), help="Length of an arm."),
-        Parameter(name="base", default=0.09, unit="m", bounds=(0.06, 0.2), usual=(0.07, 0.12), help="Radius."),
-        Parameter(name="shade", default=0.06, unit="m", bounds=(0.03, 0.12), usual=(0.045, 0.08), help="Radius."),
-        Parameter(name="switch", default="none", choices=("none", "button", "knob"), help="On the base."),
+        length("arm", 0.3, (0.15, 0.8), "Length of an arm.", usual=(0.2, 0.4)),
+        length("base", 0.09, (0.06, 0.2), "Radius.", usual=(0.07, 0.12)),
+        length("shade", 0.06, (0.03, 0.12), "Radius.", usual=(0.045, 0.08)),
+        choice("switch", ("none", "button", "knob"), "On the base."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length, share
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
@@ -97,24 +98,20 @@ FAMILY = Family(
     words=("dishwasher", "dish washer", "dish washing machine"),
     material="metal",
     parameters=(
-        Parameter(name="width", default=0.6, unit="m", bounds=(0.4, 1.0), usual=(0.45, 0.62), help="Outer width."),
-        Parameter(name="height", default=0.82, unit="m", bounds=(0.6, 1.1), usual=(0.7, 0.88), help="Outer height."),
-        Parameter(
-            name="depth", default=0.58, unit="m", bounds=(0.4, 0.8), usual=(0.5, 0.62), help="Outer depth of the body."
-        ),
-        Parameter(
-            name="racks", default=2, bounds=(1, 3), usual=(1, 3), words=("basket", "dish rack"), help="Racks inside."
-        ),
-        Parameter(
-            name="reach",
-            default=0.3,
-            bounds=(0.1, 0.5),
+        length("width", 0.6, (0.4, 1.0), "Outer width.", usual=(0.45, 0.62)),
+        length("height", 0.82, (0.6, 1.1), "Outer height.", usual=(0.7, 0.88)),
+        length("depth", 0.58, (0.4, 0.8), "Outer depth of the body.", usual=(0.5, 0.62)),
+        counted("racks", 2, (1, 3), "Racks inside.", usual=(1, 3), words="basket, dish rack"),
+        share(
+            "reach",
+            0.3,
+            (0.1, 0.5),
+            "Way of the racks behind the closed door, as a share of the room's depth.",
             usual=(0.2, 0.4),
-            help="Way of the racks behind the closed door, as a share of the room's depth.",
         ),
-        Parameter(name="buttons", default=0, bounds=(0, 6), usual=(0, 5), words=("key",), help="Above the handle."),
-        Parameter(name="handle", default="bar", choices=("bar", "cup", "edge"), help="What the door is pulled by."),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+        counted("buttons", 0, (0, 6), "Above the handle.", usual=(0, 5), words="key"),
+        choice("handle", ("bar", "cup", "edge"), "What the door is pulled by."),
+        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob, add_lever
 from kinematify.generate.procedural.pieces.handles import handle
@@ -162,53 +163,28 @@ FAMILY = Family(
     words=("door", "doorway", "gate"),
     material="wood",
     parameters=(
-        Parameter(name="width", default=0.95, unit="m", bounds=(0.7, 5.0), usual=(0.8, 1.4), help="Outer width."),
-        Parameter(name="height", default=2.05, unit="m", bounds=(1.6, 4.0), usual=(1.9, 2.3), help="Outer height."),
-        Parameter(
-            name="thick",
-            default=0.04,
-            unit="m",
-            bounds=(0.02, 0.06),
-            usual=(0.03, 0.05),
-            words=("thick", "thickness"),
-            help="Of a leaf.",
-        ),
-        Parameter(
-            name="frame", default=0.05, unit="m", bounds=(0.03, 0.08), usual=(0.04, 0.07), help="Its bars' width."
-        ),
-        Parameter(
-            name="kind",
-            default="hinged",
-            choices=("hinged", "sliding", "folding"),
-            help="How leaves move.",
-            choice_words={
-                "hinged": ("swinging", "swing", "french"),
-                "sliding": ("slide", "patio", "barn"),
-                "folding": ("bifold", "accordion", "concertina"),
+        length("width", 0.95, (0.7, 5.0), "Outer width.", usual=(0.8, 1.4)),
+        length("height", 2.05, (1.6, 4.0), "Outer height.", usual=(1.9, 2.3)),
+        length("thick", 0.04, (0.02, 0.06), "Of a leaf.", usual=(0.03, 0.05), words="thick, thickness"),
+        length("frame", 0.05, (0.03, 0.08), "Its bars' width.", usual=(0.04, 0.07)),
+        choice(
+            "kind",
+            {
+                "hinged": "swinging, swing, french",
+                "sliding": "slide, patio, barn",
+                "folding": "bifold, accordion, concertina",
             },
+            "How leaves move.",
         ),
-        Parameter(
-            name="leaves",
-            default=1,
-            bounds=(1, 4),
-            usual=(1, 2),
-            words=("leaf", "wing", "door"),
-            help="That move; a folding door has two at least.",
+        counted(
+            "leaves", 1, (1, 4), "That move; a folding door has two at least.", usual=(1, 2), words="leaf, wing, door"
         ),
-        Parameter(name="panels", default=2, bounds=(0, 8), usual=(0, 4), words=("panel",), help="In every leaf."),
-        Parameter(
-            name="handle",
-            default="lever",
-            choices=("lever", "knob", "bar", "none"),
-            help="Levers and knobs turn; a sliding or folding leaf has a grip.",
+        counted("panels", 2, (0, 8), "In every leaf.", usual=(0, 4), words="panel"),
+        choice(
+            "handle", ("lever", "knob", "bar", "none"), "Levers and knobs turn; a sliding or folding leaf has a grip."
         ),
-        Parameter(name="hinge", default="barrel", choices=("barrel", "edge"), help="Visible hinges, or hidden ones."),
-        Parameter(
-            name="hinge_side",
-            default="left",
-            choices=("left", "right"),
-            help="Of a single hinged leaf.",
-        ),
+        choice("hinge", ("barrel", "edge"), "Visible hinges, or hidden ones."),
+        choice("hinge_side", ("left", "right"), "Of a single hinged leaf."),
     ),
     build=_build,
 )

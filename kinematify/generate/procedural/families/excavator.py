@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.bearings import bent_fork, room
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
@@ -111,14 +112,12 @@ FAMILY = Family(
     words=("excavator", "digger", "backhoe", "mini excavator", "power shovel"),
     material="steel",
     parameters=(
-        Parameter(name="length", default=2.6, unit="m", bounds=(1.5, 5.0), usual=(1.6, 4.0), help="Of the tracks."),
-        Parameter(name="width", default=1.8, unit="m", bounds=(1.0, 4.0), usual=(1.2, 2.6), help="Over the tracks."),
-        Parameter(name="boom", default=2.6, unit="m", bounds=(1.6, 8.0), usual=(2.0, 4.0), help="Its length."),
-        Parameter(
-            name="stick", default=1.6, unit="m", bounds=(1.0, 5.0), usual=(1.2, 2.4), words=("arm",), help="Its length."
-        ),
-        Parameter(name="bucket", default=0.7, unit="m", bounds=(0.3, 1.8), usual=(0.5, 1.0), help="Its size."),
-        Parameter(name="wheels", default=0, bounds=(0, 4), usual=(0, 3), words=("wheel",), help="Seen on each side."),
+        length("length", 2.6, (1.5, 5.0), "Of the tracks.", usual=(1.6, 4.0)),
+        length("width", 1.8, (1.0, 4.0), "Over the tracks.", usual=(1.2, 2.6)),
+        length("boom", 2.6, (1.6, 8.0), "Its length.", usual=(2.0, 4.0)),
+        length("stick", 1.6, (1.0, 5.0), "Its length.", usual=(1.2, 2.4), words="arm"),
+        length("bucket", 0.7, (0.3, 1.8), "Its size.", usual=(0.5, 1.0)),
+        counted("wheels", 0, (0, 4), "Seen on each side.", usual=(0, 3), words="wheel"),
     ),
     build=_build,
 )

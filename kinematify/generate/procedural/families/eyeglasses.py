@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.bearings import at, barrel
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, rod, union
 from kinematify.robot.transforms import rotation_about
@@ -122,42 +123,17 @@ def _about(axis: FloatArray, pivot: FloatArray, angle: float) -> FloatArray:
 FAMILY = Family(
     name="eyeglasses",
     title="pair of eyeglasses",
-    words=(
-        "eyeglasses",
-        "glasses",
-        "pair of glasses",
-        "pair of eyeglasses",
-        "spectacles",
-        "pair of spectacles",
-        "sunglasses",
-        "pair of sunglasses",
-        "reading glasses",
+    words=phrases(
+        "eyeglasses, glasses, pair of glasses, pair of eyeglasses, spectacles, pair of spectacles, sunglasses, "
+        "pair of sunglasses, reading glasses"
     ),
     material="plastic",
     parameters=(
-        Parameter(
-            name="width", default=0.138, unit="m", bounds=(0.11, 0.17), usual=(0.125, 0.15), help="Of the frame."
-        ),
-        Parameter(name="lens", default=0.04, unit="m", bounds=(0.025, 0.055), usual=(0.03, 0.048), help="Its height."),
-        Parameter(
-            name="bridge", default=0.018, unit="m", bounds=(0.014, 0.024), usual=(0.015, 0.022), help="Its width."
-        ),
-        Parameter(
-            name="temple",
-            default=0.135,
-            unit="m",
-            bounds=(0.09, 0.16),
-            usual=(0.125, 0.148),
-            help="Length of a temple.",
-        ),
-        Parameter(
-            name="shape",
-            default="rectangular",
-            choices=("rectangular", "round"),
-            words=("lens", "frame"),
-            help="Of the lenses.",
-            choice_words={"rectangular": ("square",), "round": ("circular",)},
-        ),
+        length("width", 0.138, (0.11, 0.17), "Of the frame.", usual=(0.125, 0.15)),
+        length("lens", 0.04, (0.025, 0.055), "Its height.", usual=(0.03, 0.048)),
+        length("bridge", 0.018, (0.014, 0.024), "Its width.", usual=(0.015, 0.022)),
+        length("temple", 0.135, (0.09, 0.16), "Length of a temple.", usual=(0.125, 0.148)),
+        choice("shape", {"rectangular": "square", "round": "circular"}, "Of the lenses.", words="lens, frame"),
     ),
     build=_build,
 )

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.controls import FRONT, TOP, Mount, add_button, add_knob
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
@@ -151,36 +152,16 @@ FAMILY = Family(
     words=("fan", "ventilator", "blower"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="kind",
-            default="stand",
-            choices=("stand", "ceiling", "box"),
-            help="On a stand, under a ceiling, or in a box.",
-            choice_words={"stand": ("desk", "table", "floor", "pedestal", "standing"), "box": ("window",)},
+        choice(
+            "kind",
+            {"stand": "desk, table, floor, pedestal, standing", "ceiling": "", "box": "window"},
+            "On a stand, under a ceiling, or in a box.",
         ),
-        Parameter(
-            name="blades", default=4, bounds=(2, 8), usual=(3, 6), words=("blade", "wing", "vane"), help="Of the rotor."
-        ),
-        Parameter(
-            name="diameter",
-            default=0.3,
-            unit="m",
-            bounds=(0.16, 0.6),
-            usual=(0.2, 0.45),
-            help="Of stand or box fans' blades.",
-        ),
-        Parameter(
-            name="span", default=1.2, unit="m", bounds=(0.6, 2.5), usual=(0.9, 1.4), help="Of a ceiling fan's blades."
-        ),
-        Parameter(
-            name="height",
-            default=0.5,
-            unit="m",
-            bounds=(0.3, 1.8),
-            usual=(0.4, 1.2),
-            help="Of the whole; a box fan's follows from its diameter.",
-        ),
-        Parameter(name="buttons", default=0, bounds=(0, 4), usual=(0, 4), words=("key",), help="None: a knob."),
+        counted("blades", 4, (2, 8), "Of the rotor.", usual=(3, 6), words="blade, wing, vane"),
+        length("diameter", 0.3, (0.16, 0.6), "Of stand or box fans' blades.", usual=(0.2, 0.45)),
+        length("span", 1.2, (0.6, 2.5), "Of a ceiling fan's blades.", usual=(0.9, 1.4)),
+        length("height", 0.5, (0.3, 1.8), "Of the whole; a box fan's follows from its diameter.", usual=(0.4, 1.2)),
+        counted("buttons", 0, (0, 4), "None: a knob.", usual=(0, 4), words="key"),
     ),
     build=_build,
 )

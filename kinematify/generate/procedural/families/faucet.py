@@ -6,7 +6,8 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import fork, room, stub
 from kinematify.generate.procedural.solids import box, cylinder, off, rod, union
 
@@ -103,28 +104,20 @@ FAMILY = Family(
     words=("faucet", "tap", "water tap", "kitchen tap", "kitchen faucet", "mixer tap", "spigot", "basin tap"),
     material="steel",
     parameters=(
-        Parameter(
-            name="height", default=0.24, unit="m", bounds=(0.18, 0.6), usual=(0.2, 0.36), help="Of spout or post."
-        ),
-        Parameter(
-            name="reach", default=0.16, unit="m", bounds=(0.12, 0.35), usual=(0.14, 0.22), help="Of the spout, forward."
-        ),
-        Parameter(
-            name="pipe", default=0.012, unit="m", bounds=(0.008, 0.016), usual=(0.01, 0.014), help="Radius of the pipe."
-        ),
-        Parameter(name="handles", default=2, bounds=(1, 2), usual=(1, 2), help="Of one with handles that twist."),
-        Parameter(
-            name="handle",
-            default="lever",
-            choices=("lever", "twist", "swivel"),
-            help="What moves.",
-            choice_words={
-                "lever": ("single lever", "mixer"),
-                "twist": ("twist handle", "twisting", "twist", "cross handle", "knob", "valve"),
-                "swivel": ("swivelling", "swiveling", "swivelling spout", "swivel spout"),
+        length("height", 0.24, (0.18, 0.6), "Of spout or post.", usual=(0.2, 0.36)),
+        length("reach", 0.16, (0.12, 0.35), "Of the spout, forward.", usual=(0.14, 0.22)),
+        length("pipe", 0.012, (0.008, 0.016), "Radius of the pipe.", usual=(0.01, 0.014)),
+        counted("handles", 2, (1, 2), "Of one with handles that twist.", usual=(1, 2)),
+        choice(
+            "handle",
+            {
+                "lever": "single lever, mixer",
+                "twist": "twist handle, twisting, twist, cross handle, knob, valve",
+                "swivel": "swivelling, swiveling, swivelling spout, swivel spout",
             },
+            "What moves.",
         ),
-        Parameter(name="cross", default="cross", choices=("cross", "bar"), help="Shape of handles that twist."),
+        choice("cross", ("cross", "bar"), "Shape of handles that twist."),
     ),
     build=_build,
 )

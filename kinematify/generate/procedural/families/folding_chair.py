@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.solids import bore, box, cylinder
 
 if TYPE_CHECKING:
@@ -89,15 +90,13 @@ FAMILY = Family(
     words=("folding chair", "foldable chair", "camping chair", "collapsible chair", "garden chair", "deck chair"),
     material="wood",
     parameters=(
-        Parameter(name="width", default=0.44, unit="m", bounds=(0.3, 0.7), usual=(0.38, 0.5), help="Outer width."),
-        Parameter(name="height", default=0.84, unit="m", bounds=(0.7, 1.2), usual=(0.76, 0.95), help="When folded."),
-        Parameter(name="seat", default=0.44, unit="m", bounds=(0.3, 0.5), usual=(0.4, 0.47), help="Level of the seat."),
-        Parameter(name="depth", default=0.35, unit="m", bounds=(0.2, 0.42), usual=(0.3, 0.4), help="Of the seat."),
-        Parameter(
-            name="rail", default=0.028, unit="m", bounds=(0.022, 0.045), usual=(0.024, 0.034), help="Of the bars."
-        ),
-        Parameter(name="slats", default=3, bounds=(1, 6), usual=(1, 4), words=("slat",), help="Of the back."),
-        Parameter(name="boards", default=4, bounds=(1, 8), usual=(1, 6), words=("board",), help="Of the seat."),
+        length("width", 0.44, (0.3, 0.7), "Outer width.", usual=(0.38, 0.5)),
+        length("height", 0.84, (0.7, 1.2), "When folded.", usual=(0.76, 0.95)),
+        length("seat", 0.44, (0.3, 0.5), "Level of the seat.", usual=(0.4, 0.47)),
+        length("depth", 0.35, (0.2, 0.42), "Of the seat.", usual=(0.3, 0.4)),
+        length("rail", 0.028, (0.022, 0.045), "Of the bars.", usual=(0.024, 0.034)),
+        counted("slats", 3, (1, 6), "Of the back.", usual=(1, 4), words="slat"),
+        counted("boards", 4, (1, 8), "Of the seat.", usual=(1, 6), words="board"),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
 from kinematify.generate.procedural.solids import box, tray
 
@@ -87,32 +88,23 @@ FAMILY = Family(
     words=("fridge", "refrigerator", "freezer", "fridge freezer", "icebox", "cooler", "minibar"),
     material="metal",
     parameters=(
-        Parameter(name="width", default=0.6, unit="m", bounds=(0.4, 1.5), usual=(0.55, 0.9), help="Outer width."),
-        Parameter(name="height", default=1.7, unit="m", bounds=(0.5, 2.4), usual=(1.3, 2.0), help="Outer height."),
-        Parameter(
-            name="depth", default=0.6, unit="m", bounds=(0.35, 1.0), usual=(0.5, 0.7), help="Outer depth of the body."
-        ),
-        Parameter(name="doors", default=2, bounds=(1, 4), usual=(1, 4), help="Doors."),
-        Parameter(
-            name="freezer",
-            default="top",
-            choices=("top", "bottom", "side", "none"),
-            help="Where the smaller compartment is; with none, two doors are a pair.",
-            choice_words={
-                "top": ("freezer on top", "freezer above", "top freezer"),
-                "bottom": ("freezer below", "freezer at the bottom", "bottom freezer"),
-                "side": ("side by side", "american"),
-                "none": ("french", "without freezer", "without a freezer", "no freezer"),
+        length("width", 0.6, (0.4, 1.5), "Outer width.", usual=(0.55, 0.9)),
+        length("height", 1.7, (0.5, 2.4), "Outer height.", usual=(1.3, 2.0)),
+        length("depth", 0.6, (0.35, 1.0), "Outer depth of the body.", usual=(0.5, 0.7)),
+        counted("doors", 2, (1, 4), "Doors.", usual=(1, 4)),
+        choice(
+            "freezer",
+            {
+                "top": "freezer on top, freezer above, top freezer",
+                "bottom": "freezer below, freezer at the bottom, bottom freezer",
+                "side": "side by side, american",
+                "none": "french, without freezer, without a freezer, no freezer",
             },
+            "Where the smaller compartment is; with none, two doors are a pair.",
         ),
-        Parameter(
-            name="hinge_side",
-            default="right",
-            choices=("right", "left"),
-            help="Of doors over the whole width.",
-        ),
-        Parameter(name="handle", default="bar", choices=("bar", "edge", "none"), help="What doors are pulled by."),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+        choice("hinge_side", ("right", "left"), "Of doors over the whole width."),
+        choice("handle", ("bar", "edge", "none"), "What doors are pulled by."),
+        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import length, phrases
 from kinematify.generate.procedural.solids import box, cylinder, union
 
 if TYPE_CHECKING:
@@ -61,21 +62,14 @@ def _build(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="gantry",
     title="three-axis gantry",
-    words=(
-        "gantry",
-        "three axis gantry",
-        "gantry robot",
-        "cartesian robot",
-        "portal",
-        "3d printer",
-        "cnc machine",
-        "milling machine",
+    words=phrases(
+        "gantry, three axis gantry, gantry robot, cartesian robot, portal, 3d printer, cnc machine, milling machine"
     ),
     material="metal",
     parameters=(
-        Parameter(name="width", default=0.9, unit="m", bounds=(0.5, 4.0), usual=(0.6, 1.4), help="Between the sides."),
-        Parameter(name="depth", default=1.0, unit="m", bounds=(0.4, 4.0), usual=(0.6, 1.5), help="Along the bed."),
-        Parameter(name="height", default=0.6, unit="m", bounds=(0.4, 3.0), usual=(0.45, 0.9), help="Of the bridge."),
+        length("width", 0.9, (0.5, 4.0), "Between the sides.", usual=(0.6, 1.4)),
+        length("depth", 1.0, (0.4, 4.0), "Along the bed.", usual=(0.6, 1.5)),
+        length("height", 0.6, (0.4, 3.0), "Of the bridge.", usual=(0.45, 0.9)),
     ),
     build=_build,
 )

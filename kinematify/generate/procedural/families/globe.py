@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import angle, choice, length
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import ball, bore, cylinder, ring, union
 
@@ -79,23 +80,16 @@ FAMILY = Family(
     material="plastic",
     part_words={"base": ("stand",)},
     parameters=(
-        Parameter(name="diameter", default=0.25, unit="m", bounds=(0.1, 0.8), usual=(0.16, 0.36), help="Of the ball."),
-        Parameter(name="post", default=0.05, unit="m", bounds=(0.03, 0.4), usual=(0.03, 0.12), help="Its height."),
-        Parameter(name="tilt", default=0.41, unit="rad", bounds=(0.25, 0.6), usual=(0.3, 0.5), help="Of the axis."),
-        Parameter(
-            name="mount",
-            default="arc",
-            choices=("arc", "ring"),
-            words=("meridian",),
-            help="A half or a full meridian.",
-            choice_words={"arc": ("half meridian",), "ring": ("full meridian",)},
+        length("diameter", 0.25, (0.1, 0.8), "Of the ball.", usual=(0.16, 0.36)),
+        length("post", 0.05, (0.03, 0.4), "Its height.", usual=(0.03, 0.12)),
+        angle("tilt", 0.41, (0.25, 0.6), "Of the axis.", usual=(0.3, 0.5)),
+        choice(
+            "mount", {"arc": "half meridian", "ring": "full meridian"}, "A half or a full meridian.", words="meridian"
         ),
-        Parameter(
-            name="foot",
-            default="fixed",
-            choices=("fixed", "turning"),
-            help="Whether the meridian turns on the foot.",
-            choice_words={"turning": ("rotating foot", "turning foot", "swivel")},
+        choice(
+            "foot",
+            {"fixed": "", "turning": "rotating foot, turning foot, swivel"},
+            "Whether the meridian turns on the foot.",
         ),
     ),
     build=_build,

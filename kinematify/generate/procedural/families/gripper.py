@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
 
 if TYPE_CHECKING:
@@ -29,16 +30,9 @@ FAMILY = Family(
     words=("gripper", "parallel gripper", "parallel jaw gripper", "claw", "robot gripper", "grasper"),
     material="metal",
     parameters=(
-        Parameter(
-            name="fingers",
-            default=2,
-            bounds=(2, 6),
-            usual=(2, 4),
-            words=("finger", "jaw"),
-            help="Two are parallel jaws.",
-        ),
-        Parameter(name="width", default=0.12, unit="m", bounds=(0.06, 0.5), usual=(0.08, 0.16), help="Of two jaws."),
-        Parameter(name="finger", default=0.07, unit="m", bounds=(0.05, 0.3), usual=(0.06, 0.1), help="Its length."),
+        counted("fingers", 2, (2, 6), "Two are parallel jaws.", usual=(2, 4), words="finger, jaw"),
+        length("width", 0.12, (0.06, 0.5), "Of two jaws.", usual=(0.08, 0.16)),
+        length("finger", 0.07, (0.05, 0.3), "Its length.", usual=(0.06, 0.1)),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.bearings import fork, room
 from kinematify.generate.procedural.solids import box, cylinder
 
@@ -53,21 +54,10 @@ FAMILY = Family(
     words=("hand", "robot hand", "robotic hand", "dexterous hand"),
     material="plastic",
     parameters=(
-        Parameter(name="fingers", default=4, bounds=(1, 8), usual=(2, 5), words=("finger",), help="Side by side."),
-        Parameter(
-            name="joints",
-            default=3,
-            bounds=(1, 5),
-            usual=(2, 4),
-            words=("joint", "phalanx", "segment", "knuckle"),
-            help="Of every finger.",
-        ),
-        Parameter(
-            name="phalanx", default=0.045, unit="m", bounds=(0.02, 0.2), usual=(0.035, 0.06), help="First phalanx."
-        ),
-        Parameter(
-            name="finger_width", default=0.018, unit="m", bounds=(0.01, 0.06), usual=(0.014, 0.022), help="Width."
-        ),
+        counted("fingers", 4, (1, 8), "Side by side.", usual=(2, 5), words="finger"),
+        counted("joints", 3, (1, 5), "Of every finger.", usual=(2, 4), words="joint, phalanx, segment, knuckle"),
+        length("phalanx", 0.045, (0.02, 0.2), "First phalanx.", usual=(0.035, 0.06)),
+        length("finger_width", 0.018, (0.01, 0.06), "Width.", usual=(0.014, 0.022)),
     ),
     build=_build,
 )

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.bearings import at
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import ball, cylinder, off
@@ -70,26 +71,12 @@ FAMILY = Family(
     words=("hexapod", "six legged robot", "spider robot", "robot spider", "spider", "hexapod robot", "insect robot"),
     material="plastic",
     parameters=(
-        Parameter(name="legs", default=6, bounds=(4, 8), usual=(6, 8), words=("leg",), help="Around the trunk."),
-        Parameter(
-            name="joints",
-            default=3,
-            bounds=(2, 3),
-            usual=(2, 3),
-            words=("joint", "joint per leg", "dof"),
-            help="Of every leg.",
-        ),
-        Parameter(name="trunk", default=0.2, unit="m", bounds=(0.12, 1.0), usual=(0.14, 0.3), help="Its diameter."),
-        Parameter(name="femur", default=0.12, unit="m", bounds=(0.1, 0.5), usual=(0.1, 0.18), help="Its length."),
-        Parameter(name="tibia", default=0.16, unit="m", bounds=(0.12, 0.5), usual=(0.13, 0.22), help="Its length."),
-        Parameter(
-            name="joint_radius",
-            default=0.018,
-            unit="m",
-            bounds=(0.012, 0.025),
-            usual=(0.015, 0.02),
-            help="Of the stubs.",
-        ),
+        counted("legs", 6, (4, 8), "Around the trunk.", usual=(6, 8), words="leg"),
+        counted("joints", 3, (2, 3), "Of every leg.", usual=(2, 3), words="joint, joint per leg, dof"),
+        length("trunk", 0.2, (0.12, 1.0), "Its diameter.", usual=(0.14, 0.3)),
+        length("femur", 0.12, (0.1, 0.5), "Its length.", usual=(0.1, 0.18)),
+        length("tibia", 0.16, (0.12, 0.5), "Its length.", usual=(0.13, 0.22)),
+        length("joint_radius", 0.018, (0.012, 0.025), "Of the stubs.", usual=(0.015, 0.02)),
     ),
     build=_build,
 )

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.limbs import leg_solids, limb_solids
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod
@@ -161,28 +162,15 @@ FAMILY = Family(
     words=("humanoid", "humanoid robot", "android", "biped", "bipedal robot", "person shaped robot"),
     material="plastic",
     parameters=(
-        Parameter(name="thigh", default=0.36, unit="m", bounds=(0.25, 0.6), usual=(0.3, 0.42), help="Its length."),
-        Parameter(name="shank", default=0.36, unit="m", bounds=(0.25, 0.6), usual=(0.3, 0.42), help="Its length."),
-        Parameter(name="torso", default=0.42, unit="m", bounds=(0.3, 0.7), usual=(0.36, 0.5), help="Its height."),
-        Parameter(name="shoulders", default=0.5, unit="m", bounds=(0.36, 0.9), usual=(0.44, 0.56), help="Their width."),
-        Parameter(name="upper_arm", default=0.26, unit="m", bounds=(0.16, 0.45), usual=(0.22, 0.3), help="Its length."),
-        Parameter(name="forearm", default=0.22, unit="m", bounds=(0.15, 0.4), usual=(0.2, 0.28), help="Its length."),
-        Parameter(
-            name="joint_radius",
-            default=0.028,
-            unit="m",
-            bounds=(0.02, 0.036),
-            usual=(0.022, 0.032),
-            help="Of the stubs.",
-        ),
-        Parameter(
-            name="feet",
-            default="feet",
-            choices=("feet", "none"),
-            help="Feet on ankles.",
-            choice_words={"feet": ("foot",)},
-        ),
-        Parameter(name="hands", default="turning", choices=("turning", "fixed"), help="Whether hands turn."),
+        length("thigh", 0.36, (0.25, 0.6), "Its length.", usual=(0.3, 0.42)),
+        length("shank", 0.36, (0.25, 0.6), "Its length.", usual=(0.3, 0.42)),
+        length("torso", 0.42, (0.3, 0.7), "Its height.", usual=(0.36, 0.5)),
+        length("shoulders", 0.5, (0.36, 0.9), "Their width.", usual=(0.44, 0.56)),
+        length("upper_arm", 0.26, (0.16, 0.45), "Its length.", usual=(0.22, 0.3)),
+        length("forearm", 0.22, (0.15, 0.4), "Its length.", usual=(0.2, 0.28)),
+        length("joint_radius", 0.028, (0.02, 0.036), "Of the stubs.", usual=(0.022, 0.032)),
+        choice("feet", {"feet": "foot", "none": ""}, "Feet on ankles."),
+        choice("hands", ("turning", "fixed"), "Whether hands turn."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.controls import grid
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box
@@ -49,15 +50,11 @@ FAMILY = Family(
     material="metal",
     part_words={"screen": ("lid", "display")},
     parameters=(
-        Parameter(name="width", default=0.34, unit="m", bounds=(0.2, 0.5), usual=(0.28, 0.4), help="Outer width."),
-        Parameter(name="depth", default=0.24, unit="m", bounds=(0.15, 0.4), usual=(0.2, 0.28), help="Outer depth."),
-        Parameter(
-            name="base", default=0.014, unit="m", bounds=(0.008, 0.04), usual=(0.01, 0.024), help="Thickness below."
-        ),
-        Parameter(
-            name="screen", default=0.007, unit="m", bounds=(0.005, 0.02), usual=(0.005, 0.01), help="Thickness above."
-        ),
-        Parameter(name="knuckles", default=3, bounds=(2, 5), usual=(3, 5), help="Of each of the two hinges."),
+        length("width", 0.34, (0.2, 0.5), "Outer width.", usual=(0.28, 0.4)),
+        length("depth", 0.24, (0.15, 0.4), "Outer depth.", usual=(0.2, 0.28)),
+        length("base", 0.014, (0.008, 0.04), "Thickness below.", usual=(0.01, 0.024)),
+        length("screen", 0.007, (0.005, 0.02), "Thickness above.", usual=(0.005, 0.01)),
+        counted("knuckles", 3, (2, 5), "Of each of the two hinges.", usual=(3, 5)),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
@@ -80,13 +81,13 @@ FAMILY = Family(
     words=("microwave", "microwave oven"),
     material="plastic",
     parameters=(
-        Parameter(name="width", default=0.5, unit="m", bounds=(0.4, 0.8), usual=(0.42, 0.6), help="Outer width."),
-        Parameter(name="height", default=0.28, unit="m", bounds=(0.22, 0.5), usual=(0.25, 0.35), help="Outer height."),
-        Parameter(name="depth", default=0.36, unit="m", bounds=(0.25, 0.6), usual=(0.3, 0.45), help="Outer depth."),
-        Parameter(name="buttons", default=6, bounds=(0, 12), usual=(1, 12), words=("key",), help="On the panel."),
-        Parameter(name="knobs", default=0, bounds=(0, 2), usual=(0, 2), words=("dial",), help="Above the buttons."),
-        Parameter(name="handle", default="bar", choices=("bar", "edge", "none"), help="What the door is pulled by."),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+        length("width", 0.5, (0.4, 0.8), "Outer width.", usual=(0.42, 0.6)),
+        length("height", 0.28, (0.22, 0.5), "Outer height.", usual=(0.25, 0.35)),
+        length("depth", 0.36, (0.25, 0.6), "Outer depth.", usual=(0.3, 0.45)),
+        counted("buttons", 6, (0, 12), "On the panel.", usual=(1, 12), words="key"),
+        counted("knobs", 0, (0, 2), "Above the buttons.", usual=(0, 2), words="dial"),
+        choice("handle", ("bar", "edge", "none"), "What the door is pulled by."),
+        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

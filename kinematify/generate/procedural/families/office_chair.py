@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
@@ -115,29 +116,21 @@ FAMILY = Family(
     words=("office chair", "swivel chair", "desk chair", "computer chair", "chair", "task chair", "gaming chair"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="castors",
-            default=5,
-            bounds=(3, 6),
+        counted(
+            "castors",
+            5,
+            (3, 6),
+            "Each turns and has a wheel.",
             usual=(4, 6),
-            words=("castor", "caster", "wheel", "roller", "leg"),
-            help="Each turns and has a wheel.",
+            words="castor, caster, wheel, roller, leg",
         ),
-        Parameter(name="width", default=0.48, unit="m", bounds=(0.36, 0.7), usual=(0.44, 0.54), help="Of the seat."),
-        Parameter(name="depth", default=0.46, unit="m", bounds=(0.36, 0.65), usual=(0.42, 0.5), help="Of the seat."),
-        Parameter(name="back", default=0.5, unit="m", bounds=(0.2, 0.9), usual=(0.35, 0.65), help="Its height."),
-        Parameter(name="column", default=0.2, unit="m", bounds=(0.12, 0.4), usual=(0.16, 0.26), help="Its height."),
-        Parameter(
-            name="star", default=0.3, unit="m", bounds=(0.22, 0.42), usual=(0.26, 0.34), help="Length of an arm."
-        ),
-        Parameter(name="wheel", default=0.028, unit="m", bounds=(0.02, 0.045), usual=(0.022, 0.034), help="Radius."),
-        Parameter(
-            name="armrests",
-            default="armrests",
-            choices=("armrests", "none"),
-            help="Beside the seat.",
-            choice_words={"armrests": ("armrest", "arm"), "none": ("armless",)},
-        ),
+        length("width", 0.48, (0.36, 0.7), "Of the seat.", usual=(0.44, 0.54)),
+        length("depth", 0.46, (0.36, 0.65), "Of the seat.", usual=(0.42, 0.5)),
+        length("back", 0.5, (0.2, 0.9), "Its height.", usual=(0.35, 0.65)),
+        length("column", 0.2, (0.12, 0.4), "Its height.", usual=(0.16, 0.26)),
+        length("star", 0.3, (0.22, 0.42), "Length of an arm.", usual=(0.26, 0.34)),
+        length("wheel", 0.028, (0.02, 0.045), "Radius.", usual=(0.022, 0.034)),
+        choice("armrests", {"armrests": "armrest, arm", "none": "armless"}, "Beside the seat."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
 from kinematify.generate.procedural.solids import box, cylinder
@@ -75,21 +76,13 @@ FAMILY = Family(
     words=("oven", "stove", "cooker", "range", "kitchen stove", "range cooker"),
     material="metal",
     parameters=(
-        Parameter(name="width", default=0.6, unit="m", bounds=(0.35, 1.2), usual=(0.5, 0.9), help="Outer width."),
-        Parameter(name="height", default=0.85, unit="m", bounds=(0.45, 1.2), usual=(0.6, 0.95), help="Outer height."),
-        Parameter(
-            name="depth", default=0.6, unit="m", bounds=(0.35, 0.9), usual=(0.5, 0.65), help="Outer depth of the body."
-        ),
-        Parameter(name="knobs", default=4, bounds=(0, 8), usual=(2, 6), words=("dial",), help="Knobs above the door."),
-        Parameter(
-            name="top",
-            default="burners",
-            choices=("burners", "plain"),
-            help="A cooktop, or a plain top.",
-            choice_words={"burners": ("cooktop", "hob"), "plain": ("built in",)},
-        ),
-        Parameter(name="handle", default="bar", choices=("bar", "edge", "cup"), help="What the door is pulled by."),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+        length("width", 0.6, (0.35, 1.2), "Outer width.", usual=(0.5, 0.9)),
+        length("height", 0.85, (0.45, 1.2), "Outer height.", usual=(0.6, 0.95)),
+        length("depth", 0.6, (0.35, 0.9), "Outer depth of the body.", usual=(0.5, 0.65)),
+        counted("knobs", 4, (0, 8), "Knobs above the door.", usual=(2, 6), words="dial"),
+        choice("top", {"burners": "cooktop, hob", "plain": "built in"}, "A cooktop, or a plain top."),
+        choice("handle", ("bar", "edge", "cup"), "What the door is pulled by."),
+        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

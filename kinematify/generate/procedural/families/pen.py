@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import bore, box, cylinder, ring, turned, union
 
@@ -109,28 +110,12 @@ FAMILY = Family(
     words=("pen", "ballpoint pen", "ballpoint", "ball pen", "biro", "fountain pen", "felt pen", "marker"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="length", default=0.14, unit="m", bounds=(0.1, 0.2), usual=(0.125, 0.155), help="Of the barrel."
-        ),
-        Parameter(
-            name="width",
-            default=0.011,
-            unit="m",
-            bounds=(0.009, 0.02),
-            usual=(0.0095, 0.013),
-            words=("diameter",),
-            help="Outer diameter.",
-        ),
-        Parameter(
-            name="mechanism",
-            default="click",
-            choices=("click", "cap", "twist"),
-            help="What moves.",
-            choice_words={
-                "click": ("clicking", "push button", "retractable", "button"),
-                "cap": ("capped",),
-                "twist": ("twisting", "twist action"),
-            },
+        length("length", 0.14, (0.1, 0.2), "Of the barrel.", usual=(0.125, 0.155)),
+        length("width", 0.011, (0.009, 0.02), "Outer diameter.", usual=(0.0095, 0.013), words="diameter"),
+        choice(
+            "mechanism",
+            {"click": "clicking, push button, retractable, button", "cap": "capped", "twist": "twisting, twist action"},
+            "What moves.",
         ),
     ),
     build=_build,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
 from kinematify.generate.procedural.solids import box, hull, union
 
@@ -72,27 +73,23 @@ FAMILY = Family(
     words=("pliers", "pair of pliers", "combination pliers", "pincers", "pair of pincers"),
     material="steel",
     parameters=(
-        Parameter(name="length", default=0.18, unit="m", bounds=(0.1, 0.4), usual=(0.13, 0.25), help="Over all."),
-        Parameter(name="thick", default=0.01, unit="m", bounds=(0.006, 0.02), usual=(0.008, 0.014), help="Of a lever."),
-        Parameter(
-            name="jaws",
-            default="flat",
-            choices=("flat", "needle", "cutting"),
-            words=("jaw", "nose"),
-            help="Shape of the jaws.",
-            choice_words={
-                "flat": ("combination", "flat nose"),
-                "needle": ("needle nose", "needle nosed", "long nose", "pointed"),
-                "cutting": ("cutter", "side cutting", "diagonal", "diagonal cutting"),
+        length("length", 0.18, (0.1, 0.4), "Over all.", usual=(0.13, 0.25)),
+        length("thick", 0.01, (0.006, 0.02), "Of a lever.", usual=(0.008, 0.014)),
+        choice(
+            "jaws",
+            {
+                "flat": "combination, flat nose",
+                "needle": "needle nose, needle nosed, long nose, pointed",
+                "cutting": "cutter, side cutting, diagonal, diagonal cutting",
             },
+            "Shape of the jaws.",
+            words="jaw, nose",
         ),
-        Parameter(
-            name="grips",
-            default="sleeve",
-            choices=("sleeve", "none"),
-            words=("grip", "handle"),
-            help="Around the ends of the handles.",
-            choice_words={"sleeve": ("insulated", "cushioned"), "none": ("bare",)},
+        choice(
+            "grips",
+            {"sleeve": "insulated, cushioned", "none": "bare"},
+            "Around the ends of the handles.",
+            words="grip, handle",
         ),
     ),
     build=_build,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import box, cylinder, off
 
@@ -83,21 +84,12 @@ FAMILY = Family(
     words=("quadruped", "robot dog", "dog robot", "dog", "four legged robot", "quadruped robot"),
     material="metal",
     parameters=(
-        Parameter(
-            name="joints",
-            default=3,
-            bounds=(2, 3),
-            usual=(2, 3),
-            words=("joint", "joint per leg", "dof"),
-            help="Of every leg.",
-        ),
-        Parameter(name="length", default=0.4, unit="m", bounds=(0.25, 2.0), usual=(0.3, 0.7), help="Of the trunk."),
-        Parameter(name="width", default=0.18, unit="m", bounds=(0.14, 1.0), usual=(0.16, 0.3), help="Of the trunk."),
-        Parameter(name="thigh", default=0.2, unit="m", bounds=(0.15, 0.6), usual=(0.16, 0.28), help="Its length."),
-        Parameter(name="shank", default=0.2, unit="m", bounds=(0.12, 0.6), usual=(0.16, 0.28), help="Its length."),
-        Parameter(
-            name="joint_radius", default=0.03, unit="m", bounds=(0.02, 0.05), usual=(0.024, 0.034), help="Of the stubs."
-        ),
+        counted("joints", 3, (2, 3), "Of every leg.", usual=(2, 3), words="joint, joint per leg, dof"),
+        length("length", 0.4, (0.25, 2.0), "Of the trunk.", usual=(0.3, 0.7)),
+        length("width", 0.18, (0.14, 1.0), "Of the trunk.", usual=(0.16, 0.3)),
+        length("thigh", 0.2, (0.15, 0.6), "Its length.", usual=(0.16, 0.28)),
+        length("shank", 0.2, (0.12, 0.6), "Its length.", usual=(0.16, 0.28)),
+        length("joint_radius", 0.03, (0.02, 0.05), "Of the stubs.", usual=(0.024, 0.034)),
     ),
     build=_build,
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
 from kinematify.generate.procedural.solids import bore, cylinder, rod
@@ -62,30 +63,17 @@ FAMILY = Family(
     words=("safe", "strongbox", "strong box", "vault", "safe box", "money safe"),
     material="steel",
     parameters=(
-        Parameter(name="width", default=0.35, unit="m", bounds=(0.2, 1.2), usual=(0.28, 0.6), help="Outer width."),
-        Parameter(name="height", default=0.4, unit="m", bounds=(0.2, 1.8), usual=(0.28, 0.9), help="Outer height."),
-        Parameter(
-            name="depth", default=0.35, unit="m", bounds=(0.2, 1.0), usual=(0.25, 0.5), help="Outer depth of the body."
+        length("width", 0.35, (0.2, 1.2), "Outer width.", usual=(0.28, 0.6)),
+        length("height", 0.4, (0.2, 1.8), "Outer height.", usual=(0.28, 0.9)),
+        length("depth", 0.35, (0.2, 1.0), "Outer depth of the body.", usual=(0.25, 0.5)),
+        length("wall", 0.015, (0.01, 0.035), "Of the body.", usual=(0.012, 0.03)),
+        choice(
+            "lock",
+            {"dial": "combination lock, dial lock, round dial", "keypad": "buttons, key pad, digital lock"},
+            "What it is unlocked by.",
         ),
-        Parameter(name="wall", default=0.015, unit="m", bounds=(0.01, 0.035), usual=(0.012, 0.03), help="Of the body."),
-        Parameter(
-            name="lock",
-            default="dial",
-            choices=("dial", "keypad"),
-            help="What it is unlocked by.",
-            choice_words={
-                "dial": ("combination lock", "dial lock", "round dial"),
-                "keypad": ("buttons", "key pad", "digital lock"),
-            },
-        ),
-        Parameter(
-            name="handle",
-            default="lever",
-            choices=("lever", "wheel"),
-            help="What draws the bolts.",
-            choice_words={"wheel": ("spoked handle", "hand wheel")},
-        ),
-        Parameter(name="hinge", default="edge", choices=("edge", "barrel"), help="Hidden hinges, or visible ones."),
+        choice("handle", {"lever": "", "wheel": "spoked handle, hand wheel"}, "What draws the bolts."),
+        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import length
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
@@ -62,10 +63,10 @@ FAMILY = Family(
     words=("scara", "scara robot", "scara arm"),
     material="metal",
     parameters=(
-        Parameter(name="upper_arm", default=0.3, unit="m", bounds=(0.15, 1.0), usual=(0.2, 0.4), help="First link."),
-        Parameter(name="forearm", default=0.25, unit="m", bounds=(0.15, 1.0), usual=(0.2, 0.35), help="Second link."),
-        Parameter(name="height", default=0.35, unit="m", bounds=(0.2, 1.0), usual=(0.25, 0.45), help="Of the column."),
-        Parameter(name="stroke", default=0.12, unit="m", bounds=(0.05, 0.13), usual=(0.08, 0.13), help="Of the ram."),
+        length("upper_arm", 0.3, (0.15, 1.0), "First link.", usual=(0.2, 0.4)),
+        length("forearm", 0.25, (0.15, 1.0), "Second link.", usual=(0.2, 0.35)),
+        length("height", 0.35, (0.2, 1.0), "Of the column.", usual=(0.25, 0.45)),
+        length("stroke", 0.12, (0.05, 0.13), "Of the ram.", usual=(0.08, 0.13)),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length, share
 from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
 from kinematify.generate.procedural.solids import box, hull
 
@@ -72,17 +73,14 @@ FAMILY = Family(
     words=("scissors", "pair of scissors", "shears", "pair of shears", "kitchen scissors"),
     material="steel",
     parameters=(
-        Parameter(name="length", default=0.18, unit="m", bounds=(0.08, 0.35), usual=(0.12, 0.25), help="Over all."),
-        Parameter(name="blade", default=0.5, bounds=(0.35, 0.65), usual=(0.42, 0.58), help="Share of the length."),
-        Parameter(
-            name="thick", default=0.0025, unit="m", bounds=(0.002, 0.004), usual=(0.002, 0.003), help="Of a blade."
-        ),
-        Parameter(
-            name="loops",
-            default="round",
-            choices=("round", "oval", "mixed"),
-            words=("loop", "handle"),
-            help="Of the handles: both round, both long, or one of each.",
+        length("length", 0.18, (0.08, 0.35), "Over all.", usual=(0.12, 0.25)),
+        share("blade", 0.5, (0.35, 0.65), "Share of the length.", usual=(0.42, 0.58)),
+        length("thick", 0.0025, (0.002, 0.004), "Of a blade.", usual=(0.002, 0.003)),
+        choice(
+            "loops",
+            ("round", "oval", "mixed"),
+            "Of the handles: both round, both long, or one of each.",
+            words="loop, handle",
         ),
     ),
     build=_build,

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import at, stub
 from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
 from kinematify.generate.procedural.solids import box, cylinder, off
@@ -69,55 +70,32 @@ def _add_gripper(values: Values, workshop: Workshop, flange: str, place: Point) 
 FAMILY = Family(
     name="serial_arm",
     title="robot arm",
-    words=(
-        "robot arm",
-        "arm",
-        "manipulator",
-        "robotic arm",
-        "serial arm",
-        "articulated arm",
-        "industrial robot",
-        "axis robot",
+    words=phrases(
+        "robot arm, arm, manipulator, robotic arm, serial arm, articulated arm, industrial robot, axis robot"
     ),
     material="metal",
     parameters=(
-        Parameter(
-            name="joints",
-            default=6,
-            bounds=(1, 12),
+        counted(
+            "joints",
+            6,
+            (1, 12),
+            "Joints in series.",
             usual=(3, 7),
-            words=("joint", "dof", "axis", "degree of freedom", "degrees of freedom"),
-            help="Joints in series.",
+            words="joint, dof, axis, degree of freedom, degrees of freedom",
         ),
-        Parameter(
-            name="length",
-            default=0.9,
-            unit="m",
-            bounds=(0.2, 3.0),
-            usual=(0.5, 1.5),
-            words=("reach",),
-            help="Sum of the links.",
-        ),
-        Parameter(
-            name="gripper",
-            default="none",
-            choices=("none", "jaws", "fingers"),
-            choice_words={
-                "jaws": ("gripper", "parallel gripper", "jaw gripper"),
-                "fingers": ("finger gripper", "fingered gripper"),
+        length("length", 0.9, (0.2, 3.0), "Sum of the links.", usual=(0.5, 1.5), words="reach"),
+        choice(
+            "gripper",
+            {
+                "none": "",
+                "jaws": "gripper, parallel gripper, jaw gripper",
+                "fingers": "finger gripper, fingered gripper",
             },
-            help="What is on its flange.",
+            "What is on its flange.",
             drawn=False,
         ),
-        Parameter(
-            name="fingers",
-            default=3,
-            bounds=(2, 6),
-            words=("finger",),
-            help="Of a gripper with fingers; two are jaws.",
-            drawn=False,
-        ),
-        Parameter(name="radius", default=0.04, unit="m", bounds=(0.01, 0.15), usual=(0.03, 0.06), help="Of joints."),
+        counted("fingers", 3, (2, 6), "Of a gripper with fingers; two are jaws.", words="finger", drawn=False),
+        length("radius", 0.04, (0.01, 0.15), "Of joints.", usual=(0.03, 0.06)),
     ),
     build=_build,
 )

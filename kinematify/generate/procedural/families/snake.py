@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length
 from kinematify.generate.procedural.pieces.bearings import fork, room
 from kinematify.generate.procedural.solids import cylinder, rod
 
@@ -60,16 +61,9 @@ FAMILY = Family(
     words=("snake", "snake robot", "worm robot", "chain robot"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="segments",
-            default=8,
-            bounds=(2, 40),
-            usual=(4, 10),
-            words=("segment", "module", "link"),
-            help="In a row.",
-        ),
-        Parameter(name="radius", default=0.03, unit="m", bounds=(0.01, 0.2), usual=(0.02, 0.05), help="Of the body."),
-        Parameter(name="segment", default=0.15, unit="m", bounds=(0.05, 1.0), usual=(0.12, 0.25), help="Its length."),
+        counted("segments", 8, (2, 40), "In a row.", usual=(4, 10), words="segment, module, link"),
+        length("radius", 0.03, (0.01, 0.2), "Of the body.", usual=(0.02, 0.05)),
+        length("segment", 0.15, (0.05, 1.0), "Its length.", usual=(0.12, 0.25)),
     ),
     build=_build,
 )

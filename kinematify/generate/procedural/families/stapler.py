@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
@@ -91,14 +92,10 @@ FAMILY = Family(
     words=("stapler", "desk stapler", "office stapler"),
     material="metal",
     parameters=(
-        Parameter(name="length", default=0.15, unit="m", bounds=(0.08, 0.3), usual=(0.11, 0.2), help="Of the base."),
-        Parameter(
-            name="width", default=0.036, unit="m", bounds=(0.026, 0.06), usual=(0.03, 0.045), help="At the ears."
-        ),
-        Parameter(
-            name="cover", default=0.01, unit="m", bounds=(0.006, 0.016), usual=(0.008, 0.013), help="Height of the arm."
-        ),
-        Parameter(name="cover_shape", default="flat", choices=("flat", "round"), help="Of the arm's top."),
+        length("length", 0.15, (0.08, 0.3), "Of the base.", usual=(0.11, 0.2)),
+        length("width", 0.036, (0.026, 0.06), "At the ears.", usual=(0.03, 0.045)),
+        length("cover", 0.01, (0.006, 0.016), "Height of the arm.", usual=(0.008, 0.013)),
+        choice("cover_shape", ("flat", "round"), "Of the arm's top."),
     ),
     build=_build,
 )

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
@@ -140,25 +141,16 @@ FAMILY = Family(
     words=("suitcase", "trolley case", "luggage", "travel case", "roller suitcase", "carry on"),
     material="plastic",
     parameters=(
-        Parameter(name="width", default=0.4, unit="m", bounds=(0.3, 0.7), usual=(0.34, 0.5), help="Of the shells."),
-        Parameter(name="depth", default=0.24, unit="m", bounds=(0.18, 0.45), usual=(0.2, 0.3), help="Of both shells."),
-        Parameter(
-            name="height", default=0.62, unit="m", bounds=(0.4, 1.0), usual=(0.52, 0.75), help="With the wheels."
+        length("width", 0.4, (0.3, 0.7), "Of the shells.", usual=(0.34, 0.5)),
+        length("depth", 0.24, (0.18, 0.45), "Of both shells.", usual=(0.2, 0.3)),
+        length("height", 0.62, (0.4, 1.0), "With the wheels.", usual=(0.52, 0.75)),
+        counted(
+            "wheels", 4, (2, 4), "Castors; two of them only roll.", usual=(2, 4), words="wheel, roller, castor, caster"
         ),
-        Parameter(
-            name="wheels",
-            default=4,
-            bounds=(2, 4),
-            usual=(2, 4),
-            words=("wheel", "roller", "castor", "caster"),
-            help="Castors; two of them only roll.",
-        ),
-        Parameter(
-            name="handle",
-            default="trolley",
-            choices=("trolley", "side"),
-            help="One that is drawn out at the top, or only the one at the side.",
-            choice_words={"trolley": ("telescopic", "telescoping", "extendable", "pull out"), "side": ("carrying",)},
+        choice(
+            "handle",
+            {"trolley": "telescopic, telescoping, extendable, pull out", "side": "carrying"},
+            "One that is drawn out at the top, or only the one at the side.",
         ),
     ),
     build=_build,

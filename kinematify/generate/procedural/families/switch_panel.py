@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
 
@@ -83,20 +84,13 @@ FAMILY = Family(
     words=("switch panel", "light switch", "wall switch", "switch plate", "switch", "switchboard", "dimmer switch"),
     material="plastic",
     parameters=(
-        Parameter(
-            name="rockers",
-            default=1,
-            bounds=(1, 6),
-            usual=(1, 4),
-            words=("rocker", "switch", "gang", "rocker switch"),
-            help="Switches side by side.",
+        counted(
+            "rockers", 1, (1, 6), "Switches side by side.", usual=(1, 4), words="rocker, switch, gang, rocker switch"
         ),
-        Parameter(name="dimmers", default=0, bounds=(0, 2), usual=(0, 1), words=("knob", "dial"), help="At the right."),
-        Parameter(name="kind", default="rocker", choices=("rocker", "toggle"), help="Of the switches."),
-        Parameter(name="pitch", default=0.045, unit="m", bounds=(0.03, 0.08), usual=(0.035, 0.06), help="Of switches."),
-        Parameter(
-            name="height", default=0.085, unit="m", bounds=(0.06, 0.15), usual=(0.075, 0.12), help="Of the plate."
-        ),
+        counted("dimmers", 0, (0, 2), "At the right.", usual=(0, 1), words="knob, dial"),
+        choice("kind", ("rocker", "toggle"), "Of the switches."),
+        length("pitch", 0.045, (0.03, 0.08), "Of switches.", usual=(0.035, 0.06)),
+        length("height", 0.085, (0.06, 0.15), "Of the plate.", usual=(0.075, 0.12)),
     ),
     build=_build,
 )

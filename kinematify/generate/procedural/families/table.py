@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.layout import parse_layout
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
 from kinematify.generate.procedural.pieces.handles import HANDLES
 from kinematify.generate.procedural.solids import box, union
@@ -109,26 +110,18 @@ FAMILY = Family(
     words=("table", "desk", "writing desk", "workbench", "console table", "vanity", "side table", "bench table"),
     material="wood",
     parameters=(
-        Parameter(name="width", default=1.2, unit="m", bounds=(0.4, 4.0), usual=(0.8, 1.8), help="Outer width."),
-        Parameter(name="depth", default=0.6, unit="m", bounds=(0.3, 2.0), usual=(0.45, 0.8), help="Outer depth."),
-        Parameter(name="height", default=0.74, unit="m", bounds=(0.5, 1.5), usual=(0.65, 0.95), help="Outer height."),
-        Parameter(
-            name="top", default=0.025, unit="m", bounds=(0.01, 0.06), usual=(0.018, 0.045), help="Thickness of the top."
+        length("width", 1.2, (0.4, 4.0), "Outer width.", usual=(0.8, 1.8)),
+        length("depth", 0.6, (0.3, 2.0), "Outer depth.", usual=(0.45, 0.8)),
+        length("height", 0.74, (0.5, 1.5), "Outer height.", usual=(0.65, 0.95)),
+        length("top", 0.025, (0.01, 0.06), "Thickness of the top.", usual=(0.018, 0.045)),
+        counted("drawers", 2, (1, 5), "Drawers.", usual=(1, 4)),
+        choice(
+            "arrangement",
+            {"row": "side by side, in a row, next to each other", "pedestal": "stacked"},
+            "Drawers side by side under the top, or stacked at the right.",
         ),
-        Parameter(name="drawers", default=2, bounds=(1, 5), usual=(1, 4), help="Drawers."),
-        Parameter(
-            name="arrangement",
-            default="row",
-            choices=("row", "pedestal"),
-            help="Drawers side by side under the top, or stacked at the right.",
-            choice_words={"row": ("side by side", "in a row", "next to each other"), "pedestal": ("stacked",)},
-        ),
-        Parameter(
-            name="layout",
-            default="",
-            help="Any other arrangement, e.g. '2*drawer | drawer | 2*drawer'; overrides the counts.",
-        ),
-        Parameter(name="handle", default="bar", choices=HANDLES, help="What drawers are pulled by."),
+        choice("layout", (), "Any other arrangement, e.g. '2*drawer | drawer | 2*drawer'; overrides the counts."),
+        choice("handle", HANDLES, "What drawers are pulled by."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
@@ -84,25 +85,13 @@ FAMILY = Family(
     words=("toaster", "bread toaster"),
     material="metal",
     parameters=(
-        Parameter(name="width", default=0.19, unit="m", bounds=(0.14, 0.5), usual=(0.16, 0.32), help="Outer width."),
-        Parameter(name="depth", default=0.28, unit="m", bounds=(0.2, 0.5), usual=(0.24, 0.36), help="Outer depth."),
-        Parameter(name="height", default=0.19, unit="m", bounds=(0.15, 0.35), usual=(0.17, 0.24), help="Outer height."),
-        Parameter(name="levers", default=1, bounds=(1, 2), usual=(1, 2), words=("lever", "handle"), help="In front."),
-        Parameter(name="slots", default=2, bounds=(1, 2), usual=(1, 2), words=("slot", "slice"), help="Per lever."),
-        Parameter(
-            name="knob",
-            default="knob",
-            choices=("knob", "none"),
-            help="One beside every lever.",
-            choice_words={"knob": ("dial",)},
-        ),
-        Parameter(
-            name="tray",
-            default="tray",
-            choices=("tray", "none"),
-            help="For crumbs.",
-            choice_words={"tray": ("crumb tray",)},
-        ),
+        length("width", 0.19, (0.14, 0.5), "Outer width.", usual=(0.16, 0.32)),
+        length("depth", 0.28, (0.2, 0.5), "Outer depth.", usual=(0.24, 0.36)),
+        length("height", 0.19, (0.15, 0.35), "Outer height.", usual=(0.17, 0.24)),
+        counted("levers", 1, (1, 2), "In front.", usual=(1, 2), words="lever, handle"),
+        counted("slots", 2, (1, 2), "Per lever.", usual=(1, 2), words="slot, slice"),
+        choice("knob", {"knob": "dial", "none": ""}, "One beside every lever."),
+        choice("tray", {"tray": "crumb tray", "none": ""}, "For crumbs."),
     ),
     build=_build,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length
 from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
 
@@ -128,18 +129,10 @@ FAMILY = Family(
     words=("toilet", "water closet", "loo", "lavatory", "toilet bowl", "commode toilet"),
     material="ceramic",
     parameters=(
-        Parameter(name="width", default=0.4, unit="m", bounds=(0.3, 0.6), usual=(0.35, 0.45), help="Outer width."),
-        Parameter(name="depth", default=0.68, unit="m", bounds=(0.55, 0.9), usual=(0.6, 0.75), help="Outer depth."),
-        Parameter(
-            name="height", default=0.4, unit="m", bounds=(0.25, 0.55), usual=(0.36, 0.45), help="Of the bowl's rim."
-        ),
-        Parameter(
-            name="flush",
-            default="lever",
-            choices=("lever", "button"),
-            help="What it is flushed by.",
-            choice_words={"lever": ("flush lever",), "button": ("flush button", "push button")},
-        ),
+        length("width", 0.4, (0.3, 0.6), "Outer width.", usual=(0.35, 0.45)),
+        length("depth", 0.68, (0.55, 0.9), "Outer depth.", usual=(0.6, 0.75)),
+        length("height", 0.4, (0.25, 0.55), "Of the bowl's rim.", usual=(0.36, 0.45)),
+        choice("flush", {"lever": "flush lever", "button": "flush button, push button"}, "What it is flushed by."),
     ),
     build=_build,
 )

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import bent_fork
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import ball, cylinder
@@ -69,45 +70,20 @@ def _along(lean: float) -> FloatArray:
 FAMILY = Family(
     name="tracked_tree",
     title="tree of links on tracks",
-    words=(
-        "tracked tree",
-        "tracked robot tree",
-        "robot tree",
-        "tracked robot",
-        "tree on tracks",
-        "tree of links",
-        "linkage tree",
-        "tree linkage",
-        "kinematic tree",
-        "tree robot",
-        "branching robot",
+    words=phrases(
+        "tracked tree, tracked robot tree, robot tree, tracked robot, tree on tracks, tree of links, "
+        "linkage tree, tree linkage, kinematic tree, tree robot, branching robot"
     ),
     material="metal",
     parameters=(
-        Parameter(
-            name="branches", default=4, bounds=(1, 8), usual=(2, 6), words=("branch", "limb"), help="Around the trunk."
-        ),
-        Parameter(
-            name="links",
-            default=2,
-            bounds=(1, 3),
-            usual=(1, 3),
-            words=("link", "joint", "joint per branch"),
-            help="Of a branch.",
-        ),
-        Parameter(name="wheels", default=0, bounds=(0, 4), usual=(0, 3), words=("wheel",), help="Seen on each side."),
-        Parameter(name="length", default=0.8, unit="m", bounds=(0.4, 3.0), usual=(0.6, 1.2), help="Of the tracks."),
-        Parameter(name="width", default=0.6, unit="m", bounds=(0.4, 2.0), usual=(0.4, 0.9), help="Over the tracks."),
-        Parameter(name="trunk", default=0.5, unit="m", bounds=(0.2, 2.0), usual=(0.3, 0.8), help="Its height."),
-        Parameter(name="link_length", default=0.3, unit="m", bounds=(0.25, 1.0), usual=(0.25, 0.5), help="Its length."),
-        Parameter(
-            name="joint_radius",
-            default=0.025,
-            unit="m",
-            bounds=(0.015, 0.04),
-            usual=(0.02, 0.035),
-            help="Of the hinges.",
-        ),
+        counted("branches", 4, (1, 8), "Around the trunk.", usual=(2, 6), words="branch, limb"),
+        counted("links", 2, (1, 3), "Of a branch.", usual=(1, 3), words="link, joint, joint per branch"),
+        counted("wheels", 0, (0, 4), "Seen on each side.", usual=(0, 3), words="wheel"),
+        length("length", 0.8, (0.4, 3.0), "Of the tracks.", usual=(0.6, 1.2)),
+        length("width", 0.6, (0.4, 2.0), "Over the tracks.", usual=(0.4, 0.9)),
+        length("trunk", 0.5, (0.2, 2.0), "Its height.", usual=(0.3, 0.8)),
+        length("link_length", 0.3, (0.25, 1.0), "Its length.", usual=(0.25, 0.5)),
+        length("joint_radius", 0.025, (0.015, 0.04), "Of the hinges.", usual=(0.02, 0.035)),
     ),
     build=_build,
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.handles import handle
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import bore, box, cylinder, tray
@@ -115,44 +116,25 @@ def _lift(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="trash_can",
     title="trash can",
-    words=(
-        "trash can",
-        "garbage can",
-        "trash bin",
-        "garbage bin",
-        "dustbin",
-        "waste bin",
-        "rubbish bin",
-        "bin",
-        "trashcan",
-        "pedal bin",
-        "wastebasket",
+    words=phrases(
+        "trash can, garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, "
+        "pedal bin, wastebasket"
     ),
     material="plastic",
     parameters=(
-        Parameter(
-            name="width",
-            default=0.28,
-            unit="m",
-            bounds=(0.18, 0.8),
-            usual=(0.2, 0.42),
-            words=("diameter",),
-            help="Outer width or diameter.",
-        ),
-        Parameter(name="height", default=0.4, unit="m", bounds=(0.2, 1.2), usual=(0.28, 0.7), help="Without the lid."),
-        Parameter(
-            name="lid",
-            default="pedal",
-            choices=("pedal", "swing", "lift"),
-            words=("cover",),
-            help="How it opens.",
-            choice_words={
-                "pedal": ("pedal bin", "foot pedal"),
-                "swing": ("swing lid", "swinging", "flap", "swing top"),
-                "lift": ("lifts", "lifts off", "lift off", "loose", "removable"),
+        length("width", 0.28, (0.18, 0.8), "Outer width or diameter.", usual=(0.2, 0.42), words="diameter"),
+        length("height", 0.4, (0.2, 1.2), "Without the lid.", usual=(0.28, 0.7)),
+        choice(
+            "lid",
+            {
+                "pedal": "pedal bin, foot pedal",
+                "swing": "swing lid, swinging, flap, swing top",
+                "lift": "lifts, lifts off, lift off, loose, removable",
             },
+            "How it opens.",
+            words="cover",
         ),
-        Parameter(name="shape", default="round", choices=("round", "square"), help="Of the bin."),
+        choice("shape", ("round", "square"), "Of the bin."),
     ),
     build=_build,
 )

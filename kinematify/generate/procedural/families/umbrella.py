@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.bearings import fork
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, ring, rod
 
@@ -92,18 +93,10 @@ FAMILY = Family(
     words=("umbrella", "parasol", "sunshade"),
     material="metal",
     parameters=(
-        Parameter(name="height", default=0.85, unit="m", bounds=(0.5, 1.5), usual=(0.7, 1.0), help="Over all."),
-        Parameter(name="reach", default=0.55, unit="m", bounds=(0.2, 1.0), usual=(0.4, 0.65), help="Of a slat."),
-        Parameter(
-            name="ribs", default=8, bounds=(4, 12), usual=(6, 10), words=("rib", "slat"), help="Around the shaft."
-        ),
-        Parameter(
-            name="handle",
-            default="crook",
-            choices=("crook", "straight"),
-            help="What it stands on.",
-            choice_words={"crook": ("crooked", "hooked", "curved")},
-        ),
+        length("height", 0.85, (0.5, 1.5), "Over all.", usual=(0.7, 1.0)),
+        length("reach", 0.55, (0.2, 1.0), "Of a slat.", usual=(0.4, 0.65)),
+        counted("ribs", 8, (4, 12), "Around the shaft.", usual=(6, 10), words="rib, slat"),
+        choice("handle", {"crook": "crooked, hooked, curved", "straight": ""}, "What it stands on."),
     ),
     build=_build,
 )

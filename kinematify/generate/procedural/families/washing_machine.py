@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import barrel, stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
@@ -97,43 +98,19 @@ def _add_controls(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="washing_machine",
     title="washing machine",
-    words=(
-        "washing machine",
-        "washer",
-        "dryer",
-        "tumble dryer",
-        "laundry machine",
-        "clothes washer",
-        "front loading washer",
-        "front loading washing machine",
-        "front loader",
+    words=phrases(
+        "washing machine, washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, "
+        "front loading washing machine, front loader"
     ),
     material="metal",
     part_words={"door": ("round door", "porthole")},
     parameters=(
-        Parameter(name="width", default=0.6, unit="m", bounds=(0.4, 0.9), usual=(0.5, 0.7), help="Outer width."),
-        Parameter(name="height", default=0.85, unit="m", bounds=(0.55, 1.2), usual=(0.75, 0.95), help="Outer height."),
-        Parameter(
-            name="depth",
-            default=0.55,
-            unit="m",
-            bounds=(0.35, 0.8),
-            usual=(0.45, 0.65),
-            help="Outer depth of the body.",
-        ),
-        Parameter(name="buttons", default=4, bounds=(0, 6), usual=(0, 6), words=("key",), help="At the right."),
-        Parameter(
-            name="knob",
-            default="endless",
-            choices=("endless", "stops"),
-            help="Whether the programme knob turns without end.",
-        ),
-        Parameter(
-            name="hinge_side",
-            default="left",
-            choices=("left", "right"),
-            help="Of the door.",
-        ),
+        length("width", 0.6, (0.4, 0.9), "Outer width.", usual=(0.5, 0.7)),
+        length("height", 0.85, (0.55, 1.2), "Outer height.", usual=(0.75, 0.95)),
+        length("depth", 0.55, (0.35, 0.8), "Outer depth of the body.", usual=(0.45, 0.65)),
+        counted("buttons", 4, (0, 6), "At the right.", usual=(0, 6), words="key"),
+        choice("knob", ("endless", "stops"), "Whether the programme knob turns without end."),
+        choice("hinge_side", ("left", "right"), "Of the door."),
     ),
     build=_build,
 )

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family, Parameter
+from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.parameter import choice, counted, length
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_lever
 from kinematify.generate.procedural.pieces.leaves import (
     Field,
@@ -137,38 +138,25 @@ FAMILY = Family(
     words=("window", "skylight"),
     material="wood",
     parameters=(
-        Parameter(name="width", default=1.0, unit="m", bounds=(0.6, 4.0), usual=(0.6, 1.6), help="Outer width."),
-        Parameter(name="height", default=1.2, unit="m", bounds=(0.5, 3.0), usual=(0.6, 1.6), help="Outer height."),
-        Parameter(
-            name="frame", default=0.05, unit="m", bounds=(0.03, 0.08), usual=(0.04, 0.07), help="Its bars' width."
-        ),
-        Parameter(
-            name="kind",
-            default="casement",
-            choices=("casement", "sliding", "tilt", "awning", "pivot"),
-            help="Sashes turn about a side, slide, turn about the lower or upper edge, or about their middle.",
-            choice_words={
-                "casement": ("hinged", "swinging", "french"),
-                "sliding": ("slide", "gliding"),
-                "tilt": ("tilting", "tilted", "hopper", "bottom hung"),
-                "awning": ("top hung",),
-                "pivot": ("pivoting", "pivoted"),
+        length("width", 1.0, (0.6, 4.0), "Outer width.", usual=(0.6, 1.6)),
+        length("height", 1.2, (0.5, 3.0), "Outer height.", usual=(0.6, 1.6)),
+        length("frame", 0.05, (0.03, 0.08), "Its bars' width.", usual=(0.04, 0.07)),
+        choice(
+            "kind",
+            {
+                "casement": "hinged, swinging, french",
+                "sliding": "slide, gliding",
+                "tilt": "tilting, tilted, hopper, bottom hung",
+                "awning": "top hung",
+                "pivot": "pivoting, pivoted",
             },
+            "Sashes turn about a side, slide, turn about the lower or upper edge, or about their middle.",
         ),
-        Parameter(
-            name="sashes",
-            default=1,
-            bounds=(1, 3),
-            usual=(1, 3),
-            words=("sash", "window", "pane", "casement"),
-            help="That move.",
-        ),
-        Parameter(name="rows", default=1, bounds=(1, 4), usual=(1, 2), help="Of panes in a sash."),
-        Parameter(name="columns", default=1, bounds=(1, 3), usual=(1, 2), help="Of panes in a sash."),
-        Parameter(name="hinge", default="barrel", choices=("barrel", "edge"), help="Visible hinges, or hidden ones."),
-        Parameter(
-            name="handle", default="lever", choices=("lever", "none"), help="A handle that turns on hinged sashes."
-        ),
+        counted("sashes", 1, (1, 3), "That move.", usual=(1, 3), words="sash, window, pane, casement"),
+        counted("rows", 1, (1, 4), "Of panes in a sash.", usual=(1, 2)),
+        counted("columns", 1, (1, 3), "Of panes in a sash.", usual=(1, 2)),
+        choice("hinge", ("barrel", "edge"), "Visible hinges, or hidden ones."),
+        choice("handle", ("lever", "none"), "A handle that turns on hinged sashes."),
     ),
     build=_build,
 )

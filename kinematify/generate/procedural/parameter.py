@@ -1,0 +1,102 @@
+"""What may be asked of a family of objects: lengths, angles, shares, counts and choices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Value = float | int | str
+_Range = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """One thing that may be asked for."""
+
+    name: str
+    default: Value
+    """Its type is the parameter's: float with a unit, int for a count, str for a choice."""
+    help: str
+    unit: str = ""
+    """``m``, ``rad`` or empty."""
+    bounds: _Range | None = None
+    """Values that can be built, both ends included."""
+    usual: _Range | None = None
+    """Values that a seed draws from; the default alone if absent."""
+    choices: tuple[str, ...] = ()
+    """Of a choice; a seed draws from all of them."""
+    words: tuple[str, ...] = ()
+    """How people call what is counted, measured or chosen, singular; the name itself and its singular count anyway."""
+    choice_words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """How people call a choice, besides its own name."""
+    drawn: bool = True
+    """False: a seed draws no value, and no number either, so that what else it draws stays the same without it."""
+
+
+def length(
+    name: str,
+    default: float,
+    bounds: _Range,
+    help: str,
+    *,
+    usual: _Range | None = None,
+    words: str = "",
+    drawn: bool = True,
+) -> Parameter:
+    """A length [m]; `words` are separated by commas, here and below."""
+    return Parameter(
+        name=name, default=default, unit="m", bounds=bounds, usual=usual, help=help, words=phrases(words), drawn=drawn
+    )
+
+
+def angle(
+    name: str, default: float, bounds: _Range, help: str, *, usual: _Range | None = None, drawn: bool = True
+) -> Parameter:
+    """An angle [rad]."""
+    return Parameter(name=name, default=default, unit="rad", bounds=bounds, usual=usual, help=help, drawn=drawn)
+
+
+def share(name: str, default: float, bounds: _Range, help: str, *, usual: _Range | None = None) -> Parameter:
+    """A number without a unit."""
+    return Parameter(name=name, default=default, bounds=bounds, usual=usual, help=help)
+
+
+def counted(
+    name: str,
+    default: int,
+    bounds: _Range,
+    help: str,
+    *,
+    usual: _Range | None = None,
+    words: str = "",
+    drawn: bool = True,
+) -> Parameter:
+    """How many there are."""
+    return Parameter(
+        name=name, default=default, bounds=bounds, usual=usual, help=help, words=phrases(words), drawn=drawn
+    )
+
+
+def choice(
+    name: str, choices: Sequence[str] | Mapping[str, str], help: str, *, words: str = "", drawn: bool = True
+) -> Parameter:
+    """One of several, the first if nothing is said; a mapping gives words for each. Any text if there are none."""
+    named = choices if isinstance(choices, Mapping) else {}
+    return Parameter(
+        name=name,
+        default=next(iter(choices), ""),
+        choices=tuple(choices),
+        help=help,
+        words=phrases(words),
+        choice_words={key: phrases(said) for key, said in named.items() if said},
+        drawn=drawn,
+    )
+
+
+def phrases(text: str) -> tuple[str, ...]:
+    """Split a text at its commas."""
+    return tuple(text.split(", ")) if text else ()
