@@ -32,6 +32,7 @@ SETS = {
     "stranger": "what a stranger asked for, and what is meant to be composed",
     "new": "new ones, written before the parser was looked at",
     "fresh": "sixty more, committed before they were tried",
+    "visitors": "sixty in the styles of many visitors, committed before they were tried",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }

@@ -14,6 +14,7 @@ from kinematify.generate.composer.bodies import BODIES
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.composer.mechanisms import MECHANISMS
 from kinematify.generate.composer.sentence import NoBodyError, read_composition, told
+from kinematify.generate.procedural.materials import COLORS
 from kinematify.generate.procedural.request import from_text
 from kinematify.robot.joint_type import JointType
 
@@ -130,6 +131,23 @@ def test_parts_are_called_as_they_were_said():
     assert blueprint.family == "tool_box"
 
 
+def test_a_mechanism_stands_open_and_moves_as_is_said():
+    request = from_text("two fridges of 180 cm with 3 drawers, hinged door opened 45 degrees, red")
+    made = request.build()
+    assert made.joint_above["door_1"].value == pytest.approx(np.pi / 4)
+    assert {made.joint_above[f"drawer_{k}"].value for k in (1, 2, 3)} == {0.0}
+    assert np.ptp(made.parts[0].vertices[:, 2]) == pytest.approx(1.8)
+    assert made.parts[0].color == COLORS["red"]
+    assert "door_1_2" in made.joint_above
+    with pytest.raises(InputError, match="sliding crank"):
+        from_text("a cart with a sliding crank")
+
+
+def test_controls_keep_clear_of_wheels():
+    made = from_text("a car with four wheels and four fans").build()
+    assert not overlaps(made)
+
+
 def test_a_seed_draws_what_is_not_asked_for():
     composition = read_composition("a cart, 90 cm wide, with two drawers")
     first, again, other = (compose(composition, seed=seed).parts[0] for seed in (1, 1, 2))
@@ -161,13 +179,14 @@ def test_sides_looks_and_openness_are_as_said():
     ("sentence", "words"),
     [
         ("a toolbox with two cantilever stairs", "cantilever"),
-        ("three carts with a wheel", "3 cart"),
+        ("thirteen carts with a wheel", "13 cart"),
+        ("a cart door", "cart door"),
         ("a cart with two crocodiles", "crocodiles"),
         ("a cart with a drawer and no drawer", "drawer"),
         ("a cart with two drawers with a knob on each drawer", "each"),
         ("a cart with two drawers; the drawers are red", "drawer"),
         ("a cart with red and blue knobs", "blue"),
-        ("a cart with two drawers, red", "red"),
+        ("a cart with two drawers, red, blue", "blue"),
         ("a cart with two drawers 20 cm deep", "cm"),
         ("a cart with a half open lid and a drawer", "half"),
         ("a drawer of a cart", "drawer"),

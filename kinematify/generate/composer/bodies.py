@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.generate.composer.side import side_of
+from kinematify.generate.procedural.parameter import phrases
 from kinematify.generate.procedural.pieces.fronts import Opening
 from kinematify.generate.procedural.solids import box, cylinder, rounded_box
 
@@ -268,80 +269,84 @@ def _frame(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
 
 BODIES = (
     Body(
-        words=("cabinet", "cupboard", "locker", "sideboard", "kiosk", "shoe cabinet", "display cabinet"),
+        words=phrases("cabinet, cupboard, locker, sideboard, kiosk, shoe cabinet, display cabinet"),
         size=(0.7, 0.45, 0.9),
         build=_block,
         material="wood",
     ),
     Body(
-        words=("control box", "console", "housing", "machine housing", "lab box", "instrument box"),
+        words=phrases("control box, console, housing, machine housing, lab box, instrument box"),
         size=(0.4, 0.22, 0.3),
         build=_block,
     ),
-    Body(words=("wardrobe", "armoire", "closet"), size=(1.2, 0.6, 2.0), build=_block, material="wood"),
-    Body(words=("tv stand", "tv unit", "tv bench"), size=(1.5, 0.4, 0.5), build=_block, material="wood"),
+    Body(words=phrases("wardrobe, armoire, closet"), size=(1.2, 0.6, 2.0), build=_block, material="wood"),
     Body(
-        words=("vending machine", "ticket machine"),
+        words=phrases("tv stand, tv unit, tv bench, tv lowboard, lowboard"),
+        size=(1.5, 0.4, 0.5),
+        build=_block,
+        material="wood",
+    ),
+    Body(
+        words=phrases("vending machine, ticket machine"),
         size=(0.9, 0.8, 1.8),
         build=_block,
         usual={"door": 1, "button": 6, "flap": 1},
         material="metal",
     ),
-    Body(words=("printer", "copier"), size=(0.5, 0.45, 0.35), build=_block, usual={"lid": 1, "tray": 1}),
+    Body(words=phrases("printer, copier"), size=(0.5, 0.45, 0.35), build=_block, usual={"lid": 1, "tray": 1}),
     Body(
-        words=("mobile robot", "mobile base", "robot base"),
+        words=phrases("mobile robot, mobile base, robot base"),
         size=(0.45, 0.45, 0.25),
         build=_block,
         usual={"wheel": 2, "caster": 1},
     ),
     Body(
-        words=("cart", "trolley", "tool cart", "tool trolley", "utility cart", "serving cart"),
+        words=phrases("cart, trolley, tool cart, tool trolley, utility cart, serving cart"),
         size=(0.75, 0.45, 0.7),
         build=_block,
         usual={"caster": 4, "push handle": 1},
     ),
-    Body(words=("platform", "dolly", "base plate"), size=(0.8, 0.5, 0.1), build=_block),
+    Body(words=phrases("platform, dolly, base plate"), size=(0.8, 0.5, 0.1), build=_block),
     Body(
-        words=("crate", "tub", "toolbox", "tool box", "bin", "container", "chest"),
+        words=phrases("crate, tub, toolbox, tool box, bin, wheelie bin, container, chest"),
         size=(0.55, 0.35, 0.32),
         build=_tub,
         material="plastic",
     ),
-    Body(words=("table", "desk", "workbench", "counter"), size=(1.2, 0.6, 0.75), build=_table, material="wood"),
+    Body(words=phrases("table, desk, workbench, counter"), size=(1.2, 0.6, 0.75), build=_table, material="wood"),
     Body(
-        words=("folding table", "camping table", "trestle table", "table top"),
+        words=phrases("folding table, camping table, trestle table, table top"),
         size=(1.5, 0.7, 0.72),
         build=_top,
         material="wood",
         always={"leg": 4},
     ),
     Body(
-        words=("scissor lift", "lift table", "scissor table", "scissor lift platform", "lifting table"),
+        words=phrases("scissor lift, lift table, scissor table, scissor lift platform, lifting table"),
         size=(0.9, 0.5, 0.15),
         build=_block,
         always={"lifting platform": 1},
     ),
     Body(
-        words=("refrigerator", "fridge"),
-        size=(0.6, 0.6, 1.8),
-        build=_block,
-        usual={"door": 2},
-        material="metal",
+        words=phrases("refrigerator, fridge"), size=(0.6, 0.6, 1.8), build=_block, usual={"door": 2}, material="metal"
     ),
-    Body(words=("filing cabinet", "file cabinet"), size=(0.45, 0.6, 1.1), build=_block),
-    Body(words=("dresser", "drawer unit"), size=(0.9, 0.45, 0.9), build=_block, material="wood"),
+    Body(words=phrases("filing cabinet, file cabinet"), size=(0.45, 0.6, 1.1), build=_block),
+    Body(words=phrases("tool chest, rolling tool chest, tool cabinet"), size=(0.7, 0.45, 0.9), build=_block),
+    Body(words=phrases("electrical panel, fuse box, breaker box, switch cabinet"), size=(0.5, 0.2, 0.7), build=_block),
+    Body(words=phrases("barn, shed, garden shed, hut"), size=(3.0, 4.0, 2.6), build=_block, material="wood"),
+    Body(words=phrases("dresser, drawer unit"), size=(0.9, 0.45, 0.9), build=_block, material="wood"),
     Body(
-        words=("pickup truck", "pickup", "truck", "lorry", "toy truck"),
+        words=phrases("pickup truck, pickup, truck, lorry, toy truck"),
         size=(1.8, 4.6, 1.75),
         build=_truck,
         material="plastic",
         always={"wheel": 4},
         usual={"door": 2, "flap": 1},
     ),
-    Body(words=("car", "toy car"), size=(0.8, 1.8, 0.6), build=_car, always={"wheel": 4}),
-    Body(words=("drum", "barrel", "tank"), size=(0.5, 0.5, 0.7), build=_drum),
-    Body(words=("column", "post", "pedestal", "stand"), size=(0.36, 0.36, 1.0), build=_column),
-    Body(words=("control panel", "panel", "board"), size=(0.6, 0.2, 0.45), build=_panel),
-    Body(words=("frame", "portal", "doorway"), size=(1.0, 0.12, 2.1), build=_frame, material="wood"),
+    Body(words=phrases("car, toy car"), size=(0.8, 1.8, 0.6), build=_car, always={"wheel": 4}),
+    Body(words=phrases("drum, barrel, tank"), size=(0.5, 0.5, 0.7), build=_drum),
+    Body(words=phrases("column, post, pedestal, stand"), size=(0.36, 0.36, 1.0), build=_column),
+    Body(words=phrases("control panel, panel, board"), size=(0.6, 0.2, 0.45), build=_panel),
+    Body(words=phrases("frame, portal, doorway"), size=(1.0, 0.12, 2.1), build=_frame, material="wood"),
 )
 """All bodies; no word stands twice."""

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.composer.side import Side
+    from kinematify.generate.procedural.language.parts import PartRequirement
     from kinematify.generate.procedural.pieces.fronts import Opening
 
 MOST = 60
@@ -60,6 +61,11 @@ class Wanted:
         """What it is called, singular."""
         return self.said or self.mechanism.words[0]
 
+    @property
+    def stem(self) -> str:
+        """Name of its parts without their numbers."""
+        return self.title.replace(" ", "_").replace("-", "_")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Composition:
@@ -77,6 +83,10 @@ class Composition:
     """Material and colour of the handles of doors and drawers; metal if nothing is said."""
     rest: float = 0.0
     """Share of the way that moving parts stand open."""
+    requirements: tuple[PartRequirement, ...] = ()
+    """How some of its mechanisms move, or how far they stand open."""
+    copies: int = 1
+    """How many, side by side."""
 
     @property
     def title(self) -> str:
@@ -106,7 +116,7 @@ def compose(
     here: Counter[tuple[str, str]] = Counter()
     lids: dict[str, str] = {}
     for name_of_side, item, area in layout.placed:
-        side, word = layout.sides[name_of_side], item.title.replace(" ", "_").replace("-", "_")
+        side, word = layout.sides[name_of_side], item.stem
         numbers[word] += 1
         place = Place(
             workshop=layout.workshop.from_frame(side.T_world_side, material=item.material, color=item.color),
@@ -127,7 +137,10 @@ def compose(
     parameters = {"seed": seed, "size": layout.size, **{f"{word}s": count for word, count in numbers.items()}}
     rng = np.random.default_rng(0)
     named = name or composition.title.replace(" ", "_")
-    return layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
+    made = layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
+    for requirement in composition.requirements:
+        made = requirement.applied(made)
+    return made
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -293,9 +306,14 @@ def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanis
 def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wanted, Opening]]:
     """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
     placed = []
+    on_axles = [item.count for item in wanted if item.mechanism.arranged == "axles"]
+    wheels = _axles(side.axles, sum(on_axles)) if side.axles is not None and on_axles else []
     bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid", "foot")])
     for band, strip in zip(bands, rows(side.area, [weight for weight, _ in bands]) if bands else [], strict=True):
-        for item, cell in _divided(band[1], strip):
+        free = _beside_wheels(strip, wheels) if band[1][0].mechanism.arranged == "grid" else strip
+        if free.width <= 0.0 or free.height <= 0.0:
+            raise _TooSmallError(_told(band[1][0].mechanism, wanted, name), {1, 2})
+        for item, cell in _divided(band[1], free):
             needed = item.mechanism.least
             if cell.width < needed[0] or cell.height < needed[1]:
                 axes = {0 if name in ("front", "back", "top", "bottom") else 1} if cell.width < needed[0] else set()
@@ -360,6 +378,15 @@ def _axles(line: Opening, count: int) -> list[Opening]:
         replace(line, left=x - radius, right=x + radius, bottom=middle - radius, top=middle + radius)
         for x in map(float, places)
     ]
+
+
+def _beside_wheels(strip: Opening, wheels: Sequence[Opening]) -> Opening:
+    """What wheels leave free of a strip: the middle between two, what is above them where there are others."""
+    if not wheels or strip.bottom >= wheels[0].top:
+        return strip
+    if len(wheels) == 2:
+        return replace(strip, left=max(strip.left, wheels[0].right), right=min(strip.right, wheels[1].left))
+    return replace(strip, bottom=wheels[0].top)
 
 
 def _corners(area: Opening, count: int) -> list[Opening]:

@@ -22,6 +22,7 @@ from kinematify.generate.composer.linkages import (
     stick,
 )
 from kinematify.generate.composer.place import HANGING, OUTWARD, UPSIDE_DOWN, Place
+from kinematify.generate.procedural.parameter import phrases
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
@@ -336,7 +337,7 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=("flap", "tailgate", "drop door", "flap door", "tilting flap"),
+        words=phrases("flap, tailgate, drop door, flap door, tilting flap"),
         sides=("front", "back"),
         build=_flap,
         arranged="stack",
@@ -346,7 +347,7 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=("lid", "hatch", "cover", "scanner lid"),
+        words=phrases("lid, hatch, cover, scanner lid"),
         sides=("top",),
         build=_lid,
         arranged="row",
@@ -356,7 +357,7 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=("sliding door", "shutter", "sliding panel"),
+        words=phrases("sliding door, shutter, sliding panel"),
         sides=("front", "top"),
         build=_shutter,
         arranged="stack",
@@ -366,7 +367,7 @@ MECHANISMS = (
         halves=True,
     ),
     Mechanism(
-        words=("tray", "paper tray", "pull-out shelf", "pull out shelf", "keyboard tray", "pull-out tray"),
+        words=phrases("tray, paper tray, pull-out shelf, pull out shelf, keyboard tray, pull-out tray"),
         sides=("front",),
         build=_shelf,
         arranged="stack",
@@ -374,64 +375,63 @@ MECHANISMS = (
         least=(0.15, 0.04),
         needs="room",
     ),
-    Mechanism(words=("knob", "dial", "rotary knob"), sides=_CONTROLS, build=_knob),
-    Mechanism(words=("button", "push button"), sides=_CONTROLS, build=_button),
-    Mechanism(words=("lever", "toggle switch", "switch", "joystick"), sides=_CONTROLS, build=_lever),
+    Mechanism(words=phrases("knob, dial, rotary knob"), sides=_CONTROLS, build=_knob),
+    Mechanism(words=phrases("button, push button"), sides=_CONTROLS, build=_button),
     Mechanism(
-        words=("crank", "hand crank", "winder"),
+        words=phrases("lever, toggle switch, switch, breaker, circuit breaker, joystick"), sides=_CONTROLS, build=_lever
+    ),
+    Mechanism(
+        words=phrases("crank, hand crank, winder"),
         sides=("right", "left", "front", "top", "back"),
         build=_crank,
         least=(0.08, 0.08),
         weight=1.5,
     ),
     Mechanism(
-        words=("hand wheel", "handwheel", "valve wheel"),
+        words=phrases("hand wheel, handwheel, valve wheel"),
         sides=("front", "right", "left", "top", "back"),
         build=_hand_wheel,
         least=(0.1, 0.1),
         weight=1.5,
     ),
     Mechanism(
-        words=("gauge", "gauge needle", "needle", "pointer"),
-        sides=_CONTROLS,
-        build=_needle,
-        least=(0.06, 0.06),
+        words=phrases("gauge, gauge needle, needle, pointer"), sides=_CONTROLS, build=_needle, least=(0.06, 0.06)
     ),
     Mechanism(words=("wheel",), sides=("left",), build=_wheel, arranged="axles"),
     Mechanism(
-        words=("caster", "castor", "caster wheel", "swivel wheel", "castor wheel"),
+        words=phrases("caster, castor, caster wheel, swivel wheel, castor wheel"),
         sides=("bottom",),
         build=_caster,
         arranged="corners",
     ),
     Mechanism(
-        words=("rotor", "fan", "propeller", "impeller"),
+        words=phrases("rotor, fan, propeller, impeller"),
         sides=("front", "top", "back", "left", "right"),
         build=_rotor,
         least=(0.12, 0.12),
         weight=2.0,
     ),
     Mechanism(
-        words=("turntable", "rotating plate", "rotary table"),
+        words=phrases("turntable, rotating plate, rotary table"),
         sides=("top", "front"),
         build=_turntable,
         least=(0.1, 0.1),
         weight=2.0,
     ),
     Mechanism(
-        words=("telescope", "telescopic mast", "telescopic antenna", "telescopic rod"),
+        words=phrases("telescope, telescopic mast, telescopic antenna, telescopic rod"),
         sides=("top", "front", "back"),
         build=_telescope,
     ),
     Mechanism(
-        words=("carrying handle", "handle", "carry handle", "bail", "swing handle", "folding handle"),
+        words=phrases("carrying handle, handle, carry handle, bail, swing handle, folding handle"),
         sides=("top",),
         build=_bail,
         arranged="over",
         most=1,
     ),
     Mechanism(
-        words=("cantilever tray", "cantilever compartment"),
+        words=phrases("cantilever tray, cantilever compartment"),
         sides=("top",),
         build=add_cantilever_tray,
         arranged="apart",
@@ -440,16 +440,16 @@ MECHANISMS = (
         most=2,
     ),
     Mechanism(
-        words=("lifting platform", "scissor lift", "scissor mechanism"),
+        words=phrases("lifting platform, scissor lift, scissor mechanism"),
         sides=("top",),
         build=add_scissor_lift,
         arranged="alone",
         most=1,
     ),
-    Mechanism(words=("gripper", "parallel gripper"), sides=("front", "top"), build=add_gripper, least=(0.16, 0.1)),
-    Mechanism(words=("hook", "coat hook", "folding hook"), sides=("front", "right", "left", "back"), build=add_hook),
+    Mechanism(words=phrases("gripper, parallel gripper"), sides=("front", "top"), build=add_gripper, least=(0.16, 0.1)),
+    Mechanism(words=phrases("hook, coat hook, folding hook"), sides=("front", "right", "left", "back"), build=add_hook),
     Mechanism(
-        words=("pedal", "foot pedal"),
+        words=phrases("pedal, foot pedal"),
         sides=("front",),
         build=add_pedal,
         arranged="foot",
@@ -457,16 +457,16 @@ MECHANISMS = (
         least=(0.08, 0.08),
     ),
     Mechanism(
-        words=("leg", "folding leg", "fold out leg", "fold-out leg"),
+        words=phrases("leg, folding leg, fold out leg, fold-out leg"),
         sides=("bottom",),
         build=add_leg,
         arranged="corners",
         needs="height",
         most=4,
     ),
-    Mechanism(words=("arm", "folding arm"), sides=("top",), build=_arm, arranged="alone", most=1),
+    Mechanism(words=phrases("arm, folding arm"), sides=("top",), build=_arm, arranged="alone", most=1),
     Mechanism(
-        words=("push handle", "push bar"),
+        words=phrases("push handle, push bar"),
         sides=("back",),
         build=_push_handle,
         arranged="edge",

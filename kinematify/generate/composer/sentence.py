@@ -11,8 +11,19 @@ from kinematify.generate.composer.bodies import BODIES, Body
 from kinematify.generate.composer.compose import Composition, Wanted
 from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
 from kinematify.generate.composer.side import FACING
-from kinematify.generate.procedural.language.sizes import DIMENSIONS
-from kinematify.generate.procedural.language.words import STOP_WORDS, UNITS, Token, tokens_of
+from kinematify.generate.procedural.language.counts import MOST_COPIES
+from kinematify.generate.procedural.language.openness import OUT, share_at
+from kinematify.generate.procedural.language.parts import MOTIONS, PartRequirement
+from kinematify.generate.procedural.language.sizes import DIMENSIONS, angle_at, length_at
+from kinematify.generate.procedural.language.words import (
+    OPENNESS,
+    PURPOSES,
+    STOP_WORDS,
+    UNITS,
+    Token,
+    Words,
+    tokens_of,
+)
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS
 
 if TYPE_CHECKING:
@@ -45,6 +56,8 @@ class _Look:
     count: int | None = None
     material: str | None = None
     color: str | None = None
+    motion: str = ""
+    """Of `MOTIONS`."""
 
 
 def read_composition(sentence: str) -> Composition:
@@ -87,6 +100,8 @@ def read_composition(sentence: str) -> Composition:
         color=reader.of_body.color,
         handles=(reader.handles.material, reader.handles.color) if reader.handles else (None, None),
         rest=reader.rest,
+        requirements=tuple(reader.requirements),
+        copies=reader.copies,
     )
 
 
@@ -127,6 +142,7 @@ class _Reader:
     def __init__(self, tokens: Sequence[Token]) -> None:
         """Begin before the first word."""
         self._tokens = tokens
+        self._words = Words(tuple(tokens))
         self._look = _Look()
         self.body: Body | None = None
         self.said = ""
@@ -138,6 +154,8 @@ class _Reader:
         self.bare: float | None = None
         """A length of the body of which is not said what it is [m]."""
         self.rest = 0.0
+        self.requirements: list[PartRequirement] = []
+        self.copies = 1
         self.left: list[str] = []
         """Words that were not understood, as they were written."""
 
@@ -145,7 +163,10 @@ class _Reader:
         """Take up every word."""
         k = 0
         while k < len(self._tokens):
-            steps = (self._length, self._mechanism, self._named_body, self._openness, self._described, self._counted)
+            steps = (
+                self._length, self._opened, self._mechanism, self._named_body, self._openness, self._look_of_body,
+                self._described, self._counted, self._purpose,
+            )  # fmt: skip
             taken = next((words for step in steps if (words := step(k))), 0)
             if not taken and not self._says_nothing(self._tokens[k]):
                 self.left.append(self._tokens[k].given)
@@ -199,7 +220,10 @@ class _Reader:
         if words == _HANDLES and plural and look.count is None:
             self.handles = look  # those of doors and drawers, which are not counted
             return len(words)
-        again = look.count is None and any(item.mechanism is mechanism for item in self.wanted)
+        before = next((item for item in self.wanted if item.mechanism is mechanism), None)
+        again = look.count is None and before is not None
+        if again and before is not None and (opened := self._opened_by(end, before, words)):
+            return len(words) + opened
         if (self.body is None and not self._stands_on(end)) or again:
             self.left.append(" ".join(words))  # a part of something else, or one that was named before
             return len(words)
@@ -217,7 +241,36 @@ class _Reader:
                 color=look.color,
             )
         )
+        if look.motion:
+            said = f"{look.motion} {' '.join(words)}"
+            self.requirements.append(
+                PartRequirement(nouns=(self.wanted[-1].stem,), words=said, moves=MOTIONS[look.motion])
+            )
         return len(words) + taken
+
+    def _opened(self, k: int) -> int:
+        """`door opened 45 degrees`, `drawers half open`, right behind a mechanism."""
+        named = self.wanted[-1].title.replace("-", " ").split() if self.wanted else []
+        noun = self._words.text(k - 1)
+        return self._opened_by(k, self.wanted[-1], (noun,)) if named and noun == named[-1] else 0
+
+    def _opened_by(self, k: int, item: Wanted, words: Sequence[str]) -> int:
+        """How many words from word k on say how far a mechanism stands open."""
+        at = k + 1 if self._words.text(k) in ("is", "are") else k
+        amount = share_at(self._words, at)
+        at = amount[1] if amount else at
+        state, out = self._words.text(at), (self._words.text(at), self._words.text(at + 1)) in OUT
+        if state not in OPENNESS and not out:
+            return 0
+        opened, end = ("share", amount[0] if amount else 1.0 if out else OPENNESS[state]), at + 1 + out
+        behind = end + 1 if self._words.text(end) in ("by", "to", "at") else end
+        for how, measured in (("angle", angle_at), ("distance", length_at), ("share", share_at)):
+            if found := measured(self._words, behind):
+                opened, end = (how, found[0]), found[1]
+                break
+        said = " ".join((*words, *(token.given for token in self._tokens[k:end])))
+        self.requirements.append(PartRequirement(nouns=(item.stem,), words=said, opened=opened))
+        return end - k
 
     def _stands_on(self, k: int) -> bool:
         """Whether a body is named from word k on, and no other noun before it: `on a red table`."""
@@ -236,8 +289,12 @@ class _Reader:
         words, self.body = named
         self.said = _unusual(words, self.body.words)
         self.of_body = self._described_so_far()
-        if self.of_body.count not in (None, 1):
-            self.left.append(f"{self.of_body.count} {' '.join(words)}")
+        self.copies = 1 if self.of_body.count is None else self.of_body.count
+        its_part = _longest(self._texts(k + len(words)), _mechanisms())
+        if its_part is not None:  # a cabinet door is no cabinet
+            self.left.append(" ".join((*words, *its_part[0])))
+        if not 1 <= self.copies <= MOST_COPIES or self.of_body.motion:
+            self.left.append(f"{self.of_body.count or self.of_body.motion} {' '.join(words)}")
         return len(words)
 
     def _openness(self, k: int) -> int:
@@ -250,16 +307,38 @@ class _Reader:
                 return len(words)
         return 0
 
+    def _look_of_body(self, k: int) -> int:
+        """`, walnut,`: what stands between commas describes the whole."""
+        if self.body is None or self._words.text(k - 1) != "," or self._look != _Look():
+            return 0
+        end = k
+        while taken := self._described(end):
+            end += taken
+        look = self._described_so_far()
+        twice = (look.color and self.of_body.color) or (look.material and self.of_body.material) or look.motion
+        if end == k or (end < len(self._tokens) and not self._tokens[end].is_sign) or twice:
+            return 0
+        self.of_body.color = look.color or self.of_body.color
+        self.of_body.material = look.material or self.of_body.material
+        return end - k
+
+    def _purpose(self, k: int) -> int:
+        """`detergent drawer`."""
+        return int(self._words.text(k) in PURPOSES and _longest(self._texts(k + 1), _mechanisms()) is not None)
+
     def _described(self, k: int) -> int:
-        """`dark red`, `steel`."""
+        """`dark red`, `steel`, `hinged`."""
         texts = self._texts(k)
         for length in (2, 1):
             words = " ".join(texts[:length])
             if words in COLOR_WORDS and self._look.color is None:
                 self._look.color = COLOR_WORDS[words]
                 return length
-        if texts[0] in _MATERIAL_WORDS and self._look.material is None:
+        if texts and texts[0] in _MATERIAL_WORDS and self._look.material is None:
             self._look.material = _MATERIAL_WORDS[texts[0]]
+            return 1
+        if texts[:1] and texts[0] in MOTIONS and not self._look.motion:
+            self._look.motion = texts[0]
             return 1
         return 0
 
@@ -314,4 +393,4 @@ def _vocabulary() -> frozenset[str]:
     sizes = {word for words in DIMENSIONS.values() for word in words}
     looks = {word for phrase in (*COLOR_WORDS, *_MATERIAL_WORDS) for word in phrase.split()}
     opens = {word for words in _OPENNESS for word in words}
-    return frozenset(nouns | sizes | looks | opens | {*_SIDES, *_SIDE_NOUNS, *_UNDER, *_MOVING})
+    return frozenset(nouns | sizes | looks | opens | {*MOTIONS, *OPENNESS, *_SIDES, *_SIDE_NOUNS, *_UNDER, *_MOVING})

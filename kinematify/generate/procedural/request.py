@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.composer.compose import Composition
-    from kinematify.generate.procedural.family import Family, Value
+    from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.parts import PartRequirement
+    from kinematify.generate.procedural.parameter import Value
 
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
 _DRAWS, _NEXT_DRAW = 20, 1_000_003
@@ -54,9 +55,7 @@ class Request:
         Raises:
             InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
-        if self.composition is not None:
-            return compose(self.composition, seed=seed)
-        blueprint = self._as_required(seed)
+        blueprint = self._as_required(seed) if self.composition is None else compose(self.composition, seed=seed)
         if self.copies == 1:
             return blueprint
         width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
@@ -123,8 +122,9 @@ def _composed(sentence: str) -> Request:
     return Request(
         family=composition.title.replace(" ", "_"),
         values={},
-        understood=(composition.title, *told),
+        understood=(composition.title, *told, *(item.words for item in composition.requirements)),
         composition=composition,
+        copies=composition.copies,
     )
 
 

@@ -13,8 +13,8 @@ from kinematify.generate.procedural.language.words import ARTICLES, UNITS, singu
 from kinematify.generate.procedural.layout import CELLS
 
 if TYPE_CHECKING:
-    from kinematify.generate.procedural.family import Parameter
     from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.parameter import Parameter
 
 _LINES = ("row", "column")
 _NUMBER_ENDS = ("and", "with", "per", "each", "every")  # a number before one of them counts something else
@@ -30,7 +30,8 @@ _TOGETHER = (
     ("identical",), ("equal",), ("same",), ("next", "to", "each", "other"), ("side", "by", "side"), ("in", "a", "row"),
     ("beside", "each", "other"),
 )  # fmt: skip
-_MOST_COPIES = 12
+MOST_COPIES = 12
+"""Side by side."""
 _ADJECTIVES = 2  # at most, between a grid and what stands in it
 
 
@@ -117,8 +118,10 @@ def _place_before(reading: Reading, k: int) -> str | None:
 
 
 def _is_one(reading: Reading, where: range) -> bool:
-    """`left door`, in the singular and at a place, is one."""
+    """`left door`, in the singular and at a place, is one, and so is `whose door`."""
     last = reading.tokens[where.stop - 1]
+    if reading.text(where.start - 1) == "whose":
+        return last.given == last.text
     if reading.text(where.start - 2) == "the":  # the upper one of those that there are
         return False
     return _place_before(reading, where.start) is not None and last.given == last.text
@@ -248,9 +251,9 @@ def read_copies(reading: Reading) -> None:
         return
     if _whole(reading, number, max(reading.named)) <= 1:
         return
-    if number > _MOST_COPIES:
+    if number > MOST_COPIES:
         raise InputError(
-            f"The text asks for {number:g} {reading.tokens[max(reading.named)].given}; at most {_MOST_COPIES} are "
+            f"The text asks for {number:g} {reading.tokens[max(reading.named)].given}; at most {MOST_COPIES} are "
             "built side by side."
         )
     reading.copies = int(number)

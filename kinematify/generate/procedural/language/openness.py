@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import PLACES, PartRequirement
 from kinematify.generate.procedural.language.sizes import angle_at, length_at
+from kinematify.generate.procedural.language.words import OPENNESS
 
 if TYPE_CHECKING:
-    from kinematify.generate.procedural.family import Value
     from kinematify.generate.procedural.language.parts import PartReader
     from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.language.words import Words
+    from kinematify.generate.procedural.parameter import Value
 
-OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0, "opened": 1.0, "unfolded": 1.0}
-"""Words for a state, and the share of the way that they mean by themselves."""
 FRACTIONS = {
     "half": 0.5, "halfway": 0.5, "quarter": 0.25, "quarters": 0.25, "third": 1.0 / 3.0, "thirds": 1.0 / 3.0,
     "slightly": 0.15, "partly": 0.4, "partially": 0.4, "fully": 1.0, "completely": 1.0, "wide": 1.0,
 }  # fmt: skip
 """Words for a share of the way."""
-_OUT = (("pulled", "out"), ("pull", "out"), ("swung", "out"), ("slid", "out"))  # as good as opened
+OUT = (("pulled", "out"), ("pull", "out"), ("swung", "out"), ("slid", "out"))  # as good as opened
 _VERBS = ("opens", "opening")  # say where something goes, not that it stands open
 _NOT_A_STATE = ("shelf", "compartment", "front", "field")  # an open shelf is no state
 _CLAUSE_ENDS = (",", ";", ".", ":", "with", "and")
@@ -53,7 +53,7 @@ _Amount = tuple[str, "Value", str, tuple[int, ...]]
 def read_openness(reading: Reading, parts: PartReader) -> None:
     """Take up `half open`, `ajar`, `opened by 30 degrees`, `the top drawer pulled out 20 cm`, `open 30 %`."""
     for k, token in enumerate(reading.tokens):
-        out = (token.text, reading.text(k + 1)) in _OUT
+        out = (token.text, reading.text(k + 1)) in OUT
         state = token.text in OPENNESS and token.given not in _VERBS and reading.text(k + 1) not in _NOT_A_STATE
         if k in reading.used or not (out or state):
             continue
@@ -106,13 +106,13 @@ def _amount(reading: Reading, clause: list[int]) -> _Amount | None:
             return "open_angle", angle[0], f"open by {math.degrees(angle[0]):g} deg", tuple(range(k, angle[1]))
         if length is not None:
             return "open_distance", length[0], f"open by {length[0]:g} m", tuple(range(k, length[1]))
-        share = _share(reading, k)
+        share = share_at(reading, k)
         if share is not None:
             return "open", share[0], f"{share[0]:.0%} open", tuple(range(k, share[1]))
     return None
 
 
-def _share(reading: Reading, k: int) -> tuple[float, int] | None:
+def share_at(reading: Words, k: int) -> tuple[float, int] | None:
     """A share at word k and the word behind it: `30 %`, `two thirds`, `half`."""
     number, after = reading.number(k), reading.text(k + 1)
     percent = after in ("%", "percent") or (after, reading.text(k + 2)) == ("per", "cent")

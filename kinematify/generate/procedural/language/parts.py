@@ -15,7 +15,7 @@ import numpy as np
 from kinematify.errors import InputError
 from kinematify.generate.blueprint import BlueprintJoint
 from kinematify.generate.procedural.language.reading import nouns_of
-from kinematify.generate.procedural.language.words import STOP_WORDS, UNITS, singular
+from kinematify.generate.procedural.language.words import PURPOSES, STOP_WORDS, UNITS, singular
 from kinematify.generate.procedural.materials import COLOR_WORDS, MATERIALS, of_one_material, surface_of
 from kinematify.robot.joint_type import JointType
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MOTIONS = {
     **dict.fromkeys(("sliding", "slide", "telescopic", "telescoping", "extendable"), "slides"),
     **dict.fromkeys(("turning", "turn", "rotating", "rotate", "swivelling", "swiveling", "swivel"), "turns"),
-    **dict.fromkeys(("hinged", "swinging", "swing"), "swings"),
+    **dict.fromkeys(("hinged", "swinging", "swing", "oscillating", "oscillate", "oscillates"), "swings"),
     **dict.fromkeys(("tilting", "tilt"), "tilts"),
     **dict.fromkeys(("spinning", "spin", "revolving", "revolve"), "spins"),
 }
@@ -160,6 +160,8 @@ class PartReader:
         for k, end, stems in self.nouns():
             self._movement_before(k, end, stems)
             self._movement_behind(k, end, stems)
+            self._purpose(k)
+        self._movement_of_some_part()
         for k, end, stems in self.nouns():
             if k > min(self.reading.named) and not self.reading.used & set(range(k, end)):
                 self._presence(k, end, stems)
@@ -171,6 +173,23 @@ class PartReader:
             if at not in self.reading.used and word in MOTIONS:
                 said = self.said(at, *range(k, end))
                 self.require(PartRequirement(nouns=stems, words=said, moves=MOTIONS[word]), at)
+
+    def _purpose(self, k: int) -> None:
+        """`detergent drawer`; an oven door is the door of an oven."""
+        own = {word for name in self.reading.family.words for word in name.split()}
+        if self.reading.text(k - 1) in PURPOSES | own:
+            self.reading.used.add(k - 1)
+
+    def _movement_of_some_part(self) -> None:
+        """`a fan that oscillates`, `a swivel chair`: something of it moves so."""
+        for k, token in enumerate(self.reading.tokens):
+            of_whole = self.reading.text(k - 1) in ("that", "which") or k + 1 in self.reading.named
+            if token.text not in MOTIONS or k in self.reading.used or not of_whole:
+                continue
+            moves = MOTIONS[token.text]
+            stems = {_stem(joint.child) for joint in self.made.joints if _MOVES[moves](joint)}
+            if stems:
+                self.require(PartRequirement(nouns=tuple(sorted(stems)), words=token.given, moves=moves), k)
 
     def _movement_behind(self, k: int, end: int, stems: tuple[str, ...]) -> None:
         """`a handle that turns`, `whose door opens downwards`, `a door hinged on the left`."""
@@ -184,7 +203,7 @@ class PartReader:
         to = at + 1
         while self.reading.text(to) in ("to", "the", "on", "at", "towards"):
             to += 1
-        way = self.reading.text(to).removesuffix("s") if to not in self.reading.used else ""
+        way = self.reading.text(to).removesuffix("s")  # it may have said the hinge's side already
         where = [at, to] if way in _WAYS else [at]
         if way not in _WAYS and verb not in MOTIONS:
             return
@@ -264,9 +283,9 @@ class PartReader:
         """Names of the parts that a look at words k to `end` is about; none of them: all; None: of what is no part."""
         for at in range(end, end + 3):
             found, word = self.noun_at(at), self.reading.text(at)
-            if found is not None:
+            if found is not None and found[0] not in self.reading.named:
                 return found[1]
-            if at in self.reading.named:
+            if at in self.reading.named or found is not None:  # an oak 6-drawer dresser is of oak
                 return ()
             if not word or word in STOP_WORDS or self.reading.tokens[at].is_sign:
                 break

@@ -6,16 +6,17 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.language.words import NOUNS
+from kinematify.generate.procedural.language.words import NOUNS, Words
 
 if TYPE_CHECKING:
-    from kinematify.generate.procedural.family import Family, Parameter, Value
+    from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.arrangement import Mention
     from kinematify.generate.procedural.language.words import Token
+    from kinematify.generate.procedural.parameter import Parameter, Value
 
 
 @dataclass(kw_only=True)
-class Reading:
+class Reading(Words):
     """A sentence being read; words that were taken up are marked."""
 
     tokens: tuple[Token, ...]
@@ -33,14 +34,6 @@ class Reading:
     """Size of the whole that no parameter sets, and metres."""
     copies: int = 1
     mentions: list[Mention] = field(default_factory=list)
-
-    def text(self, k: int) -> str:
-        """Word k, empty beyond the ends."""
-        return self.tokens[k].text if 0 <= k < len(self.tokens) else ""
-
-    def number(self, k: int) -> float | None:
-        """The number at word k, if there is one."""
-        return self.tokens[k].number if 0 <= k < len(self.tokens) else None
 
     def take(self, name: str, value: Value, said: str, *where: int) -> None:
         """Set a parameter; two different values for one are a contradiction."""

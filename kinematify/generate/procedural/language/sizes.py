@@ -5,12 +5,17 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.errors import InputError
-from kinematify.generate.procedural.language.words import UNITS
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.words import OPENNESS, UNITS
 
 if TYPE_CHECKING:
-    from kinematify.generate.procedural.family import Parameter
+    from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.reading import Reading
+    from kinematify.generate.procedural.language.words import Words
+    from kinematify.generate.procedural.parameter import Parameter
 
 DIMENSIONS = {
     "width": ("wide", "width", "across", "broad"),
@@ -30,6 +35,7 @@ SIZE_WORDS = {
 """Words for a size without a number: which end of what is usual, and of which sizes; of all where none is named."""
 OVERALL = ("width", "depth", "height")
 """Sizes of a whole, along x, y and z."""
+_CLEARLY = 1.5  # times as long as any other side
 JOINING = ("x", "by")
 """Between numbers that are multiplied."""
 _INSTEAD = {
@@ -86,7 +92,7 @@ def read_overall(reading: Reading) -> None:
             reading.used.update(range(k, length[1] + 1))
 
 
-def length_at(reading: Reading, k: int) -> tuple[float, int] | None:
+def length_at(reading: Words, k: int) -> tuple[float, int] | None:
     """A number with a unit at word k: metres, and the word behind it; `6 ft 2 in` is one length."""
     number, unit = reading.number(k), reading.text(k + 1)
     if number is None or unit not in UNITS or (unit == "in" and reading.text(k + 2) in ("diameter", "total")):
@@ -99,7 +105,7 @@ def length_at(reading: Reading, k: int) -> tuple[float, int] | None:
     return round(metres, 9), end
 
 
-def angle_at(reading: Reading, k: int) -> tuple[float, int] | None:
+def angle_at(reading: Words, k: int) -> tuple[float, int] | None:
     """A number with a unit of angle at word k: radians, and the word behind it; `6 degrees of freedom` is none."""
     number, unit = reading.number(k), reading.text(k + 1)
     if number is None or unit not in _DEGREES or reading.text(k + 2) == "of":
@@ -140,12 +146,43 @@ def _lengths(reading: Reading) -> None:
 
 
 def read_bare_length(reading: Reading) -> None:
-    """`6 inch pliers`: of what has one length, or one diameter."""
+    """`6 inch pliers`, `a fridge, 180 cm`: of what has one length or diameter, or one side that is clearly longest."""
     name = next((name for name in ("length", "diameter") if reading.parameter(name) is not None), None)
     for k in range(len(reading.tokens)):
         length = length_at(reading, k) if k not in reading.used else None
-        if length is not None and name is not None and name not in reading.values:
-            reading.take(name, length[0], f"{name} {length[0]:g} m", *range(k, length[1]))
+        if length is None:
+            continue
+        metres, end = length
+        if name is None and _is_of_whole(reading, k, end):
+            longest = _longest_side(reading.family)
+            if longest and reading.parameter(longest) is None and reading.overall is None:
+                reading.overall = (longest, metres)
+                reading.understood.append(f"{longest} {metres:g} m")
+                reading.used.update(range(k, end))
+                continue
+            name = longest or None
+        if name is not None and name not in reading.values:
+            reading.take(name, metres, f"{name} {metres:g} m", *range(k, end))
+
+
+def _is_of_whole(reading: Reading, k: int, end: int) -> bool:
+    """Whether a length at words k to `end` stands before the object's name or by itself, and says not how far it opens.
+
+    Screens are measured across their diagonal, which is no side.
+    """
+    around = {reading.text(i) for i in range(k - 3, end + 3)}
+    stands_alone = end <= min(reading.named) or reading.text(end) in ("", ",", ";", ".", "with")
+    return stands_alone and not around & {*OPENNESS, "out"} and reading.parameter("screen") is None
+
+
+def _longest_side(family: Family) -> str:
+    """The side of such an object that is clearly its longest, as a person's height is; empty if there is none."""
+    sides = {p.name: float(p.default) for p in family.parameters if p.name in OVERALL}
+    if not sides:
+        extents = np.ptp(build(family, {}).assembly.bounds, axis=0)
+        sides = dict(zip(OVERALL, map(float, extents), strict=True))
+    first, *others = sorted(sides, key=lambda name: -sides[name])
+    return first if not others or sides[first] > _CLEARLY * sides[others[0]] else ""
 
 
 def _dimension(reading: Reading, word: str, metres: float) -> str | None:

@@ -13,7 +13,7 @@ from kinematify.errors import InputError
 from kinematify.generate.procedural.family import build, checked
 from kinematify.generate.procedural.language.arrangement import layout_of
 from kinematify.generate.procedural.language.counts import read_copies, read_counted_name, read_counts, read_grids
-from kinematify.generate.procedural.language.openness import FRACTIONS, OPENNESS, read_openness
+from kinematify.generate.procedural.language.openness import FRACTIONS, read_openness
 from kinematify.generate.procedural.language.parts import MOTIONS, PartReader
 from kinematify.generate.procedural.language.reading import Reading, nouns_of
 from kinematify.generate.procedural.language.sizes import (
@@ -27,6 +27,7 @@ from kinematify.generate.procedural.language.sizes import (
 from kinematify.generate.procedural.language.words import (
     ARTICLES,
     CHOICES,
+    OPENNESS,
     STOP_WORDS,
     Token,
     nearest_word,
@@ -40,8 +41,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from kinematify.generate.blueprint import Blueprint
-    from kinematify.generate.procedural.family import Family, Parameter, Value
+    from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.language.parts import PartRequirement
+    from kinematify.generate.procedural.parameter import Parameter, Value
 
     _Name = tuple[tuple[str, ...], Family]
 

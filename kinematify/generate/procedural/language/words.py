@@ -29,6 +29,13 @@ UNITS = {
     "inche": 0.0254, "in": 0.0254, "foot": 0.3048, "feet": 0.3048, "ft": 0.3048,
 }  # fmt: skip
 """Metres per unit."""
+OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0, "opened": 1.0, "unfolded": 1.0}
+"""Words for a state, and the share of the way that they mean by themselves."""
+_PURPOSE_TEXT = """
+    burner cash crisper cutlery detergent emergency freezer glove main power soap start stop storage vegetable volume
+"""
+PURPOSES = frozenset(_PURPOSE_TEXT.split())
+"""What a part is for, right before its noun; it asks for nothing that could be built differently."""
 NOUNS = {"handle": ("pull", "grip")}
 """How people call what several families have a parameter for, besides its name."""
 CHOICES: dict[str, dict[str, tuple[str, ...]]] = {
@@ -42,13 +49,16 @@ CHOICES: dict[str, dict[str, tuple[str, ...]]] = {
 _STOP_TEXT = """
     a an the of with and to in on at by for from it its them their that which whose is are has have having i d ll
     we you would like want need please make me give build create generate some any this these those there be
-    into my our each per every made very quite nice simple standard typical normal ordinary new modern kitchen living
-    room office bedroom household home bathroom containing featuring including plus also just
+    can could into my our each per every made very quite nice simple standard typical normal ordinary solid old new
+    modern gas electric kitchen living room office bedroom household home bathroom containing featuring including plus
+    also just
 """
 STOP_WORDS = frozenset(_STOP_TEXT.split())
 """Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
 _TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
+_WRITTEN = ((r"\bw/o\b", "without"), (r"\bw/", "with"), ("&", "and"))
+"""Signs that people write for words."""
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
 
 
@@ -77,6 +87,22 @@ class Token:
         return not self.text[0].isalnum() and self.number is None
 
 
+class Words:
+    """A sentence by its words; beyond its ends there are none."""
+
+    def __init__(self, tokens: tuple[Token, ...]) -> None:
+        """Keep the words."""
+        self.tokens = tokens
+
+    def text(self, k: int) -> str:
+        """Word k, empty beyond the ends."""
+        return self.tokens[k].text if 0 <= k < len(self.tokens) else ""
+
+    def number(self, k: int) -> float | None:
+        """The number at word k, if there is one."""
+        return self.tokens[k].number if 0 <= k < len(self.tokens) else None
+
+
 def tokens_of(sentence: str, vocabulary: Iterable[str], *, mend: bool) -> tuple[Token, ...]:
     """Split a sentence into tokens; with `mend`, slips of spelling become the nearest word of a vocabulary.
 
@@ -86,6 +112,8 @@ def tokens_of(sentence: str, vocabulary: Iterable[str], *, mend: bool) -> tuple[
     lowered = sentence.lower()
     if re.search(r"\bminus\b|(?:^|\s)-\s?\d", lowered):
         raise InputError(f"The text {_shown(sentence)} asks for a negative number. Give counts and sizes above zero.")
+    for sign, word in _WRITTEN:
+        lowered = re.sub(sign, f" {word} ", lowered)
     lowered = re.sub(r"\b[1-9]\d{0,2}(?:,\d{3})+\b", lambda number: number[0].replace(",", ""), lowered)
     text = re.sub(r"(?<=\d)x(?=\d)", " x ", lowered.replace("×", " x ").replace("-", " ")).strip()
     if not text:
