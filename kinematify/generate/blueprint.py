@@ -144,6 +144,45 @@ class Blueprint:
         loops = tuple(replace(loop, pivot=factor * loop.pivot) for loop in self.loops)
         return replace(self, parts=parts, joints=tuple(joint(item) for item in self.joints), loops=loops)
 
+    def carrying(self, other: Blueprint, carrier: str, T_self_other: FloatArray) -> Blueprint:
+        """Return the object with another one fixed to one of its parts.
+
+        Args:
+            other: Its base link takes the name of its family, which goes before the names of its other parts.
+            carrier: The part that carries it.
+            T_self_other: Where it is, shape (4, 4).
+        """
+        kind, turn = other.family, T_self_other[:3, :3]
+
+        def name(given: str) -> str:
+            return kind if given == other.root else f"{kind}_{given}"
+
+        parts = [replace(_placed(part, T_self_other), name=name(part.name)) for part in other.parts]
+        joints = [
+            replace(
+                joint, parent=name(joint.parent), child=name(joint.child), axis=turn @ joint.axis,
+                pivot=turn @ joint.pivot + T_self_other[:3, 3],
+                mimic=joint.mimic and replace(joint.mimic, joint=name(joint.mimic.joint)),
+            )
+            for joint in other.joints
+        ]  # fmt: skip
+        loops = [
+            replace(
+                loop, one=name(loop.one), other=name(loop.other), pivot=turn @ loop.pivot + T_self_other[:3, 3]
+            )
+            for loop in other.loops
+        ]  # fmt: skip
+        held = BlueprintJoint(
+            parent=carrier, child=kind, kind=JointType.FIXED, axis=np.array([0.0, 0.0, 1.0]),
+            pivot=parts[0].bounds.mean(axis=0), lower=0.0, upper=0.0,
+        )  # fmt: skip
+        return replace(
+            self,
+            parts=(*self.parts, *parts),
+            joints=(*self.joints, held, *joints),
+            loops=(*self.loops, *loops),
+        )
+
     def repeated(self, count: int, pitch: float) -> Blueprint:
         """Return several of it along x, their base links one part.
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.generate.procedural.language.understand import NotUnderstoodError, understand
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,6 +30,9 @@ if TYPE_CHECKING:
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
 _DRAWS, _NEXT_DRAW = 20, 1_000_003
 _GAP = 0.05  # between several [m]
+_HOLDS = re.compile(r"[,\s]+(?:that is |which is )?(holding)\s+", re.IGNORECASE)
+_HANDS = ("right_hand", "left_hand", "palm")
+_GRASP = 5e-4  # between a hand and what it holds [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +53,8 @@ class Request:
     """A size of the whole [m] that it is scaled to."""
     copies: int = 1
     """How many, side by side."""
+    held: Request | None = None
+    """What is in its hand."""
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object; a seed draws what was not asked for.
@@ -56,6 +63,8 @@ class Request:
             InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
         blueprint = self._as_required(seed) if self.composition is None else compose(self.composition, seed=seed)
+        if self.held is not None:
+            blueprint = _holding(blueprint, self.held.build(seed=seed))
         if self.copies == 1:
             return blueprint
         width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
@@ -89,6 +98,13 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
     Raises:
         InputError: It cannot be understood; see `understand`.
     """
+    holder, verb, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
+    if held.strip():
+        holding, thing = from_text(holder, lenient=lenient), from_text(held, lenient=lenient)
+        understood = (*holding.understood, f"{verb} {', '.join(thing.understood)}")
+        both = replace(holding, held=thing, understood=understood, ignored=(*holding.ignored, *thing.ignored))
+        both.build()  # whether there is a hand
+        return both
     try:
         meant = understand(sentence, FAMILIES)
     except NotUnderstoodError as error:
@@ -142,6 +158,30 @@ def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
             f"{there / _SCALES:.2g} m to {there * _SCALES:.2g} m."
         )
     return blueprint.scaled(factor)
+
+
+def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
+    """Return an object with another one at the outer side of its hand, its thinnest side towards the hand.
+
+    Raises:
+        InputError: It has no hand.
+    """
+    hand = next((part for name in _HANDS for part in blueprint.parts if part.name.endswith(name)), None)
+    if hand is None:
+        raise InputError(f"A {blueprint.family.replace('_', ' ')} has no hand to hold a {held.family} with.")
+    bounds = held.assembly.bounds
+    thinnest = int(np.argmin(np.ptp(bounds, axis=0)))
+    # A turn about x stands what lies; one about z turns what is narrow, its front then looks along x.
+    turn = rotation_about(np.eye(3)[0 if thinnest == 2 else 2], 0.0 if thinnest == 1 else 0.5 * np.pi)
+    outward = -1.0 if hand.bounds.mean(axis=0)[1] < 0.0 else 1.0
+    place = np.eye(4)
+    place[:3, :3] = turn
+    corners = bounds @ turn.T
+    middle, half = corners.mean(axis=0), 0.5 * np.abs(np.ptp(corners, axis=0))
+    place[:3, 3] = hand.bounds.mean(axis=0) - middle
+    reach = 0.5 * float(np.ptp(hand.bounds, axis=0)[1]) + half[1] + _GRASP
+    place[1, 3] += outward * reach
+    return blueprint.carrying(held, hand.name, place)
 
 
 def _closed(blueprint: Blueprint) -> Blueprint:

@@ -14,6 +14,7 @@ from kinematify.generate.procedural.language.understand import understand
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.request import from_text
+from kinematify.robot.joint_type import JointType
 
 EXACT_SHARE = 0.9
 
@@ -65,7 +66,7 @@ def test_slips_of_spelling_are_told_and_mended_only_if_that_is_asked_for():
         ("a microwave of 180 cm", "180 cm"),
         ("a cabinet with small drawers", "small"),
         ("a robot arm with seven joints and two grippers", "two"),
-        ("a humanoid robot holding a laptop", "holding"),
+        ("an office chair holding a laptop", "hand"),
         ("an oven with golden knobs and a spinning door", "spinning"),
         ("a 2 km fridge", "2 km"),
     ],
@@ -269,3 +270,13 @@ def test_cells_stand_in_grids_and_parts_behind_a_name_are_counted(text, values):
     assert meant.family == "cabinet"
     assert values.items() <= meant.values.items()
     assert meant.ignored == ()
+
+
+def test_what_is_held_is_fixed_to_the_hand():
+    made = from_text("a humanoid 1.6 m tall holding a red box").build()
+    assert made.joint_above["box"].kind is JointType.FIXED
+    assert made.joint_above["box"].parent == "right_hand"
+    assert made.joint_above["box_lid"].parent == "box"
+    hand, box = (next(part for part in made.parts if part.name == name) for name in ("right_hand", "box"))
+    gap = hand.bounds[0, 1] - box.bounds[1, 1]
+    assert 0.0 < gap < 1e-3
