@@ -129,6 +129,12 @@ def read_record(folder: Path) -> dict[str, Any]:
             f"The record {path} was made by an older version of Kinematify, which did not note what it wrote. Infer "
             "the model again from its parts."
         )
+    without = [joint["child"] for joint in record["joints"] if not {"candidates", "evidence"} <= joint.keys()]
+    if without:
+        raise InputError(
+            f"The record {path} has no candidates of the joint of {', '.join(without)}, so that nothing else can be "
+            "tried. Infer the model again from its parts."
+        )
     return record
 
 

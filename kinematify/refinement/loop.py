@@ -25,6 +25,7 @@ from kinematify.refinement.split import infer_joined
 from kinematify.refinement.tiers import TIERS, dear_verdict
 from kinematify.refinement.topology import EdgeMemory, SearchedContacts, replanned, search_again
 from kinematify.refinement.twins import TWINS, vote
+from kinematify.simulation.engines import DEFAULT_ENGINES, require_engine
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import GEOMETRY
@@ -76,10 +77,15 @@ def refine(
         The best round. Ctrl-C ends the loop, and the best round so far is returned.
 
     Raises:
-        ValueError: The tier is unknown.
+        ValueError: The tier is unknown, or there is no time.
+        EnvironmentFault: The tier runs an engine that is not installed.
     """
     if tier not in TIERS:
         raise ValueError(f"There is no tier {tier}. Give one of {', '.join(TIERS)}.")
+    if seconds is not None and not seconds > 0.0:
+        raise ValueError(f"The time for all rounds is {seconds} s. Give a number of seconds above 0, or None.")
+    for engine in DEFAULT_ENGINES if tier != GEOMETRY else ():
+        require_engine(engine)
     config = inference.config.refine
     usual = max(config.seconds_factor * sum(inference.timings.values()), config.seconds_least)
     loop = _Loop(
@@ -87,7 +93,7 @@ def refine(
             given=inference,
             rounds=config.rounds if rounds is None else rounds,
             tier=tier,
-            seconds=seconds or (usual if tier == GEOMETRY else float("inf")),
+            seconds=seconds if seconds is not None else usual if tier == GEOMETRY else float("inf"),
             base=None if base is None else inference.assembly.names.index(base),
             settings=settings or load_settings(),
             progress=progress or (lambda stage, share: None),

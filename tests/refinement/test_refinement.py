@@ -26,12 +26,15 @@ from kinematify.evaluation.study import load_study_report
 from kinematify.evaluation.tree_metrics import TreeDistance
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference
+from kinematify.pipeline.record import file_hashes
 from kinematify.refinement import loop, refine
-from kinematify.refinement.folder import open_model_folder
+from kinematify.refinement.choose import Chooser, Trial
+from kinematify.refinement.folder import open_model_folder, read_record
 from kinematify.refinement.hints import parse_hints, with_hints
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
+from kinematify.simulation.engines import ENGINES
 from kinematify.topology.tree import KinematicTree
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
@@ -419,6 +422,53 @@ def test_a_folder_of_an_older_version_is_refused(tmp_path: Path) -> None:
     (tmp_path / "inference.json").write_text('{"schema": 1}')
     with pytest.raises(InputError, match="older version"):
         open_model_folder(tmp_path)
+
+
+def test_a_folder_without_candidates_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_inference(inferred("drawer"), tmp_path / "out", preview=False)
+    path = tmp_path / "out" / "inference.json"
+    record = json.loads(path.read_text())
+    for joint in record["joints"]:
+        del joint["candidates"]
+    path.write_text(json.dumps(record))
+    assert run(["refine", str(tmp_path / "out")]) == 2
+    assert "has no candidates of the joint of drawer" in capsys.readouterr().err
+
+
+def test_no_time_is_refused() -> None:
+    with pytest.raises(ValueError, match="above 0"):
+        refine(inferred("drawer"), seconds=0.0)
+
+
+def test_a_missing_engine_ends_with_its_own_status_and_changes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), tmp_path / "out", preview=False)
+    before = file_hashes(tmp_path / "out")
+    monkeypatch.setitem(ENGINES, "pybullet", replace(ENGINES["pybullet"], package="absent"))
+    assert run(["refine", str(tmp_path / "out"), "--tier", "engines", "--no-preview"]) == 3
+    assert "PyBullet was asked for" in capsys.readouterr().err
+    assert file_hashes(tmp_path / "out") == before
+
+
+def test_ctrl_c_in_the_middle_of_a_trial_keeps_the_best_round_and_a_whole_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    write_inference(mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0)), out, preview=False)
+    whole = Chooser.trial
+
+    def stopped(self: Chooser, plan: Plan, joint: JointEstimate, score: float) -> Trial:
+        whole(self, plan, joint, score)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Chooser, "trial", stopped)
+    assert run(["refine", str(out), "--budget", "60", "--no-preview"]) == 130
+    record = read_record(out)
+    assert [item["number"] for item in record["refinement"]["rounds"]] == [0]
+    assert record["refinement"]["ended"] == "it was interrupted"
+    assert record["files"] == file_hashes(out), "nothing is half-written"
+    open_model_folder(out)
 
 
 def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
