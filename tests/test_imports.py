@@ -59,6 +59,13 @@ def test_inferring_loads_only_what_runs(tmp_path: Path) -> None:
     assert loaded & {"torch", "mujoco", "pybullet", "pinocchio", "trimesh", "httpx"} == set()
 
 
+def test_what_drives_a_validation_loads_no_geometry() -> None:
+    """The stages do, in their server, which starts at the same time."""
+    loaded = loaded_after("import kinematify.validation.run, kinematify.cli.validation_run")
+    assert "numpy" in loaded
+    assert loaded & {"scipy", "igl", "fcl", "mujoco", "pybullet", "pinocchio", "trimesh", "PIL"} == set()
+
+
 def test_public_names_resolve_and_are_all_there_is() -> None:
     resolved = {name for name in kinematify.__all__ if getattr(kinematify, name) is not None}
     assert resolved == set(kinematify.__all__)

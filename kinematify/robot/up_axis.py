@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from kinematify.robot.robot import UpAxis, forward_kinematics, rest_configuration
 
@@ -44,6 +43,8 @@ def upright_reading(ignored: Robot, heeded: Robot) -> Robot:
 
 def _mean_gap(robot: Robot) -> float:
     """Mean distance at rest of links from what carries them [m]; 0 where nothing carries anything."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second, and few files state an axis
+
     points, gaps = _points(robot), []
     for joint in robot.joints:
         parent = joint.parent

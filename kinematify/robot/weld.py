@@ -5,9 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from kinematify.robot.arrays import used_vertices
 from kinematify.robot.vectors import crossed, lengths_of
@@ -83,6 +80,11 @@ def _merged(points: FloatArray, distance: float) -> tuple[IntArray, IntArray]:
     """First member of every group of near vertices, and the group of every vertex."""
     if not len(points):
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+    # They take half a second to load, and many read a file's links and joints alone.
+    from scipy.sparse import coo_array  # noqa: PLC0415
+    from scipy.sparse.csgraph import connected_components  # noqa: PLC0415
+    from scipy.spatial import cKDTree  # noqa: PLC0415
+
     # Equal vertices are most of the work in files without sharing (STL): out of the way before the search for near
     # ones.
     first, same = _equal_rows(points)
