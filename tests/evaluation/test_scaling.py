@@ -48,7 +48,7 @@ class Clock:
 
     now = 0.0
 
-    def perf_counter(self) -> float:
+    def process_time(self) -> float:
         return self.now
 
     def quadratic(self, assembly: Assembly, *, config: Config) -> SimpleNamespace:

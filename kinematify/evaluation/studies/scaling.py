@@ -1,7 +1,8 @@
 """How does inference time grow with the number of parts?
 
 The object is a trunk of links, each carrying a branch of four more; every joint is a vertical pin in a bushing, and
-each link stands one step higher than the one that carries it.
+each link stands one step higher than the one that carries it. Time is that of the processor, which other programs
+hardly change; memory is the largest that the process has had.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from kinematify.config import load_config
 from kinematify.evaluation.job import INFER, imported
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, explained
+from kinematify.pipeline.clock import peak_mb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +45,7 @@ _BUSHING_HEIGHT = 0.04
 _BAR = (0.03, 0.015)
 """Width and height of a bar [m]."""
 _SEGMENTS = 48
-ALLOWED = 1.5
+ALLOWED = 1.2
 """Largest exponent."""
 
 
@@ -76,14 +78,15 @@ def timed(asked: Sized) -> Record:
     infer, config = imported(asked.infer), load_config(asked.config)
     infer(chain_and_branch(2)[0], config=config)  # caches and lazy imports of the first call are no matter of size
     assembly, parents = chain_and_branch(asked.parts)
-    start = time.perf_counter()
+    start = time.process_time()
     inference = infer(assembly, config=config)
-    seconds = time.perf_counter() - start
+    seconds = time.process_time() - start
     true_pairs = {frozenset(pair) for pair in enumerate(parents) if pair[1] >= 0}
     return {
         "parts": asked.parts,
         "faces": sum(len(part.faces) for part in assembly.parts),
         "seconds": seconds,
+        "memory": peak_mb(),
         "pairs_right": sum(frozenset(edge) in true_pairs for edge in inference.trees[0].edges()),
         "stage_seconds": dict(inference.timings),
     }
@@ -176,13 +179,22 @@ def _pin(base: FloatArray) -> trimesh.Trimesh:
 def report(found: Report[Record]) -> list[str]:
     """Times over sizes, and the law."""
     rows = [
-        (str(p["parts"]), str(p["faces"]), f"{p['seconds']:.2f}", f"{p['pairs_right']}/{p['parts'] - 1}")
+        (
+            str(p["parts"]),
+            str(p["faces"]),
+            f"{p['seconds']:.2f}",
+            f"{p['memory']:.0f}",
+            f"{p['pairs_right']}/{p['parts'] - 1}",
+        )
         for p in found.records
     ]
+    first, last = found.records[0], found.records[-1]
+    memory = (last["memory"] - first["memory"]) / (last["parts"] - first["parts"])
+    law = f"{found.summary['factor']:.3g} * parts^{found.summary['exponent']:.2f}"
     return [
         explained(__doc__),
-        f"Fit: seconds = {found.summary['factor']:.3g} * parts^{found.summary['exponent']:.2f} (allowed: {ALLOWED}).",
-        table(("parts", "faces", "time [s]", "jointed pairs found"), rows),
+        f"Fit: seconds = {law} (allowed: {ALLOWED}). Every part more takes {memory:.2f} MB.",
+        table(("parts", "faces", "time [s]", "memory [MB]", "jointed pairs found"), rows),
     ]
 
 
@@ -200,7 +212,7 @@ def plot(found: Report[Record]) -> Figure:
     allowed = seconds[0] * (parts / parts[0]) ** ALLOWED
     axes.loglog(parts, allowed, ":", label=f"allowed growth: parts^{ALLOWED}")
     axes.set_xlabel("parts")
-    axes.set_ylabel("inference time [s]")
+    axes.set_ylabel("processor time [s]")
     axes.legend()
     axes.grid(visible=True, which="both", alpha=0.3)
     return figure

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 OCTAGON = 0.8
 """Length of an edge piece in radii beyond which it is no arc: an octagon's side is 0.77 long."""
-_BLOCK = 256  # lines at a time: samples x lines fit the cache
+CACHED = 16384
+"""Samples times lines at a time: they fit the cache, and what NumPy allocates is not new memory each time."""
 
 
 def surface_support(side: BearingSide, lines: Lines, config: BearingConfig) -> FloatArray:
@@ -35,9 +36,9 @@ def surface_support(side: BearingSide, lines: Lines, config: BearingConfig) -> F
     Returns:
         Support in [0, 1], shape (L,).
     """
+    step = max(1, CACHED // max(1, len(side.weights)))
     blocks = [
-        _block_support(side, lines.subset(slice(start, start + _BLOCK)), config)
-        for start in range(0, len(lines), _BLOCK)
+        _block_support(side, lines.subset(slice(start, start + step)), config) for start in range(0, len(lines), step)
     ]
     return np.asarray(np.clip(np.concatenate([*blocks, np.empty(0)]), 0.0, 1.0))
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.hypotheses.bearing_scores import CACHED
 from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -78,6 +79,12 @@ def _extruded_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> F
 
     One flat wall has rank one and counts nothing: it slides in two directions.
     """
+    step = max(1, CACHED // len(side.weights))
+    blocks = [_block_area(side, axes[start : start + step], config) for start in range(0, len(axes), step)]
+    return np.concatenate(blocks)
+
+
+def _block_area(side: BearingSide, axes: FloatArray, config: RailConfig) -> FloatArray:
     along = side.normals @ axes.T
     fit = np.exp(-((along / config.tolerance_sine) ** 2)) * (side.weights / side.weights.sum())[:, None]
     moments = np.empty((len(axes), 3, 3))
