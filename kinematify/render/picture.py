@@ -38,6 +38,7 @@ _DEPTH_STEP = 0.004  # of the scene's size: a larger step in depth from pixel to
 _PANES = 6  # a pane of glass has two surfaces
 _BEHIND = 1e-5  # of the scene's size: where a ray goes on behind a surface
 _SPARSE = 2  # rays to the sky start at every second pixel of every second row
+_BLOCK = 4096  # pixels with several rays at a time: what NumPy allocates for them stays in the cache
 _OUTLINE_DIRECTIONS = 240
 _OUTLINE_VERTICES = 30000
 
@@ -158,7 +159,9 @@ class _Painter:
         sparse = self._sparse_light(view)
         image = self._colors(view, self._light(view, np.arange(len(view.pixels)), sparse))
         rough = np.flatnonzero(self._edges(view) | self._near_glyphs(view))
-        image[rough] = self._subsampled(rough, view, sparse)
+        for start in range(0, len(rough), _BLOCK):
+            block = rough[start : start + _BLOCK]
+            image[block] = self._subsampled(block, view, sparse)
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
     def _view(self, pixels: FloatArray) -> _View:
