@@ -60,9 +60,9 @@ _INFERRED, _REFINED = 0.5, 0.55
     "--hint",
     "hints",
     multiple=True,
-    metavar="PART=TYPE|PART:axis=x|PART:pivot=X,Y,Z",
+    metavar="PART=TYPE|PART:axis=x|PART:pivot=X,Y,Z|PART:limits=A,B",
     help="What you know of a joint: its type, the direction of its axis (or X,Y,Z), a point that a hinge goes through "
-    "[m]. It decides. Several may be given.",
+    "[m], its limits [rad or m]. It decides. Several may be given.",
 )
 @click.option(
     "--config", default="default", show_default=True, metavar="NAME|FILE", help="Shipped or own configuration."

@@ -31,12 +31,12 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 HINTED = "hinted"
 """1 in `JointEstimate.evidence` where the user said what the joint is: no failure overrules that."""
 _NEAR = np.cos(np.radians(30.0))  # a candidate along the named axis: parts are tilted, and people name the nearest
-_SAME = np.cos(np.radians(5.0))  # a candidate along an axis that is given by its numbers
-_THROUGH = 0.02  # of the object's diagonal: a candidate that goes through the point that is given
+_SAME = np.cos(np.radians(1.0))  # a candidate along an axis that is given by its numbers
+_THROUGH = 0.005  # of the object's diagonal: a candidate that goes through the point that is given
 _HELD = 0.1  # a slide that is stopped within a tenth of the part's length has no way to go
 _FORMS = (
-    "Write PART=TYPE, PART:axis=AXIS or PART:pivot=X,Y,Z, as in `door_1=prismatic`, `lid:axis=x` (numbers do as well: "
-    "`lid:axis=0.7,0,0.7`) and `lid:pivot=0.1,0,0.9`."
+    "Write PART=TYPE, PART:axis=AXIS, PART:pivot=X,Y,Z or PART:limits=LOWER,UPPER, as in `door_1=prismatic`, "
+    "`lid:axis=x` (numbers do as well: `lid:axis=0.7,0,0.7`), `lid:pivot=0.1,0,0.9` and `lid:limits=0,1.57`."
 )
 
 
@@ -50,12 +50,15 @@ class Hint:
     """Of `AXES`, or three numbers with commas between them, world frame."""
     pivot: str | None = None
     """A point on the axis, world frame [m], written in the same way."""
+    limits: str | None = None
+    """Lower and upper limit [rad or m], two numbers with a comma between them, along `axis` or else along the axis that
+    the joint had."""
 
     @property
     def texts(self) -> tuple[str, ...]:
         """As it is typed."""
-        stated = ((f"{self.part}=", self.kind), (f"{self.part}:axis=", self.axis), (f"{self.part}:pivot=", self.pivot))
-        return tuple(f"{key}{value}" for key, value in stated if value is not None)
+        stated = (("", self.kind), (":axis", self.axis), (":pivot", self.pivot), (":limits", self.limits))
+        return tuple(f"{self.part}{key}={value}" for key, value in stated if value is not None)
 
     @property
     def direction(self) -> FloatArray | None:
@@ -77,7 +80,7 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
     """Read hints as they are typed; those on one part are taken together.
 
     Args:
-        texts: ``PART=TYPE``, ``PART:axis=AXIS`` and ``PART:pivot=X,Y,Z``.
+        texts: ``PART=TYPE``, ``PART:axis=AXIS``, ``PART:pivot=X,Y,Z`` and ``PART:limits=LOWER,UPPER``.
         parts: Names that there are.
         base: Part that is said to be the base link, if any.
 
@@ -88,7 +91,7 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
     for text in texts:
         hint = _parsed(text, parts)
         known = found.get(hint.part, Hint(part=hint.part))
-        for name in ("kind", "axis", "pivot"):
+        for name in ("kind", "axis", "pivot", "limits"):
             old, new = getattr(known, name), getattr(hint, name)
             if old is not None and new is not None and old != new:
                 raise InputError(
@@ -96,13 +99,21 @@ def parse_hints(texts: Sequence[str], parts: Sequence[str], *, base: str | None 
                     "Keep one of them."
                 )
         found[hint.part] = Hint(
-            part=hint.part, kind=hint.kind or known.kind, axis=hint.axis or known.axis, pivot=hint.pivot or known.pivot
+            part=hint.part,
+            kind=hint.kind or known.kind,
+            axis=hint.axis or known.axis,
+            pivot=hint.pivot or known.pivot,
+            limits=hint.limits or known.limits,
         )
     for hint in found.values():
         if hint.kind is JointType.FIXED and hint.axis is not None:
             raise InputError(
                 f"The hints contradict each other: {hint.part} cannot be fixed and have an axis along {hint.axis}. "
                 "Keep one of them."
+            )
+        if hint.kind in (JointType.FIXED, JointType.CONTINUOUS) and hint.limits is not None:
+            raise InputError(
+                f"The hints contradict each other: {hint.part} cannot be {hint.kind} and have limits. Keep one of them."
             )
         if hint.part == base:
             raise _about_the_base(hint.part)
@@ -118,7 +129,9 @@ def _about_the_base(part: str) -> InputError:
 
 def _parsed(text: str, parts: Sequence[str]) -> Hint:
     left, _, value = text.rpartition("=")
-    name, value = left.removesuffix(":axis").removesuffix(":pivot").strip(), value.strip().lower()
+    name, value = left.strip(), value.strip().lower()
+    for ending in (":axis", ":pivot", ":limits"):
+        name = name.removesuffix(ending)
     if not name or not value:
         raise InputError(f"The hint {text!r} cannot be read. {_FORMS}")
     if name not in parts:
@@ -129,6 +142,14 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
         if _vector(value) is None:
             raise InputError(f"The hint {text!r} asks for the pivot {value!r}. Give three numbers [m]. {_FORMS}")
         return Hint(part=name, pivot=value)
+    if left.endswith(":limits"):
+        ends = _vector(value, 2)
+        if ends is None or not ends[0] <= 0.0 <= ends[1] or ends[0] == ends[1]:
+            raise InputError(
+                f"The hint {text!r} asks for the limits {value!r}. Give two numbers [rad or m] with zero, which is the "
+                f"pose of the input, between them. {_FORMS}"
+            )
+        return Hint(part=name, limits=value)
     choices = list(AXES if left.endswith(":axis") else TYPES)
     numbers = _vector(value) if left.endswith(":axis") else None
     if value not in choices and (numbers is None or not numbers.any()):
@@ -138,13 +159,13 @@ def _parsed(text: str, parts: Sequence[str]) -> Hint:
     return Hint(part=name, kind=TYPES[value])
 
 
-def _vector(text: str) -> FloatArray | None:
-    """Three numbers with commas between them; None if the text is anything else."""
+def _vector(text: str, count: int = 3) -> FloatArray | None:
+    """Numbers with commas between them; None if the text is anything else."""
     try:
         found = np.array([float(word) for word in text.split(",")])
     except ValueError:
         return None
-    return found if found.shape == (3,) and np.isfinite(found).all() else None
+    return found if found.shape == (count,) and np.isfinite(found).all() else None
 
 
 def with_hints(inference: Inference, hints: Sequence[Hint]) -> Inference:
@@ -179,7 +200,19 @@ def _hinted(inference: Inference, maker: CandidateJoints, joint: JointEstimate, 
         found = replace(found, kind=JointType.CONTINUOUS, lower=-np.inf, upper=np.inf)
     elif hint.kind is JointType.REVOLUTE and found.kind is JointType.CONTINUOUS:
         found = replace(found, kind=JointType.REVOLUTE, lower=-np.pi, upper=np.pi)
+    if hint.limits is not None:
+        found = _limited(found, hint, joint)
     return _told(found)
+
+
+def _limited(found: JointEstimate, hint: Hint, before: JointEstimate) -> JointEstimate:
+    """The joint with the limits of a hint, which are along the axis that was named, or had before."""
+    ends = _vector(hint.limits or "", 2)
+    assert ends is not None
+    named = before.axis if hint.direction is None else hint.direction
+    lower, upper = ends if float(found.axis @ named) >= 0.0 else -ends[::-1]
+    kind = JointType.REVOLUTE if found.kind is JointType.CONTINUOUS else found.kind
+    return replace(found, kind=kind, lower=float(lower), upper=float(upper))
 
 
 def _told(joint: JointEstimate) -> JointEstimate:

@@ -43,6 +43,10 @@ class Alternative:
     """How likely it is by what the inference measured; None where that is not known."""
     score: float = field(default=0.0)
     """Its rank among the candidates of one joint: higher is better."""
+    by_hand: bool = False
+    """It was set on the page, and its type is meant as it stands: `continuous` turns without end."""
+    limits: tuple[float, float] | None = None
+    """Lower and upper limit along `axis` [rad or m] where they were set."""
 
 
 def load_doubtful(path: Path) -> tuple[str, ...]:

@@ -98,11 +98,13 @@ def hint_of(part: str, chosen: Alternative, before: JointType) -> Hint:
     """
     if chosen.kind is JointType.FIXED:
         return Hint(part=part, kind=JointType.FIXED)
-    axis = next((name for name, way in AXES.items() if abs(float(chosen.axis @ np.array(way))) > _ALONG), None)
+    named = next((name for name, way in AXES.items() if abs(float(chosen.axis @ np.array(way))) > _ALONG), None)
+    axis = named if named is not None and chosen.limits is None else _numbers(chosen.axis)
+    limits = None if chosen.limits is None else _numbers(np.array(chosen.limits))
     if not chosen.kind.turns:
-        return Hint(part=part, kind=JointType.PRISMATIC, axis=axis or _numbers(chosen.axis))
-    kind = before if before.turns else JointType.REVOLUTE
-    return Hint(part=part, kind=kind, axis=axis or _numbers(chosen.axis), pivot=_numbers(chosen.pivot))
+        return Hint(part=part, kind=JointType.PRISMATIC, axis=axis, limits=limits)
+    kind = before if before.turns and not chosen.by_hand else chosen.kind
+    return Hint(part=part, kind=kind, axis=axis, pivot=_numbers(chosen.pivot), limits=limits)
 
 
 def _numbers(values: FloatArray) -> str:

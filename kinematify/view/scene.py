@@ -154,10 +154,12 @@ class ViewScene:
         A joint that is tried as another type may turn by a quarter, or slide by half of the model's size, either way.
         """
         tried = self._tried.get(joint.name)
+        if tried is not None and tried.limits is not None:
+            return tried.limits
         if tried is not None and tried.kind.turns != joint.kind.turns:
             reach = 0.5 * math.pi if tried.kind.turns else 0.5 * self.size
             return -reach, reach
-        if joint.kind is JointType.CONTINUOUS or not math.isfinite(joint.upper - joint.lower):
+        if self.kind_of(joint) is JointType.CONTINUOUS or not math.isfinite(joint.upper - joint.lower):
             return -math.pi, math.pi
         return joint.lower, joint.upper
 
@@ -165,6 +167,18 @@ class ViewScene:
         """Type of a joint as it is tried, or as in the file."""
         tried = self._tried.get(joint.name)
         return joint.kind if tried is None else tried.kind
+
+    def tried(self, joint: str) -> Alternative | None:
+        """What a joint is tried as; None: as the file says."""
+        return self._tried.get(joint)
+
+    def line_of(self, joint: Joint) -> tuple[FloatArray, FloatArray]:
+        """Axis and a point on it, as tried or as in the file, frame of the root link at zero [m], shape (3,) each."""
+        tried = self._tried.get(joint.name)
+        if tried is not None:
+            return tried.axis, tried.pivot
+        T = self._zero[joint.child]
+        return T[:3, :3] @ joint.axis, T[:3, 3]
 
     def try_joint(self, joint: str, alternative: Alternative | None) -> None:
         """Move a joint as an alternative says; None: as the file says."""

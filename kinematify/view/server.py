@@ -16,8 +16,8 @@ from PIL import Image
 
 from kinematify.errors import KinematifyError
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import quaternion_of
-from kinematify.view.alternatives import described, distinct
+from kinematify.robot.transforms import quaternion_of, rotation_from_quaternion, rotation_from_x
+from kinematify.view.alternatives import Alternative, described, distinct
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Surface
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
-    from kinematify.view.alternatives import Alternative
     from kinematify.view.keep import Kept, ModelFolder
     from kinematify.view.scene import Touch
     from kinematify.view.shown import Shown
@@ -37,6 +36,15 @@ _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 _AXIS = (214, 26, 41)
 _SLIDE = (18, 84, 219)
 _AS_WRITTEN = "as in the file"
+_TYPES = {
+    "turns": JointType.REVOLUTE,
+    "turns without end": JointType.CONTINUOUS,
+    "slides": JointType.PRISMATIC,
+    "fixed": JointType.FIXED,
+}
+"""What a joint can be set to by hand."""
+_GIZMO = 0.2
+"""Of the model's size."""
 _FRAME = 1.0 / 30.0
 _SWEEP_SECONDS = 4.0
 _SLIDER_STEPS = 400
@@ -49,6 +57,7 @@ _GLOW = 0.45
 _SWOLLEN = 1.5e-3
 """Of the model's size: how far the glow stands off the surface."""
 _PICTURE = (1600, 1200)
+_FILM, _FILM_FRAMES, _FILM_SECONDS = (640, 480), 24, 3.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,6 +113,7 @@ class ModelViewer:
             self._glows: dict[str, Any] = {}
             self._sliders: dict[str, Any] = {}
             self._axes: dict[str, Any] = {}
+            self._gizmo: Any = None
             self._server.scene.reset()
             self._server.gui.reset()
             self._server.gui.set_panel_label(scene.robot.name)
@@ -154,6 +164,7 @@ class ModelViewer:
         with self._lock:
             if self._chosen != joint and joint in self._sliders:
                 self._chosen, self._marked = joint, frozenset()
+                self._end_by_hand()
                 self._fill_joint(joint)
                 self._glow()
 
@@ -168,25 +179,97 @@ class ModelViewer:
     def try_candidate(self, joint: str, number: int) -> None:
         """Move a joint as one of its candidates says, 0 for as in the file, and show that on the page."""
         with self._lock:
+            self._end_by_hand()
             candidates = self._candidates(self._scene.robot.joint_by_name[joint])
-            self._scene.try_joint(joint, candidates[number - 1] if number else None)
-            self._sweeping = None
-            item = self._scene.robot.joint_by_name[joint]
-            self._draw_axis(item)
-            self._refit_slider(item)
-            self._keep.visible = number > 0 and self._folder is not None
-            self._place()
+            self._try(joint, candidates[number - 1] if number else None)
+
+    def _try(self, joint: str, alternative: Alternative | None) -> None:
+        self._scene.try_joint(joint, alternative)
+        self._sweeping = None
+        item = self._scene.robot.joint_by_name[joint]
+        self._draw_axis(item)
+        self._refit_slider(item)
+        self._keep.visible = alternative is not None and self._folder is not None
+        self._place()
+
+    def set_by_hand(self) -> None:
+        """Begin to set the chosen joint by hand: all joints at zero, where its axis stands as it is given."""
+        with self._lock:
+            if self._chosen is None:
+                return
+            joint = self._scene.robot.joint_by_name[self._chosen]
+            self.set(dict.fromkeys(self._sliders, 0.0))
+            axis, pivot = self._scene.line_of(joint)
+            kind = self._scene.kind_of(joint)
+            self._end_by_hand()
+            self._hand_type.value = next(words for words, item in _TYPES.items() if item is kind)
+            self._fit_ends(kind, self._scene.range_of(joint))
+            self._gizmo = self._server.scene.add_transform_controls(
+                "/by_hand",
+                scale=_GIZMO * self._scene.size,
+                depth_test=False,
+                wxyz=quaternion_of(rotation_from_x(axis)),
+                position=pivot,
+            )
+            self._gizmo.on_update(_ignoring_event(self._hand_moved))
+            for handle in (self._hand_type, self._hand_ends):
+                handle.visible = True
+            self._hand_moved()
+
+    def set_limits(self, lower: float, upper: float) -> None:
+        """Put the two handles of the limits somewhere [deg or mm]; only while a joint is set by hand."""
+        self._hand_ends.value = (lower, upper)
+        self._hand_moved()
+
+    def _end_by_hand(self) -> None:
+        if self._gizmo is not None:
+            self._gizmo.remove()
+        self._gizmo = None
+        self._hand_type.visible = self._hand_ends.visible = False
+
+    def _fit_ends(self, kind: JointType, ends: tuple[float, float]) -> None:
+        """Give the two handles of the limits their range and unit."""
+        reach = 360.0 if kind.turns else 1000.0 * self._scene.size
+        factor = _factor_of(kind)
+        handle = self._hand_ends
+        handle.label = f"Limits [{'deg' if kind.turns else 'mm'}]"
+        handle.min, handle.max, handle.step = -reach, reach, 0.1
+        handle.value = tuple(round(float(np.clip(factor * end, -reach, reach)), 1) for end in ends)
+
+    def _hand_kind(self) -> None:
+        """Begin the range of another type anew: a quarter turn, or half of the model's size."""
+        with self._lock:
+            if self._gizmo is not None:
+                kind = _TYPES[self._hand_type.value]
+                self._fit_ends(kind, (0.0, 0.5 * math.pi if kind.turns else 0.5 * self._scene.size))
+                self._hand_moved()
+
+    def _hand_moved(self) -> None:
+        """Try the joint as gizmo, type and limits say."""
+        with self._lock:
+            if self._gizmo is None or self._chosen is None:
+                return
+            kind = _TYPES[self._hand_type.value]
+            lower, upper = (float(end) / _factor_of(kind) for end in self._hand_ends.value)
+            limited = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
+            alternative = Alternative(
+                kind=kind,
+                axis=rotation_from_quaternion(np.asarray(self._gizmo.wxyz))[:, 0],
+                pivot=np.array(self._gizmo.position, dtype=np.float64),
+                by_hand=True,
+                limits=(min(lower, 0.0), max(upper, 0.0)) if limited else None,
+            )
+            self._try(self._chosen, alternative)
 
     def keep(self) -> Kept | None:
-        """Write the model with the candidate that is tried, and show it anew; None if it could not be written."""
+        """Write the model with the joint as it is tried, and show it anew; None if it could not be written."""
         assert self._folder is not None
         with self._lock:
             joint = None if self._chosen is None else self._scene.robot.joint_by_name[self._chosen]
-            number = 0 if joint is None else self._options.index(self._choice.value)
-        if joint is None or not number:
+            tried = None if joint is None else self._scene.tried(joint.name)
+        if joint is None or tried is None:
             return None
-        chosen = self._candidates(joint)[number - 1]
-        return self._written(partial(self._folder.keep, joint.child, chosen))
+        return self._written(partial(self._folder.keep, joint.child, tried))
 
     def _undo(self) -> None:
         assert self._folder is not None
@@ -298,6 +381,14 @@ class ModelViewer:
         self._options = [_AS_WRITTEN]
         self._choice: Any = gui.add_dropdown("It could also", (_AS_WRITTEN,), visible=False)
         self._choice.on_update(_ignoring_event(self._tried))
+        self._by_hand = gui.add_button(
+            "Set by hand", visible=False, hint="Type, axis and limits; the red arrow of the gizmo is the axis."
+        )
+        self._by_hand.on_click(_ignoring_event(self.set_by_hand))
+        self._hand_type: Any = gui.add_dropdown("Type", tuple(_TYPES), visible=False)
+        self._hand_type.on_update(_ignoring_event(self._hand_kind))
+        self._hand_ends: Any = gui.add_multi_slider("Limits", -360.0, 360.0, 0.1, (0.0, 90.0), visible=False)
+        self._hand_ends.on_update(_ignoring_event(self._hand_moved))
         self._keep = gui.add_button("Keep this", visible=False, color="green", hint="Writes the model with this joint.")
         self._keep.on_click(_ignoring_event(self.keep))
         can_undo = self._folder is not None and self._folder.can_undo
@@ -330,8 +421,7 @@ class ModelViewer:
 
     def _factor(self, name: str) -> float:
         """Units of a slider per rad or m."""
-        turns = self._scene.kind_of(self._scene.robot.joint_by_name[name]).turns
-        return 180.0 / math.pi if turns else 1000.0
+        return _factor_of(self._scene.kind_of(self._scene.robot.joint_by_name[name]))
 
     def _unit(self, joint: Joint) -> str:
         return "deg" if self._scene.kind_of(joint).turns else "mm"
@@ -354,6 +444,7 @@ class ModelViewer:
         self._choice.options = tuple(self._options)
         self._choice.value = _AS_WRITTEN
         self._choice.visible = bool(candidates)
+        self._by_hand.visible = self._folder is not None
         self._keep.visible = False
 
     def _add_findings(self, sights: Sequence[Sight]) -> None:
@@ -370,6 +461,7 @@ class ModelViewer:
         gui.add_slider("Taken apart [%]", 0, 100, 1, 0).on_update(lambda event: self._take_apart(event.target.value))
         gui.add_checkbox("Axes", initial_value=True).on_update(lambda event: self._show_axes(event.target.value))
         gui.add_button("Picture (PNG)").on_click(lambda event: self._send_picture(event.client))
+        gui.add_button("Film (GIF)").on_click(lambda event: self._send_film(event.client))
         with gui.add_folder("Parts", expand_by_default=False):
             for top in self._frames:
                 box = gui.add_checkbox(top, initial_value=True)
@@ -433,6 +525,30 @@ class ModelViewer:
         content = io.BytesIO()
         Image.fromarray(pixels).save(content, format="PNG")
         client.send_file_download(f"{self._scene.robot.name}.png", content.getvalue())
+
+    def _send_film(self, client: Any) -> None:
+        """Film the chosen joint, or all of them, there and back, as this page sees it."""
+        width, height = _FILM
+        with self._lock:
+            before, chosen = dict(self._q), self._chosen
+            joints = [joint for joint in self._scene.leaders if chosen in (None, joint.name)]
+            ends = {joint.name: self._scene.range_of(joint) for joint in joints}
+        frames = []
+        for number in range(_FILM_FRAMES):
+            share = 0.5 - 0.5 * math.cos(2.0 * math.pi * number / _FILM_FRAMES)
+            self.set({name: lower + share * (upper - lower) for name, (lower, upper) in ends.items()})
+            frames.append(Image.fromarray(client.get_render(height, width)))
+        self.set(before)
+        content = io.BytesIO()
+        frames[0].save(
+            content,
+            format="GIF",
+            save_all=True,
+            append_images=frames[1:],
+            duration=round(1000.0 * _FILM_SECONDS / _FILM_FRAMES),
+            loop=0,
+        )
+        client.send_file_download(f"{self._scene.robot.name}.gif", content.getvalue())
 
     def _draw_axis(self, joint: Joint) -> None:
         """Draw the axis with the range; it stays with the parent while the joint moves."""
@@ -511,6 +627,11 @@ class ModelViewer:
         if handle.color != color:
             handle.color = color
         handle.visible = True
+
+
+def _factor_of(kind: JointType) -> float:
+    """Degrees per rad, or millimetres per m."""
+    return 180.0 / math.pi if kind.turns else 1000.0
 
 
 def _ignoring_event(action: Callable[[], object]) -> Callable[[Any], None]:

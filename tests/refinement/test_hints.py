@@ -46,6 +46,9 @@ def test_hints_are_read_and_those_on_one_part_are_taken_together() -> None:
         (["door_1:axis=w"], "x, y, z"),
         (["door_1:axis=0,0,0"], "x, y, z"),
         (["door_1:pivot=1,2"], "three numbers"),
+        (["door_1:limits=0.1,1.5"], "zero, which is the pose of the input"),
+        (["door_1:limits=1"], "two numbers"),
+        (["lid=fixed", "lid:limits=0,1"], "cannot be fixed and have limits"),
         (["door_1"], "PART=TYPE"),
         (["=prismatic"], "PART=TYPE"),
         (["door_1=prismatic", "door_1=revolute"], "contradict"),
@@ -81,6 +84,19 @@ def test_an_axis_is_obeyed_in_every_direction(axis: str) -> None:
     name = moving(inference)
     joint = joint_of(with_hints(inference, [Hint(part=name, axis=axis)]), name)
     assert abs(joint.axis["xyz".index(axis)]) > np.cos(np.radians(30.0))
+
+
+def test_limits_are_along_the_axis_that_was_named_or_had_before() -> None:
+    inference = inferred("edge_door")
+    name = moving(inference)
+    before = joint_of(inference, name)
+    joint = joint_of(with_hints(inference, [Hint(part=name, limits="-0.25,1.25")]), name)
+    assert (joint.lower, joint.upper) == (-0.25, 1.25)
+    assert np.allclose(joint.axis, before.axis)
+    against = ",".join(f"{-value:.6g}" for value in before.axis)
+    joint = joint_of(with_hints(inference, [Hint(part=name, axis=against, limits="-0.25,1.25")]), name)
+    turned = np.sign(joint.axis @ before.axis)
+    assert (joint.lower, joint.upper) == ((-1.25, 0.25) if turned > 0.0 else (-0.25, 1.25))
 
 
 def test_a_pivot_chooses_the_hinge_that_goes_through_it() -> None:

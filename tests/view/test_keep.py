@@ -13,7 +13,7 @@ from kinematify.pipeline import infer, write_inference
 from kinematify.refinement.folder import read_record
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
-from kinematify.view.alternatives import load_alternatives
+from kinematify.view.alternatives import Alternative, load_alternatives
 from kinematify.view.keep import ModelFolder
 from tests.objects import BUILDERS
 
@@ -68,3 +68,20 @@ def test_a_model_that_was_changed_by_hand_is_left_as_it_is(folder: Path) -> None
     with pytest.raises(InputError, match="was changed"):
         ModelFolder(folder).keep(joint.child, fixed)
     assert path.read_bytes() == changed
+
+
+def test_what_was_set_by_hand_is_written_with_its_limits(folder: Path) -> None:
+    (joint,) = read_robot(folder / "model.urdf").joints
+    axis, pivot = np.array([0.0, 0.6, -0.8]), np.array([0.01, 0.02, 0.03])
+    by_hand = Alternative(kind=JointType.REVOLUTE, axis=axis, pivot=pivot, by_hand=True, limits=(-0.25, 1.25))
+    told = ModelFolder(folder).keep(joint.child, by_hand)
+    assert f"{joint.child}:limits=-0.25,1.25" in told.hints
+    (found,) = read_robot(folder / "model.urdf").joints
+    turned = float(found.axis @ axis)
+    assert abs(turned) > 1.0 - 1e-9
+    assert (found.lower, found.upper) == pytest.approx((-0.25, 1.25) if turned > 0.0 else (-1.25, 0.25))
+    assert np.linalg.norm(np.cross(found.T_parent_child[:3, 3] - pivot, axis)) < 1e-5
+    assert tuple(read_record(folder)["hints"]) == told.hints
+    endless = replace(by_hand, kind=JointType.CONTINUOUS, limits=None)
+    ModelFolder(folder).keep(joint.child, endless)
+    assert read_robot(folder / "model.urdf").joints[0].kind is JointType.CONTINUOUS
