@@ -56,7 +56,7 @@ TASKS: dict[str, Task] = {
     "lift-toilet-lid": Task(family="toilet", joint="lid_joint"),
     "lift-laptop-screen": Task(family="laptop", joint="screen_joint"),
     "turn-oven-knob": Task(family="oven", joint="knob_1_joint"),
-    "press-panel-button": Task(family="button_panel", joint="button_1_joint"),
+    "press-light-switch": Task(family="switch_panel", joint="rocker_1_joint"),
     "press-microwave-button": Task(family="microwave", joint="button_1_joint"),
     "push-toaster-lever": Task(family="toaster", joint="lever_1_joint"),
 }
