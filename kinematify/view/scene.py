@@ -13,6 +13,7 @@ import numpy as np
 from kinematify.geometry.overlap import Overlap
 from kinematify.geometry.rest import Allowance
 from kinematify.geometry.scene import read_scene, relative
+from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import Material, joined, plain, surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import (
@@ -109,6 +110,19 @@ class ViewScene:
                 invented = Material().color if self._states_colors else _color(index)
                 found[group.top] = surfaces(vertices, faces, appearance or plain(invented, len(faces)))
         return found
+
+    def posed(self, q: Mapping[str, float]) -> tuple[PosedMesh, ...]:
+        """Return what is seen of every group in a configuration, frame of the root link, for pictures."""
+        poses = self.poses(q)
+        found = []
+        for index, group in enumerate(self.groups):
+            vertices, faces, appearance = self._mesh(group)
+            if len(faces):
+                T = poses[group.top]
+                color = Material().color if self._states_colors else _color(index)
+                placed = vertices @ T[:3, :3].T + T[:3, 3]
+                found.append(PosedMesh(vertices=placed, faces=faces, color=np.array(color[:3]), appearance=appearance))
+        return tuple(found)
 
     @cached_property
     def _states_colors(self) -> bool:

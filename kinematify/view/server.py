@@ -18,6 +18,7 @@ from kinematify.errors import KinematifyError
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of, rotation_from_quaternion, rotation_from_x
 from kinematify.view.alternatives import Alternative, described, distinct
+from kinematify.view.film import film_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -57,7 +58,6 @@ _GLOW = 0.45
 _SWOLLEN = 1.5e-3
 """Of the model's size: how far the glow stands off the surface."""
 _PICTURE = (1600, 1200)
-_FILM, _FILM_FRAMES, _FILM_SECONDS = (640, 480), 24, 3.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -527,28 +527,19 @@ class ModelViewer:
         client.send_file_download(f"{self._scene.robot.name}.png", content.getvalue())
 
     def _send_film(self, client: Any) -> None:
-        """Film the chosen joint, or all of them, there and back, as this page sees it."""
-        width, height = _FILM
+        """Film the chosen joint, or all of them, there and back, from where this page looks."""
         with self._lock:
-            before, chosen = dict(self._q), self._chosen
-            joints = [joint for joint in self._scene.leaders if chosen in (None, joint.name)]
+            joints = [joint for joint in self._scene.leaders if self._chosen in (None, joint.name)]
             ends = {joint.name: self._scene.range_of(joint) for joint in joints}
-        frames = []
-        for number in range(_FILM_FRAMES):
-            share = 0.5 - 0.5 * math.cos(2.0 * math.pi * number / _FILM_FRAMES)
-            self.set({name: lower + share * (upper - lower) for name, (lower, upper) in ends.items()})
-            frames.append(Image.fromarray(client.get_render(height, width)))
-        self.set(before)
-        content = io.BytesIO()
-        frames[0].save(
-            content,
-            format="GIF",
-            save_all=True,
-            append_images=frames[1:],
-            duration=round(1000.0 * _FILM_SECONDS / _FILM_FRAMES),
-            loop=0,
-        )
-        client.send_file_download(f"{self._scene.robot.name}.gif", content.getvalue())
+        waiting = client.add_notification("Drawing the film ...", "It takes some seconds.", loading=True)
+        try:
+            camera = client.camera
+            film = film_of(
+                self._scene, ends, eye=camera.position, target=camera.look_at, field_of_view=float(camera.fov)
+            )
+        finally:
+            waiting.remove()
+        client.send_file_download(f"{self._scene.robot.name}.gif", film)
 
     def _draw_axis(self, joint: Joint) -> None:
         """Draw the axis with the range; it stays with the parent while the joint moves."""
