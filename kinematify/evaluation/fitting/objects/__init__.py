@@ -10,13 +10,16 @@ import numpy as np
 
 from kinematify.evaluation.fitting.objects import (
     appliances,
+    controls,
     furniture,
     household,
     machines,
     openings,
     pastimes,
     storage,
+    tabletop,
     vehicles,
+    wheeled,
 )
 from kinematify.evaluation.fitting.objects.draft import Draft, Hand
 
@@ -25,9 +28,23 @@ if TYPE_CHECKING:
 
     from kinematify.generate.blueprint import Blueprint
 
+_MODULES = (
+    furniture,
+    household,
+    machines,
+    pastimes,
+    vehicles,
+    openings,
+    appliances,
+    storage,
+    controls,
+    tabletop,
+    wheeled,
+)
+
 OBJECTS: Mapping[str, Callable[[Draft], None]] = {
     name: recipe
-    for module in (furniture, household, machines, pastimes, vehicles, openings, appliances, storage)
+    for module in _MODULES
     for name, recipe in vars(module).items()
     if isinstance(recipe, FunctionType) and recipe.__module__ == module.__name__ and not name.startswith("_")
 }
