@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ from kinematify.evaluation.planted import (
     planted_faults,
     true_mechanism,
 )
+from kinematify.evaluation.studies.refine import mistakes
 from kinematify.evaluation.study import load_study_report
 from kinematify.pipeline import infer, write_inference
 from kinematify.robot.read import read_robot
@@ -84,3 +86,19 @@ def test_bench_counts_what_refinement_finds_and_repairs(
     assert all(record["repaired"] and not record["harmed"] for record in records)
     assert [record["found"] for record in records] == [False, True, True]
     assert "| pivot | 1 | 1 (100%) | 1 (100%) |" in (tmp_path / "out" / "refine.md").read_text()
+
+
+def test_simulation_tells_a_blocked_mistake_from_a_right_hypothesis_if_one_is_proposed(
+    door: Mechanism,
+) -> None:
+    planted = {item.fault: item.inference.joints for item in planted_faults(door, 0)}
+    assert mistakes(replace(door, chosen=door.inference.joints), "geometry") == []
+    (blocked,) = mistakes(replace(door, chosen=planted[PIVOT]), "geometry")
+    assert blocked["in_pool"]
+    assert blocked["told"]
+    assert blocked["against"] > 0.0
+    (joint,) = door.inference.joints
+    alone = replace(planted[PIVOT][0], alternatives=tuple(item for item in joint.alternatives if not item.kind.turns))
+    (hopeless,) = mistakes(replace(door, chosen=(alone,)), "geometry")
+    assert not hopeless["in_pool"]
+    assert not hopeless["told"], "what is not proposed cannot be found"

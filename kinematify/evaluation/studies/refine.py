@@ -9,12 +9,16 @@ apart. *Found*: a failure blames the joint. *Repaired*: parent, type, axis withi
 part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is inferred anew. *Harm*:
 joints that were right and are not, or whose range overlaps the true one by .1 less. The rows *nothing* are the true
 mechanisms as they are.
+
+--inferred asks what simulation can do at all about the joints that inference gets wrong, with the true tree given:
+right near-best hypotheses are simulated beside the chosen one. *In the pool*: there is one. *Told*: the simulation has
+more against the joint that was chosen than against a right one. No loop that chooses by simulation repairs more.
 """
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import itemgetter
 from statistics import median
 from typing import TYPE_CHECKING, Annotated
@@ -22,12 +26,17 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from kinematify.config import load_config
+from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.job import erased_item
 from kinematify.evaluation.planted import FAULTS, NOTHING, PARENT, SECOND, Planted, planted_faults, true_mechanism
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.refinement import refine
+from kinematify.refinement.candidates import CandidateJoints, is_same
+from kinematify.refinement.choose import Chooser
+from kinematify.refinement.plan import Plan
+from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.tiers import TIERS
 
 if TYPE_CHECKING:
@@ -45,6 +54,7 @@ SAMPLE = (
 _SECONDS = 300.0
 """For each refinement, so that no answer depends on how busy the machine is [s]."""
 _IOU_LOST = 0.1
+INFERRED = "inferred"
 
 
 class RefineOptions(Options):
@@ -57,6 +67,7 @@ class RefineOptions(Options):
         ("geometry",), description="Some of geometry, engines, task."
     )
     level: bool = Field(default=False, description="Planted joints score as the best candidate does.")
+    inferred: bool = Field(default=False, description="Joints that inference gets wrong as well.")
     seed: int = Field(0, description="Draws the joints.")
     config: str = Field("default", description="Configuration of the inference.")
 
@@ -82,8 +93,10 @@ def measure(options: RefineOptions, work: Work) -> Measured:
         for tier in options.tiers
         for item in matching(find_objects(options.data), options.objects)
     }
-    found = work.each(refined_faults, asked, timeout=7200.0)
-    return [record for object_record in found.values() for record in object_record["faults"]], {}
+    found = list(work.each(refined_faults, asked, timeout=7200.0).values())
+    if options.inferred:
+        found += work.each(judged_mistakes, asked, timeout=7200.0).values()
+    return [record for object_record in found for record in object_record["faults"]], {}
 
 
 def refined_faults(asked: Planting) -> Record:
@@ -94,6 +107,49 @@ def refined_faults(asked: Planting) -> Record:
     untouched = Planted(fault=NOTHING, part="", inference=mechanism.inference)
     planted = (untouched, *planted_faults(mechanism, asked.seed, asked.faults, level=asked.level))
     return {"faults": [_refined(mechanism, fault, asked) for fault in planted]}
+
+
+def judged_mistakes(asked: Planting) -> Record:
+    """What simulation can tell of the joints that inference gets wrong on the true tree of one object."""
+    mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config(asked.config))
+    rows = [] if mechanism is None else mistakes(mechanism, asked.tier)
+    return {"faults": [{"object": asked.item.name, "tier": asked.tier, "fault": INFERRED, **row} for row in rows]}
+
+
+def mistakes(mechanism: Mechanism, tier: str) -> list[Record]:
+    """Simulate the right near-best hypotheses of every joint that was chosen wrong, beside the chosen one."""
+    answer = replace(mechanism.inference, joints=mechanism.chosen)
+    plan = Plan(assembly=answer.assembly, config=answer.config, tree=answer.trees[0], joints=answer.joints)
+    settings, wrong = load_settings(), mechanism.wrong(answer)
+    chooser = Chooser(
+        candidates=CandidateJoints(answer.assembly, answer.graph, answer.bearings, answer.config),
+        simulator=Simulator(plan.model, settings.geometry),
+        settings=settings,
+        config=answer.config.refine,
+        in_time=lambda: True,
+    )
+    records = []
+    for joint in answer.joints:
+        name = answer.assembly.names[joint.child]
+        if name not in wrong:
+            continue
+        best = joint.alternatives[0].score
+        near = [item for item in joint.alternatives if item.score >= best - answer.config.refine.margin]
+        others = [chooser.candidates.realise(plan.tree, joint, item) for item in near if not is_same(joint, item)]
+        right = [
+            other
+            for other in others
+            if name not in mechanism.wrong(replace(answer, joints=plan.with_joint(other).joints))
+        ]
+        tried = [chooser.trial(plan, other, 0.0, tier).against for other in (joint, *right)]
+        records.append({
+            "part": name,
+            "hypotheses": len(near),
+            "in_pool": bool(right),
+            "against": tried[0],
+            "told": bool(right) and min(tried[1:]) < tried[0],
+        })  # fmt: skip
+    return records
 
 
 def _refined(mechanism: Mechanism, planted: Planted, asked: Planting) -> Record:
@@ -124,7 +180,18 @@ def _refined(mechanism: Mechanism, planted: Planted, asked: Planting) -> Record:
 def report(found: Report[Record]) -> list[str]:
     """What was found, repaired and spoilt, by tier and fault, and the faults that were not repaired."""
     blocks = [explained(__doc__)]
-    for tier, records in grouped(found.records, by=itemgetter("tier")).items():
+    inferred = [record for record in found.records if record["fault"] == INFERRED]
+    if inferred:
+        heads = ("simulated by", "wrong joints", "in the pool", "found", "told")
+        told = [_mistake_row(tier, own) for tier, own in grouped(inferred, by=itemgetter("tier")).items()]
+        lines = [
+            f"- {row['object']}, {row['part']}, {row['tier']}: {row['hypotheses']} near-best hypotheses, "
+            f"{'one' if row['in_pool'] else 'none'} right; {row['against']:.1f} against the chosen one"
+            for row in inferred
+        ]
+        blocks += ["## What simulation can tell of joints inferred wrong", table(heads, told), "\n".join(lines)]
+    planted = [record for record in found.records if record["fault"] != INFERRED]
+    for tier, records in grouped(planted, by=itemgetter("tier")).items():
         titles = ("planted", "faults", "found", "repaired", "harm", "time")
         by_fault = grouped(records, by=itemgetter("fault"))
         rows = [_row(fault, by_fault[fault]) for fault in (*FAULTS, NOTHING) if fault in by_fault]
@@ -132,6 +199,17 @@ def report(found: Report[Record]) -> list[str]:
         rows += [_row("**all but second best**", usual)] if usual else []
         blocks += [f"## Simulated by {tier}", table(titles, rows), "### Not repaired", _misses(records)]
     return [*blocks, "Time: of the refinement over that of the inference, median."]
+
+
+def _mistake_row(tier: str, records: Sequence[Record]) -> tuple[str, ...]:
+    found = [record["against"] > 0.0 for record in records]
+    return (
+        tier,
+        str(len(records)),
+        _share([row["in_pool"] for row in records]),
+        _share(found),
+        _share([row["told"] for row in records]),
+    )
 
 
 def _row(title: str, records: Sequence[Record]) -> tuple[str, ...]:
@@ -155,7 +233,8 @@ def _share(values: Sequence[bool]) -> str:
 def sentence(found: Report[Record]) -> str:
     """What the page of results says of it."""
     parts = []
-    for tier, records in grouped(found.records, by=itemgetter("tier")).items():
+    planted_records = [record for record in found.records if record["fault"] != INFERRED]
+    for tier, records in grouped(planted_records, by=itemgetter("tier")).items():
         by_fault = grouped(records, by=itemgetter("fault"))
         planted = [record["repaired"] for fault in FAULTS if fault != SECOND for record in by_fault.get(fault, [])]
         second = [record["repaired"] for record in by_fault.get(SECOND, [])]
