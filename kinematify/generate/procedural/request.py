@@ -14,6 +14,7 @@ from kinematify.generate.composer.compose import compose
 from kinematify.generate.composer.sentence import NoBodyError, read_composition
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.language.parts import PartRequirement
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.generate.procedural.language.understand import NotUnderstoodError, understand
 from kinematify.robot.transforms import rotation_about
@@ -21,10 +22,10 @@ from kinematify.robot.transforms import rotation_about
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.assembly.part import Part
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.composer.compose import Composition
     from kinematify.generate.procedural.family import Family
-    from kinematify.generate.procedural.language.parts import PartRequirement
     from kinematify.generate.procedural.parameter import Value
 
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
@@ -101,10 +102,15 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
     holder, verb, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
     if held.strip():
         holding, thing = from_text(holder, lenient=lenient), from_text(held, lenient=lenient)
-        understood = (*holding.understood, f"{verb} {', '.join(thing.understood)}")
-        both = replace(holding, held=thing, understood=understood, ignored=(*holding.ignored, *thing.ignored))
-        both.build()  # whether there is a hand
-        return both
+        # What a seed draws may have hands that are one with the arms.
+        wanted = PartRequirement(nouns=(_hand(holding.build()).name,), words="a hand")
+        return replace(
+            holding,
+            held=thing,
+            understood=(*holding.understood, f"{verb} {', '.join(thing.understood)}"),
+            ignored=(*holding.ignored, *thing.ignored),
+            requirements=(*holding.requirements, wanted),
+        )
     try:
         meant = understand(sentence, FAMILIES)
     except NotUnderstoodError as error:
@@ -161,14 +167,8 @@ def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
 
 
 def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
-    """Return an object with another one at the outer side of its hand, its thinnest side towards the hand.
-
-    Raises:
-        InputError: It has no hand.
-    """
-    hand = next((part for name in _HANDS for part in blueprint.parts if part.name.endswith(name)), None)
-    if hand is None:
-        raise InputError(f"A {blueprint.family.replace('_', ' ')} has no hand to hold a {held.family} with.")
+    """Return an object with another one at the outer side of its hand, its thinnest side towards the hand."""
+    hand = _hand(blueprint)
     bounds = held.assembly.bounds
     thinnest = int(np.argmin(np.ptp(bounds, axis=0)))
     # A turn about x stands what lies; one about z turns what is narrow, its front then looks along x.
@@ -182,6 +182,18 @@ def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
     reach = 0.5 * float(np.ptp(hand.bounds, axis=0)[1]) + half[1] + _GRASP
     place[1, 3] += outward * reach
     return blueprint.carrying(held, hand.name, place)
+
+
+def _hand(blueprint: Blueprint) -> Part:
+    """Its hand.
+
+    Raises:
+        InputError: It has none.
+    """
+    found = next((part for name in _HANDS for part in blueprint.parts if part.name == name), None)
+    if found is None:
+        raise InputError(f"A {blueprint.family.replace('_', ' ')} has no hand to hold anything with. Leave that out.")
+    return found
 
 
 def _closed(blueprint: Blueprint) -> Blueprint:

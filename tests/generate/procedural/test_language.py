@@ -273,7 +273,9 @@ def test_cells_stand_in_grids_and_parts_behind_a_name_are_counted(text, values):
 
 
 def test_what_is_held_is_fixed_to_the_hand():
-    made = from_text("a humanoid 1.6 m tall holding a red box").build()
+    request = from_text("a humanoid 1.6 m tall holding a red box")
+    assert "right_hand" in request.build(seed=0).joint_above
+    made = request.build()
     assert made.joint_above["box"].kind is JointType.FIXED
     assert made.joint_above["box"].parent == "right_hand"
     assert made.joint_above["box_lid"].parent == "box"
