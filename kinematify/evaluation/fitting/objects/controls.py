@@ -51,22 +51,29 @@ def rocker_plate(d: Draft) -> None:
 
 
 def toggle_plate(d: Draft) -> None:
-    """Sticks that lean up or down out of a plate, in a boss, in a ball, or just in the plate."""
+    """Sticks that lean up or down out of a plate, on a barrel, on a ball, or just in the plate."""
     n, thick, length = d.n(1, 4), d.u(0.005, 0.03), d.u(0.01, 0.05)
     wide, tall = n * d.u(1.2, 2.5) * length, d.u(2.2, 4.0) * length
     d.part("plate", box((-wide / 2, 0, -tall / 2), (wide / 2, thick, tall / 2)), material="plastic")
     lean, r = d.u(0.2, 0.6), d.u(0.08, 0.2) * length
-    form, flat = d.pick("rod", "cone", "bar"), d.maybe(0.25)
+    form, foot, flat = d.pick("rod", "cone", "bar"), d.pick("barrel", "barrel", "ball", "none"), d.maybe(0.25)
     for k, x in enumerate(spread(n, -wide / 2, wide / 2)):
         turn = d.pick(-lean, lean)
         out = -np.cos(turn) * Y + np.sin(turn) * Z
         at = x * X + d.pick(0.0, 0.3 * thick) * Y
         gap = d.gap(r) + 0.0002
         name = f"toggle_{k}"
-        d.bore("plate", ball(1.6 * r + gap, at))
+        if foot == "ball":
+            d.bore("plate", ball(1.6 * r + gap, at))
+            d.part(name, ball(1.6 * r, at))
+        else:
+            wide = 2.0 * r + gap
+            d.bore("plate", rod(1.6 * r + 1.5 * gap, at - wide * X, at + wide * X))
+            if foot == "barrel":
+                d.part(name, rod(1.6 * r, at - 2.0 * r * X, at + 2.0 * r * X))
         if not d.hand.bored and d.maybe():
             d.part("plate", rod(2.0 * r, x * X + 0.1 * thick * Y, x * X - 1.2 * r * Y))
-        d.part(name, ball(1.6 * r, at), {"rod": capsule(r, at, at + length * out), "cone": cone(0.7 * r, 1.3 * r, at,
+        d.part(name, {"rod": capsule(r, at, at + length * out), "cone": cone(0.7 * r, 1.3 * r, at,
             at + length * out), "bar": beam(3.0 * r if flat else 1.5 * r, 1.5 * r, at, at + length * out)}[form],
             material="metal")
         if turn < 0:
