@@ -46,6 +46,7 @@ TASKS: dict[str, Task] = {
     "open-microwave": Task(family="microwave", joint="door_joint"),
     "open-dishwasher": Task(family="dishwasher", joint="door_joint"),
     "open-washing-machine": Task(family="washing_machine", joint="door_joint"),
+    "open-detergent-drawer": Task(family="washing_machine", joint="drawer_joint"),
     "open-safe": Task(family="safe", joint="door_joint"),
     "open-window": Task(family="window", joint="sash_1_joint"),
     "open-door": Task(family="door", joint="leaf_1_joint"),
@@ -56,7 +57,6 @@ TASKS: dict[str, Task] = {
     "lift-toilet-lid": Task(family="toilet", joint="lid_joint"),
     "lift-laptop-screen": Task(family="laptop", joint="screen_joint"),
     "turn-oven-knob": Task(family="oven", joint="knob_1_joint"),
-    "press-light-switch": Task(family="switch_panel", joint="rocker_1_joint"),
     "press-microwave-button": Task(family="microwave", joint="button_1_joint"),
     "push-toaster-lever": Task(family="toaster", joint="lever_1_joint"),
 }
