@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.hypotheses.centres import centre_lines
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.sweep import moving_points, sweep_turns
 from kinematify.robot.vectors import crossed, lengths_of
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
 CORNER, HALF_WAY, CENTRE, OTHER = range(4)
+
+_SAME_DEG, _SAME_LINE = 2.0, 0.01  # lines this close, the second in diagonals of the child, are one
 
 GIVEN = "given"
 """Source of candidates that were not proposed but given."""
@@ -148,6 +151,7 @@ def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line]
     if scene.fold is not None:
         found.append((scene.fold.axis, scene.fold.point, OTHER, "fold"))
     found += _box_lines(scene)
+    found += _distinct(scene, centre_lines(scene), found)
     found += [(line.axis, line.point, OTHER, GIVEN) for line in given]
     anchor = scene.contact.centroid if len(scene.contact.points) else scene.centre
     axes = np.array([axis for axis, _, _, _ in found])
@@ -159,6 +163,26 @@ def propose_lines(scene: JointScene, config: JointsConfig, given: Sequence[Line]
         places=tuple(place for _, _, place, _ in found),
         sources=tuple(source for _, _, _, source in found),
     )
+
+
+def _distinct(
+    scene: JointScene,
+    lines: Sequence[tuple[FloatArray, FloatArray]],
+    known: Sequence[tuple[FloatArray, FloatArray, int, str]],
+) -> list[tuple[FloatArray, FloatArray, int, str]]:
+    """Those of the lines through centres that run beside all known ones, and beside each other."""
+    axes, points = [line[0] for line in known], [line[1] for line in known]
+    found = []
+    for axis, point in lines:
+        apart = lengths_of(np.cross(np.array(points) - point, axis))
+        same = (np.abs(np.array(axes) @ axis) > np.cos(np.radians(_SAME_DEG))) & (
+            apart < _SAME_LINE * scene.frame.diagonal
+        )
+        if not same.any():
+            axes.append(axis)
+            points.append(point)
+            found.append((axis, point, OTHER, "centre"))
+    return found
 
 
 def _box_lines(scene: JointScene) -> list[tuple[FloatArray, FloatArray, int, str]]:

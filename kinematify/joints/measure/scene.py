@@ -48,6 +48,8 @@ class JointScene:
     """Box frame of the child."""
     parent_frame: BoxFrame
     """Box frame of the parent, along its own axes."""
+    upright_axes: FloatArray
+    """Upright axes of the whole object, one per row, shape (3, 3)."""
     body_box: FloatArray
     """Lower and upper corner of the parent along the child's axes [m], shape (2, 3)."""
     contact: ContactView
@@ -189,6 +191,7 @@ def joint_scene(
         child=child,
         frame=frame,
         parent_frame=frames[parent],
+        upright_axes=cache.upright_axes,
         body_box=body_box,
         contact=contact,
         others=tuple(i for i in range(len(tree.parents)) if i != parent and i not in moving),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import igl
@@ -11,6 +12,7 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
 from kinematify.geometry.sampling import sample_surface
+from kinematify.joints.hypotheses.frames import body_axes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -81,6 +83,13 @@ class PartCache:
             "samples", part, lambda: sample_surface(self.assembly.parts[part], self._samples, self._seed)
         )
         return found
+
+    @cached_property
+    def upright_axes(self) -> FloatArray:
+        """Upright axes of the whole object, one per row, shape (3, 3); single parts may be round, or turned."""
+        samples = [self.samples(part) for part in range(len(self.assembly.parts))]
+        normals, areas = (np.concatenate([getattr(some, name) for some in samples]) for name in ("normals", "areas"))
+        return body_axes(normals, areas)
 
     def first_hits(self, part: int, origins: FloatArray, steps: FloatArray) -> FloatArray:
         """Cast segments at a part.
