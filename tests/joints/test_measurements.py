@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.generate.procedural.solids import box, cylinder, union
+from kinematify.generate.procedural.solids import box, cylinder, tray, union
 from kinematify.joints.measure.measurements import TURN, Hypotheses, measure
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
@@ -65,3 +65,24 @@ def test_a_pin_in_a_solid_barrel_is_where_both_are_solid() -> None:
     found = measured(door, post)
     assert found["shared_radius"][2] < 0.1 < found["shared_radius"][0]
     assert found["shared_along"][2] > 0.5
+    assert found["shared_around"][2] == 1.0
+
+
+def test_a_hinge_at_an_edge_chooses_a_side_that_the_panel_does_not_show() -> None:
+    centred = measured(box((-0.1, -0.01, -0.1), (0.1, 0.01, 0.1)), BODY)
+    beside = measured(box((0.0, -0.01, -0.1), (0.2, 0.01, 0.1)), BODY)
+    assert centred["mirror_child"][2] < 0.05
+    assert beside["mirror_child"][2] > 0.5
+    assert beside["mirror_reason"][2] < 0.05
+
+
+def test_a_handle_at_one_side_is_a_reason_for_a_hinge_at_the_other() -> None:
+    panel = box((0.0, -0.01, -0.1), (0.2, 0.01, 0.1))
+    handled = union(panel, box((0.17, -0.05, -0.04), (0.18, 0.0, 0.04)))
+    assert measured(handled, BODY)["mirror_reason"][2] > 2.0 * measured(panel, BODY)["mirror_reason"][2] + 0.1
+
+
+def test_a_drawer_is_open_above() -> None:
+    found = measured(tray((-0.1, -0.2, -0.05), (0.1, 0.01, 0.05), 0.005), BODY)
+    assert found["own_above"][0] == 0.0
+    assert found["own_below"][0] == 1.0

@@ -31,10 +31,12 @@ FIXED, TURN, SLIDE = range(3)
 _POINTS = 90  # of a part, in tests of motion
 _CONTACT_POINTS = 50
 _FEW = 50  # in tests of symmetry
+_TRIED = 400  # samples of a part that may lie in the other solid
 _LEAST_SHARED = 5  # of some 800 points that may lie in the other solid
 _TURNS = np.radians([3.0, 10.0, 30.0, 75.0])
 _SLIDES = np.array([0.03, 0.1, 0.25, 0.6])  # of the child's diagonal
 _OPEN = 2  # the step at which what a motion opens is measured
+_ALIKE = 0.01  # of the child's diagonal: a mirror image this far off is 1/e alike
 _TINY = 1e-12
 
 
@@ -97,6 +99,15 @@ class Measured:
         offset = point - self.hypotheses.pivots
         axes = self.hypotheses.axes
         return np.asarray(offset - np.einsum("hk,hk->h", offset, axes)[:, None] * axes)
+
+    @cached_property
+    def shared(self) -> tuple[FloatArray, FloatArray]:
+        """Samples of the child in the solid of the parent and of the parent in the child [m], (n, 3) and (k, 3)."""
+        scene = self.scene
+        own = self.child.points[:: max(1, len(self.child.points) // _TRIED)]
+        near = self.parent.points[self._near_child(self.parent.points)]
+        near = near[:: max(1, len(near) // _TRIED)]
+        return own[scene.cache.inside(scene.parent, own)], near[scene.cache.inside(scene.child, near)]
 
     def radii(self, points: FloatArray) -> FloatArray:
         """Distances of points (n, 3) from each line [m], shape (h, n)."""
@@ -543,14 +554,10 @@ def axle(m: Measured) -> Values:
 def standing_in(m: Measured) -> Values:
     """Where the solids stand in each other at rest: how far from the line, and how far along it."""
     scene, h = m.scene, m.hypotheses
-    own = m.child.points[:: max(1, len(m.child.points) // 400)]
-    near = m.parent.points[m._near_child(m.parent.points)]
-    near = near[:: max(1, len(near) // 400)]
-    shared = [own[scene.cache.inside(scene.parent, own)], near[scene.cache.inside(scene.child, near)]]
-    points = np.concatenate(shared)
+    points = np.concatenate(m.shared)
     result = {
-        "shared_child": np.full(len(h), len(shared[0]) / len(own)),
-        "shared_parent": np.full(len(h), len(shared[1]) / max(len(near), 1)),
+        "shared_child": np.full(len(h), len(m.shared[0]) / _TRIED),
+        "shared_parent": np.full(len(h), len(m.shared[1]) / _TRIED),
     }
     if len(points) < _LEAST_SHARED:
         missing = np.full(len(h), np.nan)
@@ -565,6 +572,97 @@ def standing_in(m: Measured) -> Values:
         "shared_offset": lengths_of(m._across(centre)) / m.unit,
         "shared_at_end": np.abs(h.axes @ (centre - scene.centre)) / np.maximum(half, 0.02 * m.unit),
     }
+
+
+def mirror(m: Measured) -> Values:
+    """Whether a joint is as symmetric as what it moves: a drawer and its handle do not say on which side to hinge.
+
+    Planes through the child's centre along its box. Where the child, its contact and the parent around it are alike on
+    both sides, a joint that differs from its mirror image chooses a side without a reason.
+    """
+    h, scene = m.hypotheses, m.scene
+    axes = scene.frame.axes
+    touching = scene.contact.points[m.few_contact]
+    kept = np.array(
+        [
+            [_mirrored_gap(m, part, some, axis) for axis in axes]
+            for part, some in (
+                (scene.child, m.child.points[m.few]),
+                (scene.child, touching),
+                (scene.parent, m.parent.points[m.few_parent]),
+            )
+        ]
+    )
+    alike = np.exp(-kept / _ALIKE)
+    cosines = h.axes @ axes.T
+    # A direction is kept by planes that hold it or that it crosses squarely.
+    turned = 2.0 * np.abs(cosines) * np.sqrt(np.maximum(1.0 - cosines**2, 0.0))
+    across = np.minimum(2.0 * np.abs(m.arms @ axes.T) / m.unit, 1.0) * np.sqrt(np.maximum(1.0 - cosines**2, 0.0))
+    broken = np.where((h.kinds == TURN)[:, None], np.maximum(turned, across), turned)
+    pair = alike.min(axis=0)
+    return {
+        "mirror_child": (broken * alike[0]).max(axis=1),
+        "mirror_pair": (broken * pair).max(axis=1),
+        "mirror_contact": (broken * np.minimum(alike[0], alike[1])).max(axis=1),
+        "mirror_planes": np.full(len(h), float(alike[0].sum())),
+        "mirror_pair_planes": np.full(len(h), float(pair.sum())),
+        # What is not alike on both sides should have to do with the joint.
+        "mirror_reason": (broken * (1.0 - alike[0])).max(axis=1),
+    }
+
+
+def _mirrored_gap(m: Measured, part: int, points: FloatArray, normal: FloatArray) -> float:
+    """Mean distance of points (n, 3), mirrored at the child's centre, from a part, in diagonals of the child."""
+    if len(points) == 0:
+        return 1.0
+    over = (points - m.scene.centre) @ normal
+    images = points - 2.0 * over[:, None] * normal
+    before = m.scene.cache.distances(part, points)
+    return float(np.abs(m.scene.cache.distances(part, images) - before).mean() / m.unit)
+
+
+def hollow(m: Measured) -> Values:
+    """What of the child is around its own centre: a drawer is open above, a cap below, a ring along its line."""
+    h, scene = m.hypotheses, m.scene
+    reach = 2.0 * m.unit
+
+    def met(directions: FloatArray) -> FloatArray:
+        starts = np.broadcast_to(scene.centre, directions.shape)
+        return np.isfinite(scene.cache.first_hits(scene.child, starts, reach * directions)).astype(np.float64)
+
+    first, second = _across_pair(h.axes)
+    forward = np.where(m.better == 0, 1.0, -1.0)[:, None] * h.axes
+    moves = (h.kinds != FIXED)[:, None]
+    around = [met(np.where(moves, sign * axis, UP)) for axis in (first, second) for sign in (1.0, -1.0)]
+    return {
+        "own_ahead": met(np.where(moves, forward, UP)),
+        "own_behind": met(np.where(moves, -forward, UP)),
+        "own_around": np.mean(around, axis=0),
+        "own_above": np.full(len(h), met(UP[None])[0]),
+        "own_below": np.full(len(h), met(-UP[None])[0]),
+    }
+
+
+def around(m: Measured) -> Values:
+    """How far around the line the contact reaches, and the child within that reach: an axle is held on all sides."""
+    return {
+        "contact_around": _around(m, m.scene.contact.points[m.few_contact]),
+        "shared_around": _around(m, np.concatenate(m.shared)),
+    }
+
+
+def _around(m: Measured, points: FloatArray) -> FloatArray:
+    """Share of twelve sectors about each line that hold one of the points (n, 3), shape (h,); NaN without points."""
+    h = m.hypotheses
+    if len(points) == 0:
+        return np.full(len(h), np.nan)
+    first, second = _across_pair(h.axes)
+    offset = points[None] - h.pivots[:, None]
+    x, y = np.einsum("hnk,hk->hn", offset, first), np.einsum("hnk,hk->hn", offset, second)
+    sector = ((np.arctan2(y, x) + np.pi) / (2.0 * np.pi) * 12).astype(np.int64) % 12
+    met = np.zeros((len(h), 12))
+    met[np.arange(len(h))[:, None], sector] = 1.0
+    return np.where(h.kinds == TURN, met.mean(axis=1), np.nan)
 
 
 def gravity(m: Measured) -> Values:
@@ -723,6 +821,9 @@ GROUPS: dict[str, Callable[[Measured], Values]] = {
     "symmetry": symmetry,
     "axle": axle,
     "standing_in": standing_in,
+    "mirror": mirror,
+    "hollow": hollow,
+    "around": around,
     "gravity": gravity,
     "handle": handle,
     "opening": opening,
