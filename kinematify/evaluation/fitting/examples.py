@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.contact.build import build_contact_graph
+from kinematify.evaluation.axis_metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints
@@ -17,6 +18,7 @@ from kinematify.joints.choice.judge import cues_of, hypotheses_of, verdicts_of
 from kinematify.joints.choice.twins import alike_edges
 from kinematify.joints.hypotheses.bearing import fit_bearings
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
+from kinematify.joints.measure.opening_direction import measure_sides
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.topology.tree import KinematicTree
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.assembly.truth import GroundTruth, TrueJoint
     from kinematify.config import Config
+    from kinematify.joints.measure.measurements import Values
+    from kinematify.joints.measure.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
 
 VERDICTS = "verdicts"
@@ -68,6 +72,9 @@ class Example:
     """The same number for edges of an object that are alike (`twins.alike_edges`), -1 for all others."""
     broken: bool = False
     """The object has pieces broken off; such edges teach what is fixed, not which joint is right."""
+    sides: Mapping[str, FloatArray] = field(default_factory=dict)
+    """What is measured towards either side of the true turn (`measure_sides`), the one that opens first, shape (2,)
+    each; empty where the joint slides, goes both ways or is a link in series."""
 
     @property
     def kinds(self) -> IntArray:
@@ -148,9 +155,18 @@ def examples_of(
                 by_cues=0 if stuck else 1 + (len(weighed.turns.scores) if slides else 0),
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
+                sides={} if broken else _sides(weighed.scene, joints[0]),
             )
         )
     return found
+
+
+def _sides(scene: JointScene, joint: TrueJoint) -> Values:
+    """See `Example.sides`."""
+    opens = opening_sign(joint.lower + joint.value, joint.upper + joint.value)
+    if opens == 0 or joint.kind is not JointType.REVOLUTE or scene.serial:
+        return {}
+    return measure_sides(scene, opens * joint.axis, joint.pivot)
 
 
 def _rightness(
@@ -182,6 +198,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
         names = sorted(example.measured)
         arrays[f"values_{k}"] = np.array([example.measured[name] for name in names], dtype=np.float32)
         labels = (example.kinds, example.right, example.angles, example.types_right)
+        arrays[f"sides_{k}"] = np.array([example.sides[name] for name in sorted(example.sides)], dtype=np.float32)
         arrays[f"labels_{k}"] = np.column_stack([*labels, example.hypotheses.axes, example.hypotheses.pivots])
         facts.append(
             {
@@ -197,6 +214,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "alike": example.alike,
                 "sources": example.hypotheses.sources,
                 "names": names,
+                "side_names": sorted(example.sides),
             }
         )
     aside = path.with_suffix(".part.npz")
@@ -218,6 +236,7 @@ def read_examples(path: Path) -> list[Example]:
                 sources=tuple(facts.pop("sources")),
             )
             measured = dict(zip(facts.pop("names"), stored[f"values_{k}"], strict=True))
+            sides = dict(zip(facts.pop("side_names"), stored[f"sides_{k}"], strict=True))
             found.append(
                 Example(
                     **facts,
@@ -226,6 +245,7 @@ def read_examples(path: Path) -> list[Example]:
                     angles=angles,
                     types_right=same.astype(np.int64),
                     measured=measured,
+                    sides=sides,
                 )
             )
     return found

@@ -11,8 +11,9 @@ import numpy as np
 from kinematify.config import load_config
 from kinematify.evaluation.fitting.categories import category_of
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
-from kinematify.evaluation.fitting.trees import fit_rigidity, fit_scorer, is_fixed, rigidity_odds
+from kinematify.evaluation.fitting.trees import fit_opening, fit_rigidity, fit_scorer, is_fixed, rigidity_odds
 from kinematify.joints.choice.judge import Judgement, lead_of
+from kinematify.joints.choice.opening import opening_odds
 from kinematify.joints.choice.twins import agreed
 
 if TYPE_CHECKING:
@@ -129,6 +130,29 @@ def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRo
             found=_share(taken[index][fixed[index]]),
         )
         for name, index in sets_of(examples).items()
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpeningRow:
+    """How well the side is told that the turns of a set open to, left out by category."""
+
+    turns: int
+    right: float
+
+
+def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]:
+    """Which way turns open, by trees whose fit had nothing of the category; by set."""
+    turning = [example for example in examples if example.sides]
+    right = np.zeros(len(turning))
+    folds = np.array(folds_of(turning, category_of))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(turning, folds, strict=True) if example.fits and at != fold]
+        scorer = fit_opening(fitted, seeds=(0,), provenance={})
+        for k in np.flatnonzero(folds == fold):
+            right[k] = opening_odds(scorer, turning[k].sides) > 0.0
+    return {
+        name: OpeningRow(turns=len(index), right=float(right[index].mean())) for name, index in sets_of(turning).items()
     }
 
 

@@ -27,6 +27,7 @@ from kinematify.evaluation.fitting.judged import (
     calibration_of,
     cause_of,
     judge_left_out,
+    judge_opening_left_out,
     judge_rigidity_left_out,
     picked,
     row_of,
@@ -35,15 +36,17 @@ from kinematify.evaluation.fitting.judged import (
 )
 from kinematify.evaluation.fitting.trees import (
     data_key,
+    fit_opening,
     fit_rigidity,
     fit_scorer,
     is_fixed,
+    opening_recipe_key,
     recipe_key,
     rigidity_recipe_key,
     write_scorer,
 )
 from kinematify.evaluation.record import table
-from kinematify.joints.choice.scorer import RIGID_WEIGHTS, WEIGHTS
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, WEIGHTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -125,6 +128,7 @@ def fit_and_judge(
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
     write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
+    write_scorer(_opening(examples, provenance), out / OPENING_WEIGHTS)
     likely = {"left out by category": judge_left_out(examples, category_of, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
@@ -136,6 +140,7 @@ def fit_and_judge(
         "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
         "calibration": _calibration(examples, likely["left out by category"]),
         "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
+        "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
     }
     if ablation:
         report |= _ablation(examples, progress)
@@ -154,6 +159,14 @@ def _rigidity(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Sco
         "recipe": rigidity_recipe_key(list({name for example in fitted for name in example.measured})),
     }
     return fit_rigidity(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
+
+
+def _opening(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
+    """What tells which way a turn opens, fitted to all that may enter weights."""
+    fitted = [example for example in examples if example.fits and example.sides]
+    names = list({name for example in fitted for name in example.sides})
+    facts = {"joints": len(fitted), "recipe": opening_recipe_key(names)}
+    return fit_opening(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
 
 
 def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
@@ -265,6 +278,11 @@ def as_markdown(report: dict[str, Any]) -> str:
             for name, row in rigidity.items()
         ]
         blocks += ["Whether a part is fixed, left out by category:", table(columns, counted)]
+    opening = report["opening"]
+    if opening:
+        titles = ("set", "turns that open one way", "right, left out by category")
+        rows_of_sets = [(name, f"{row['turns']}", f"{row['right']:.1%}") for name, row in opening.items()]
+        blocks += ["Which way a turn opens, of the true line:", table(titles, rows_of_sets)]
     for key, title in (
         (
             "ablation",

@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.evaluation.fitting.examples import VERDICTS, content_key
+from kinematify.joints.choice.opening import side_columns
 from kinematify.joints.choice.rigid import rigid_columns
 from kinematify.joints.choice.scorer import FORMAT, SUMMARIES, Scorer, base_columns, stacked
 
@@ -41,6 +42,9 @@ _PARAMETERS = {
 _ROUNDS, _ROUNDS_UNTOLD = 220, 280  # those who are not told what the cues say have more to find out
 _RIGIDITY = {"learning_rate": 0.06, "min_data_in_leaf": 30, "min_sum_hessian_in_leaf": 1e-3}
 _RIGIDITY_ROUNDS = 250
+_OPENING = {"learning_rate": 0.05, "num_leaves": 5, "min_data_in_leaf": 15, "feature_fraction": 0.2}
+_OPENING |= {"min_sum_hessian_in_leaf": 1e-3}
+_OPENING_ROUNDS = 150
 _FIXED_SHARE = 0.5
 """Weight of all fixed parts together beside all others."""
 _SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
@@ -105,6 +109,30 @@ def fit_rigidity(examples: Sequence[Example], *, seeds: Sequence[int], provenanc
     return Scorer(measurements=names, base=base, temperature=1.0, provenance=dict(provenance), **_arrays(boosters))
 
 
+def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
+    """Fit which way a turn opens, to examples with `sides`; trees of several seeds are averaged.
+
+    Raises:
+        EnvironmentFault: LightGBM is not installed.
+    """
+    names = tuple(sorted({name for example in examples for name in example.sides}))
+    columns = np.concatenate([side_columns(example.sides, names) for example in examples])
+    opens = np.tile([True, False], len(examples))
+    weights = np.repeat(_weights(examples), 2)
+    lightgbm = _lightgbm()
+    boosters = [
+        lightgbm.train(
+            {**_PARAMETERS, **_OPENING, "objective": "binary", "seed": seed},
+            lightgbm.Dataset(columns, opens, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
+            _OPENING_ROUNDS,
+        )
+        for seed in seeds
+    ]
+    return Scorer(
+        measurements=names, base=np.zeros(3), temperature=1.0, provenance=dict(provenance), **_arrays(boosters)
+    )
+
+
 def is_fixed(example: Example) -> bool:
     """The true joint is none."""
     return bool(example.right[0] > 0.5)
@@ -118,6 +146,11 @@ def recipe_key(measurements: Sequence[str]) -> str:
 def rigidity_recipe_key(measurements: Sequence[str]) -> str:
     """The same of the weights of what is fixed."""
     return content_key(sorted(measurements), FORMAT, _PARAMETERS, _RIGIDITY, _RIGIDITY_ROUNDS, _FIXED_SHARE, _SHARE)
+
+
+def opening_recipe_key(measurements: Sequence[str]) -> str:
+    """The same of the weights of which way a turn opens."""
+    return content_key(sorted(measurements), FORMAT, _PARAMETERS, _OPENING, _OPENING_ROUNDS, _SHARE)
 
 
 def rigidity_odds(scorer: Scorer, examples: Sequence[Example]) -> FloatArray:

@@ -155,7 +155,7 @@ def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
 
 
 def lead_of(source: str, config: ConfidenceConfig) -> float:
-    """Log odds that what cues would choose keeps, by what proposed it; no fitted object has a plate with a fold."""
+    """Log odds that what cues would choose keeps, by what proposed it."""
     return config.fold_lead if source == "fold" else config.cues_lead
 
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.choice.joint_range import Range
+from kinematify.joints.choice.opening import turn_sign
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.closing import closing_turns
-from kinematify.joints.measure.opening_direction import clockwise_sign, neutral_sign, swing_sign, turn_sign
+from kinematify.joints.measure.opening_direction import clockwise_sign, neutral_sign, swing_sign
 from kinematify.joints.measure.scene import eccentricity
 from kinematify.joints.measure.sweep import moving_points, sweep_turns
 from kinematify.joints.measure.travel import slide_range
@@ -68,7 +69,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
         and _is_lever(scene, axis, config)
     ):
         return _lever_range(scene, axis, free, config)
-    sign = turn_sign(scene, axis, pivot, free, config)
+    sign = turn_sign(scene, axis, pivot, free, config.limits)
     forward, backward = (free[0], free[1]) if sign > 0 else (free[1], free[0])
     if scene.has_bearing or not furniture:
         lower, upper = -float(backward), _from_stop(scene, float(forward), float(backward), config)
@@ -152,17 +153,15 @@ def _panel_range(
         # Something lies on it or stands before it, which is moved away first (a lid on a seat).
         free = _free_turn(scene, axis, pivot, (scene.parent,), config)
     closing = closing_turns(scene, axis, pivot, free, config)
+    sign = -float(np.sign(closing[0])) if len(closing) == 1 else turn_sign(scene, axis, pivot, free, config.limits)
     if len(closing) == 2:
-        sign = turn_sign(scene, axis, pivot, free, config)
         either = np.minimum(free, np.radians(limits.panel_deg))
         forward, backward = (either[0], either[1]) if sign > 0 else (either[1], either[0])
         return _range(sign, -float(backward), float(forward), free, config)
-    if len(closing) == 1:
-        sign, ajar = -float(np.sign(closing[0])), abs(closing[0])
-        forward = float(free[0] if sign > 0 else free[1])
-        return _range(sign, -ajar, min(forward, max(np.radians(limits.panel_deg) - ajar, 0.0)), free, config)
-    sign = turn_sign(scene, axis, pivot, free, config)
     forward, backward = (float(free[0]), float(free[1])) if sign > 0 else (float(free[1]), float(free[0]))
+    if len(closing) == 1:
+        ajar = abs(closing[0])
+        return _range(sign, -ajar, min(forward, max(np.radians(limits.panel_deg) - ajar, 0.0)), free, config)
     if max(forward, backward) < np.radians(limits.blocked_deg):
         forward = np.pi  # its mesh overlaps the frame: no door is made to stay shut
     lower = -backward if backward < np.radians(limits.least_deg) else 0.0

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
+OPENING_WEIGHTS = "opening.npz"
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
 FORMAT = 1
 """Raised where the meaning of the file changes."""
@@ -154,6 +155,16 @@ def shipped_rigidity() -> Scorer:
         EnvironmentFault: Its file is missing, damaged or of another version.
     """
     return _shipped(RIGID_WEIGHTS, "what is fixed")
+
+
+@cache
+def shipped_opening() -> Scorer:
+    """The scorer of which way a turning joint opens that comes with the package.
+
+    Raises:
+        EnvironmentFault: Its file is missing, damaged or of another version.
+    """
+    return _shipped(OPENING_WEIGHTS, "the opening direction")
 
 
 def _shipped(name: str, of: str) -> Scorer:

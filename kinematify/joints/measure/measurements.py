@@ -60,10 +60,17 @@ class Hypotheses:
 class Measured:
     """One edge with its hypotheses, and what several measurements share."""
 
-    def __init__(self, scene: JointScene, hypotheses: Hypotheses) -> None:
-        """Keep both."""
+    def __init__(self, scene: JointScene, hypotheses: Hypotheses, *, sided: bool = False) -> None:
+        """Keep them.
+
+        Args:
+            scene: The edge.
+            hypotheses: Its joints.
+            sided: Measure every motion in the positive direction of its axis, not in the one with less in the way.
+        """
         self.scene = scene
         self.hypotheses = hypotheses
+        self.sided = sided
         cache = scene.cache
         self.unit = max(scene.frame.diagonal, _TINY)
         """Diagonal of the child's box, the unit of most lengths [m]."""
@@ -182,7 +189,9 @@ class Measured:
 
     @cached_property
     def better(self) -> IntArray:
-        """The side on which less is in the way, shape (h,)."""
+        """The side that is measured: on which less is in the way, or the first one, shape (h,)."""
+        if self.sided:
+            return np.zeros(len(self.hypotheses), dtype=np.int64)
         total = np.sum([shares.sum(axis=2) for shares in self.blocked.values()], axis=0)
         return np.asarray(np.argmin(total, axis=1))
 

@@ -1,4 +1,4 @@
-"""Which way a turning joint opens, as the sign of its axis."""
+"""Which way a joint opens, as the sign of its axis: what is measured of either side, and conventions for the rest."""
 
 from __future__ import annotations
 
@@ -7,25 +7,80 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.measurements import GROUPS, TURN, Hypotheses, Measured
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
-    from kinematify.config import JointsConfig
+    from kinematify.joints.measure.measurements import Values
     from kinematify.joints.measure.scene import JointScene
     from kinematify.robot.arrays import FloatArray
 
 
-def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: JointsConfig) -> float:
-    """The freer direction opens; where both are alike, the one that leads out of the body or up."""
+def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Values:
+    """Everything that is measured of a turn, once towards either side.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        pivot: Point on the line [m], shape (3,).
+
+    Returns:
+        Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
+    """
+    turns = Hypotheses(
+        kinds=np.array([TURN, TURN]),
+        axes=np.array([axis, -axis]),
+        pivots=np.array([pivot, pivot]),
+        sources=("forward", "backward"),
+    )
+    measured = Measured(scene, turns, sided=True)
+    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
+    return {**found, **_leads_to(measured)}
+
+
+def _leads_to(m: Measured) -> Values:
+    """Where the first motion of the child and of its handle leads: out, up, or to the face on which the line lies."""
+    scene, frame = m.scene, m.scene.frame
+    way = _directions(m, scene.centre)
+    normal, thickness = frame.axes[frame.thin], max(float(frame.extents[frame.thin]), 1e-6 * m.unit)
+    off = float((m.hypotheses.pivots[0] - scene.centre) @ normal) / thickness
+    result = {
+        "side_hinge": off * (way @ normal),
+        "side_up": m.hypotheses.axes @ UP,
+        "side_parent": way @ (scene.centre - scene.parent_frame.centre) / m.unit,
+        "side_contact": way @ (scene.centre - m.anchor) / m.unit,
+    }
+    if scene.handle is not None:
+        pull = _directions(m, scene.handle.centre)
+        result["side_handle"] = pull @ (scene.handle.centre - scene.centre) / m.unit
+        result["side_handle_out"] = pull @ scene.outward
+    return result
+
+
+def _directions(m: Measured, point: FloatArray) -> FloatArray:
+    """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
+    velocity = m.velocity(point[None])[:, 0]
+    return np.asarray(velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None])
+
+
+# ---- conventions ---------------------------------------------------------------------------------------------------
+
+
+def limb_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> float:
+    """Of links in series: the freer direction opens; where both are alike, the one that leads up.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        pivot: Point on the axis [m], shape (3,).
+        free: Free angle towards + and - [rad], shape (2,).
+    """
     if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
         return 1.0 if free[0] > free[1] else -1.0
-    beside = _hinge_side(scene, axis, pivot, config)
-    if beside != 0.0:
-        return beside
-    velocity = np.cross(axis, scene.centre - pivot)
-    away = scene.outward if scene.outward.any() and not scene.serial else UP  # links of arms have no outer side
-    if abs(float(velocity @ away)) < 0.05 * scene.frame.diagonal:
+    rises = float(np.cross(axis, scene.centre - pivot) @ UP)
+    if abs(rises) < 0.05 * scene.frame.diagonal:
         return swing_sign(scene, axis, pivot)
-    return 1.0 if float(velocity @ away) > 0.0 else -1.0
+    return 1.0 if rises > 0.0 else -1.0
 
 
 def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
@@ -52,19 +107,6 @@ def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
     if abs(towards) < 1e-5 * scene.diagonal:  # rounding would decide
         return neutral_sign(scene, axis)
     return 1.0 if towards > 0.0 else -1.0
-
-
-def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> float:
-    """Sign of the turn towards the face of an upright panel at which its bearing lies, 0 without such a bearing.
-
-    Barrels stand on the side to which a door opens; on the other one its edge would run into what it hangs on.
-    """
-    normal = scene.frame.axes[scene.frame.thin]
-    off = float((pivot - scene.centre) @ normal)
-    aside = abs(off) > config.limits.hinge_off * float(scene.frame.extents[scene.frame.thin])
-    if not (scene.has_bearing and scene.panel and scene.upright and aside):
-        return 0.0
-    return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
 
 
 def neutral_sign(scene: JointScene, axis: FloatArray) -> float:
