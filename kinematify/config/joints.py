@@ -228,6 +228,8 @@ class LimitsConfig(StageConfig):
     """A panel that has come so near to its body lies on it, ratio of mean distances."""
     lying_deg: float
     """Meshes at the hinge of such a panel may overlap before it gets there, by this angle [deg]."""
+    hinge_off: float
+    """A bearing farther from the middle of a panel than this fraction of its thickness lies at one face."""
     even: float
     """A part whose mean lies nearer to its line than this fraction of its reach is even about it: no lever."""
     unstopped_deg: float

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.joints.choice.scorer import shipped_opening
-from kinematify.joints.measure.opening_direction import limb_sign, measure_sides
+from kinematify.joints.measure.opening_direction import customary_sign, measure_sides
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,8 +30,8 @@ _UNDECIDED = 0.2  # log odds; noise of the samples decides below
 def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: LimitsConfig) -> float:
     """+1 where a turn opens about the axis as it is, -1 where it must be reversed.
 
-    What stands at a stop opens the other way. Links in series, and what looks alike towards both sides, have no side
-    that opens: conventions tell theirs (`limb_sign`).
+    What stands at a stop opens the other way. Links in series, what turns on a bearing and is not stopped either way,
+    and what looks alike towards both sides have no side that opens: customs tell theirs (`customary_sign`).
 
     Args:
         scene: The pair.
@@ -43,8 +43,9 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
     stopped, unstopped = np.radians((config.stopped_deg, config.unstopped_deg))
     if free.min() < stopped and free.max() > unstopped:
         return 1.0 if free[0] > free[1] else -1.0
-    odds = 0.0 if scene.serial else opening_odds(shipped_opening(), measure_sides(scene, axis, pivot))
-    return limb_sign(scene, axis, pivot, free) if abs(odds) < _UNDECIDED else float(np.sign(odds))
+    either = scene.serial or (scene.has_bearing and free.min() > unstopped)
+    odds = 0.0 if either else opening_odds(shipped_opening(), measure_sides(scene, axis, pivot))
+    return customary_sign(scene, axis, pivot, free, config) if abs(odds) < _UNDECIDED else float(np.sign(odds))
 
 
 def opening_odds(scorer: Scorer, sides: Mapping[str, FloatArray]) -> float:
