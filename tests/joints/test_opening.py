@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from kinematify.evaluation.fitting.trees import opening_recipe_key
 from kinematify.generate.procedural.solids import box
 from kinematify.joints.choice.opening import opening_odds, side_columns, turn_sign
 from kinematify.joints.choice.scorer import shipped_opening
@@ -53,3 +54,8 @@ def test_what_is_not_finite_never_reaches_the_trees() -> None:
     assert not np.isinf(columns).any()
     assert columns[:, 1].tolist() == [1.0, -1.0]
     assert np.isnan(columns[:, 2]).all()
+
+
+def test_the_weights_are_of_the_recipe() -> None:
+    shipped = shipped_opening()
+    assert shipped.provenance["recipe"] == opening_recipe_key(shipped.measurements)
