@@ -275,7 +275,8 @@ def test_killed_at_five_points_it_resumes_to_the_same_report(boxes: Path, tmp_pa
             process.wait()
             kills += 1
     assert kills > 1
-    if (killed / ".unfinished").exists():
+    # On a busy machine every one of them may have been killed before it had begun.
+    if (killed / ".unfinished").exists() or not any(killed.glob("*/runs.jsonl")):
         assert start(boxes, killed).wait() == 0
     assert answers(killed) == answers(whole)
 
