@@ -20,12 +20,12 @@ from kinematify.batch.processes import Processes
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.evaluation.fitting.broken_off import with_pieces_broken_off
+from kinematify.evaluation.fitting.composed import compose
 from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
+from kinematify.evaluation.fitting.modelling import WAYS, remodelled
 from kinematify.evaluation.fitting.objects import OBJECTS, drawn_object
-from kinematify.generate.procedural.composed import compose
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.modelling import WAYS, remodelled
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.robot.read import read_robot
 

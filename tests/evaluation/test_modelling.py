@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.generate.procedural.composed import compose
+from kinematify.evaluation.fitting.composed import compose
+from kinematify.evaluation.fitting.modelling import WAYS, remodelled
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.modelling import WAYS, remodelled
 
 
 @pytest.mark.parametrize("way", sorted(WAYS))
