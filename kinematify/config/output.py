@@ -130,6 +130,8 @@ class PreviewConfig(StageConfig):
     """Width of the small pictures that compare views [pixels]."""
     glyph_radius: float
     """Half the thickness of a joint arrow."""
+    glyph_halo: float
+    """Width of the light rim of a joint arrow."""
     hidden_glyph: float
     """Opacity of a joint arrow behind a surface, between 0 and 1."""
     moved_fraction: float
@@ -139,7 +141,7 @@ class PreviewConfig(StageConfig):
     max_slide: float
     """Joints are not slid farther than this in a picture."""
     chain_joints: int
-    """With more moving joints than this, each turns less, so that a chain does not curl up."""
+    """Long chains of more moving joints than this turn less, so that they do not curl up."""
     exploded: float
     """Parts of the exploded view move away from the centre by this multiple of their distance from it."""
     legend_entries: int

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
+from scipy.ndimage import distance_transform_edt
 
-from kinematify.model.palette import link_colors
+from kinematify.model.palette import link_colors, link_shades, tell_apart
 from kinematify.model.scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -19,6 +20,7 @@ from kinematify.model.scene import (
     posed_meshes,
 )
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.robot.colors import linear_of, srgb_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import PreviewConfig
     from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.render.camera import Camera
     from kinematify.robot.arrays import FloatArray
 
 _INK = (45, 50, 60)
@@ -36,6 +39,7 @@ _CAPTION = 46  # [pixels] height of the line above a panel
 _LEGEND_ROW = 30  # [pixels]
 _LEGEND_COLUMN = 370  # [pixels] room for a swatch, a name and a type
 _LEGEND_PAD = 24  # [pixels]
+_BADGE = 12  # [pixels] radius of a number on a part
 _UNSEGMENTED = np.array([0.74, 0.75, 0.77])  # anonymous parts are all the same grey
 
 
@@ -43,6 +47,8 @@ _UNSEGMENTED = np.array([0.74, 0.75, 0.77])  # anonymous parts are all the same 
 class _Panel:
     caption: str
     scene: PictureScene
+    numbers: tuple[int, ...] = ()
+    """Of the legend, one per mesh of the scene; empty where colours tell them apart."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,8 @@ class _Entry:
     kind: str
     ink: tuple[int, int, int]
     """Colour of the word for the kind."""
+    number: int | None = None
+    """As it stands on the part; None where colours tell parts apart."""
 
 
 def render_preview(model: KinematicModel, path: Path, config: PreviewConfig) -> None:
@@ -124,20 +132,27 @@ def render_story(model: KinematicModel, path: Path, config: PreviewConfig) -> No
 
 
 def _rest_and_moved(model: KinematicModel, config: PreviewConfig, captions: tuple[str, str]) -> tuple[_Panel, _Panel]:
+    number_of = {entry.name: entry.number for entry in _legend_entries(model)}
+    numbers = tuple(number for name in _drawn_links(model) if (number := number_of[name]) is not None)
     rest, moved = (
-        _Panel(caption, _scene(model, q, config))
+        _Panel(caption, _scene(model, q, config), numbers)
         for caption, q in zip(captions, ({}, opened_configuration(model, config)), strict=True)
     )
     return rest, moved
 
 
-def _scene(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> PictureScene:
-    """All links in their colours, moving ones first, and the arrows of their joints."""
-    meshes = posed_meshes(model, q, link_colors(model))
+def _drawn_links(model: KinematicModel) -> list[str]:
+    """Names of all links, moving ones first."""
     moving = [joint.child for joint in moving_joints(model)]
-    order = [*moving, *(link.name for link in model.links if link.name not in set(moving))]
+    return [*moving, *(link.name for link in model.links if link.name not in set(moving))]
+
+
+def _scene(model: KinematicModel, q: Mapping[str, float], config: PreviewConfig) -> PictureScene:
+    """All links in shades of their colours, moving ones first, and the arrows of their joints."""
+    meshes = posed_meshes(model, q, link_colors(model), link_shades(model))
     return PictureScene(
-        meshes=tuple(meshes[name] for name in order), glyphs=tuple(joint_glyphs(model, q, config).values())
+        meshes=tuple(meshes[name] for name in _drawn_links(model)),
+        glyphs=tuple(joint_glyphs(model, q, config).values()),
     )
 
 
@@ -175,11 +190,33 @@ def _draw_panels(
     azimuth = best_azimuth(model, shared, config)
     groups = [shared if panel.scene in shared else [panel.scene] for panel in panels]
     size = _panel_size(groups, azimuth, config)
-    images = [
-        render_scene(panel.scene, camera_for(group, azimuth, config, size=size, margin=_MARGIN), config)
-        for panel, group in zip(panels, groups, strict=True)
-    ]
+    images = []
+    for panel, group in zip(panels, groups, strict=True):
+        camera = camera_for(group, azimuth, config, size=size, margin=_MARGIN)
+        image = render_scene(panel.scene, camera, config)
+        if panel.numbers and panel.caption:
+            _draw_numbers(image, panel, camera)
+        images.append(image)
     return size, images
+
+
+def _draw_numbers(image: Image.Image, panel: _Panel, camera: Camera) -> None:
+    """Write its number on each mesh where most of it is seen around; small ones first, none over others or arrows."""
+    seen = panel.scene.mesh_of_pixel(camera)
+    if panel.scene.glyphs:
+        seen[PictureScene(meshes=panel.scene.glyphs).mesh_of_pixel(camera) >= 0] = -1
+    for mesh in np.argsort([np.count_nonzero(seen == mesh) for mesh in range(len(panel.numbers))]):
+        inside = distance_transform_edt(seen == mesh)
+        row, column = np.unravel_index(inside.argmax(), inside.shape)
+        if inside[row, column] > 0.0:
+            _draw_badge(ImageDraw.Draw(image), (int(column), int(row)), panel.numbers[mesh])
+            rows, columns = np.ogrid[: seen.shape[0], : seen.shape[1]]
+            seen[np.hypot(rows - row, columns - column) < 2 * _BADGE] = -1
+
+
+def _draw_badge(draw: ImageDraw.ImageDraw, center: tuple[int, int], number: int) -> None:
+    draw.circle(center, _BADGE, fill=(255, 255, 255), outline=_INK)
+    draw.text(center, str(number), fill=_INK, font=ImageFont.load_default(15), anchor="mm")
 
 
 def _panel_size(groups: Sequence[Sequence[PictureScene]], azimuth: float, config: PreviewConfig) -> tuple[int, int]:
@@ -214,21 +251,28 @@ def _legend(model: KinematicModel, config: PreviewConfig, width: int) -> Image.I
 
 
 def _legend_entries(model: KinematicModel) -> list[_Entry]:
-    colors = link_colors(model)
-    entries = [_Entry(colors[model.root], model.root, "base", _FAINT)]
+    shades = link_shades(model)
+    shown = {name: srgb_of(shades[name] * linear_of(color)) for name, color in link_colors(model).items()}
+    entries = [_Entry(shown[model.root], model.root, "base", _FAINT)]
     for joint in model.joints:
         ink = _bytes(GLYPH_COLORS[joint.kind]) if joint.kind in GLYPH_COLORS else _FAINT
-        entries.append(_Entry(colors[joint.child], joint.child, joint.kind.value, ink))
-    return entries
+        entries.append(_Entry(shown[joint.child], joint.child, joint.kind.value, ink))
+    if tell_apart(np.array([entry.color for entry in entries])):
+        return entries
+    return [replace(entry, number=index) for index, entry in enumerate(entries, start=1)]
 
 
 def _draw_entry(draw: ImageDraw.ImageDraw, corner: tuple[int, int], entry: _Entry) -> None:
     left, middle = corner[0], corner[1] + _LEGEND_ROW // 2
     font = ImageFont.load_default(17)
     draw.rounded_rectangle((left, middle - 8, left + 16, middle + 8), radius=4, fill=_bytes(entry.color))
-    name = _shortened(entry.name, font, _LEGEND_COLUMN - 60 - font.getlength(entry.kind))
-    draw.text((left + 26, middle), name, fill=_INK, font=font, anchor="lm")
-    after = left + 36 + font.getlength(name)
+    left += 26
+    if entry.number is not None:
+        _draw_badge(draw, (left + _BADGE, middle), entry.number)
+        left += 2 * _BADGE + 8
+    name = _shortened(entry.name, font, _LEGEND_COLUMN - 92 - font.getlength(entry.kind))
+    draw.text((left, middle), name, fill=_INK, font=font, anchor="lm")
+    after = left + 10 + font.getlength(name)
     draw.text((after, middle), entry.kind, fill=entry.ink, font=font, anchor="lm")
 
 

@@ -31,6 +31,8 @@ GLYPH_COLORS = {
 """sRGB of the arrows by joint type."""
 _SWEEP = {JointType.REVOLUTE: np.deg2rad(250.0), JointType.CONTINUOUS: np.deg2rad(335.0)}
 _CONTINUOUS_TURN = np.deg2rad(35.0)  # shows that it turns without looking like an end stop
+_FREE_CHAIN = 3  # joints one behind the other: furniture has no more, arms and fingers have
+_ARM_TURN = np.deg2rad(60.0)
 _CHAIN_TURN = np.deg2rad(22.0)  # for models of many joints
 _ARROW_LENGTHS = (0.16, 0.75)  # of the model's diagonal: never lost, never larger than the object
 _OVERHANG = 1.15  # length of an axis line over that of its part
@@ -45,13 +47,16 @@ def moving_joints(model: KinematicModel) -> tuple[Joint, ...]:
 
 
 def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[str, float]:
-    """A configuration in which every joint is clearly moved, towards its larger limit.
+    """A configuration in which every joint is moved as far as it goes; in long chains less far, so that none curls up.
 
     Returns:
         Joint name -> position [rad or m].
     """
     moving = moving_joints(model)
-    max_turn = np.deg2rad(config.max_turn) if len(moving) <= config.chain_joints else _CHAIN_TURN
+    if _longest_chain(model) <= _FREE_CHAIN:
+        max_turn = np.deg2rad(config.max_turn)
+    else:
+        max_turn = _ARM_TURN if len(moving) <= config.chain_joints else _CHAIN_TURN
     max_slide = config.max_slide * _diagonal(model)
     q = {}
     for joint in moving:
@@ -65,8 +70,19 @@ def opened_configuration(model: KinematicModel, config: PreviewConfig) -> dict[s
     return q
 
 
+def _longest_chain(model: KinematicModel) -> int:
+    """How many joints move one behind the other at most."""
+    behind = {model.root: 0}
+    for joint in model.robot.joints_downward:
+        behind[joint.child] = behind[joint.parent] + (joint.kind is not JointType.FIXED)
+    return max(behind.values())
+
+
 def posed_meshes(
-    model: KinematicModel, q: Mapping[str, float], colors: Mapping[str, FloatArray]
+    model: KinematicModel,
+    q: Mapping[str, float],
+    colors: Mapping[str, FloatArray],
+    shades: Mapping[str, float] | None = None,
 ) -> dict[str, PosedMesh]:
     """Every link's mesh, set-aside visuals included, as it stands at a configuration.
 
@@ -74,6 +90,7 @@ def posed_meshes(
         model: The model.
         q: Joint name -> position [rad or m].
         colors: Link name -> sRGB (3,).
+        shades: Link name -> factor on the light of its colours; all 1 if absent.
 
     Returns:
         Link name -> mesh in the world frame.
@@ -92,7 +109,13 @@ def posed_meshes(
             part.appearance or plain((*color, 1.0), len(part.faces)) for part, color in zip(parts, usual, strict=True)
         ]
         appearance = joined(looks, [len(part.faces) for part in parts])
-        posed[link.name] = PosedMesh(vertices=moved, faces=faces, color=colors[link.name], appearance=appearance)
+        posed[link.name] = PosedMesh(
+            vertices=moved,
+            faces=faces,
+            color=colors[link.name],
+            appearance=appearance,
+            shade=1.0 if shades is None else shades[link.name],
+        )
     return posed
 
 
@@ -115,11 +138,11 @@ def joint_glyphs(model: KinematicModel, q: Mapping[str, float], config: PreviewC
 
 
 def best_azimuth(model: KinematicModel, scenes: Sequence[PictureScene], config: PreviewConfig) -> float:
-    """The side from which the moving parts and their axes are seen best in all scenes together.
+    """The side from which moving parts, the room that they sweep and their axes are seen best.
 
     Args:
         model: The model, for its axes.
-        scenes: Each with the meshes of moving parts first.
+        scenes: At rest and moved, the meshes of moving parts first in each.
         config: Views to try.
 
     Returns:
@@ -131,8 +154,11 @@ def best_azimuth(model: KinematicModel, scenes: Sequence[PictureScene], config: 
     def worth(azimuth: float) -> float:
         size = (config.probe_pixels, round(config.probe_pixels * config.panel_height / config.panel_width))
         probe = camera_for(scenes, azimuth, config, size=size, margin=2.0)
+        shown = np.stack([scene.mesh_of_pixel(probe).ravel() for scene in scenes])
+        part = np.arange(len(moving))[:, None, None]
+        at_rest, swept = (shown[0] == part[:, 0]).sum(axis=1), (shown == part).any(axis=1).sum(axis=1)
         # The root weighs large parts less, so that a knob counts beside a door.
-        seen = sum(float(np.sqrt(scene.visible_pixels(probe)[: len(moving)]).sum()) for scene in scenes)
+        seen = float((np.sqrt(at_rest) + np.sqrt(swept)).sum())
         across = np.sqrt(1.0 - np.clip(axes @ probe.forward, -1.0, 1.0) ** 2)
         return seen * (1.0 - _AXIS_SHARE + _AXIS_SHARE * float(across.mean() if len(across) else 1.0))
 

@@ -39,6 +39,7 @@ _PANES = 6  # a pane of glass has two surfaces
 _BEHIND = 1e-5  # of the scene's size: where a ray goes on behind a surface
 _SPARSE = 2  # rays to the sky start at every second pixel of every second row
 _BLOCK = 4096  # pixels with several rays at a time: what NumPy allocates for them stays in the cache
+_RIM = 0.9  # opacity of the white rim of an arrow: it stands out of its own colour and of the dark
 _OUTLINE_DIRECTIONS = 240
 _OUTLINE_VERTICES = 30000
 
@@ -55,6 +56,8 @@ class PosedMesh:
     """sRGB in [0, 1], shape (3,)."""
     appearance: Appearance | None = None
     """Of the faces, in place of the colour."""
+    shade: float = 1.0
+    """Factor on the light of all its colours: tells meshes of one material apart."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -86,10 +89,15 @@ class PictureScene:
         extremes: FloatArray = points[np.unique((directions @ points.T).argmax(axis=1))]
         return extremes
 
+    def mesh_of_pixel(self, camera: Camera) -> IntArray:
+        """Index of the mesh that each pixel shows, -1 for none, shape (height, width)."""
+        hits = self.rays.first_hits(*camera.rays(_pixel_centers(camera)))
+        return hits.mesh.reshape(camera.height, camera.width)
+
     def visible_pixels(self, camera: Camera) -> IntArray:
         """Count the pixels that show each mesh, shape (len(meshes),)."""
-        hits = self.rays.first_hits(*camera.rays(_pixel_centers(camera)))
-        return np.bincount(hits.mesh[hits.met], minlength=len(self.meshes))
+        seen = self.mesh_of_pixel(camera)
+        return np.bincount(seen[seen >= 0], minlength=len(self.meshes))
 
 
 def render_scene(scene: PictureScene, camera: Camera, config: PreviewConfig) -> Image.Image:
@@ -145,7 +153,10 @@ class _Painter:
     def __init__(self, scene: PictureScene, camera: Camera, config: PreviewConfig) -> None:
         self.rays, self.meshes = scene.rays, scene.meshes
         self.first_faces = np.cumsum([0, *(len(mesh.faces) for mesh in scene.meshes)])
+        halo = config.glyph_halo * self.rays.size
         self.glyphs = RayScene([(mesh.vertices, mesh.faces) for mesh in scene.glyphs]) if scene.glyphs else None
+        self.halo = RayScene([_swollen(mesh, halo) for mesh in scene.glyphs]) if scene.glyphs else None
+        self.shades = np.array([mesh.shade for mesh in scene.meshes])
         self.colors = linear_of(np.array([mesh.color for mesh in scene.meshes]))
         self.glyph_colors = linear_of(np.array([mesh.color for mesh in scene.glyphs]).reshape(-1, 3))
         self.camera, self.config = camera, config
@@ -227,7 +238,7 @@ class _Painter:
                     continue
                 seen = posed.appearance.colors_at(face, view.hits.barycentric[met][at])
                 colors[at], opacity[at] = linear_of(seen[:, :3]), seen[:, 3]
-        return colors, opacity
+        return colors * self.shades[mesh][:, None], opacity
 
     @cached_property
     def _lamp(self) -> FloatArray:
@@ -251,9 +262,9 @@ class _Painter:
         return edge.ravel()
 
     def _near_glyphs(self, view: _View) -> BoolArray:
-        if self.glyphs is None:
+        if self.halo is None:
             return np.zeros(len(view.pixels), dtype=bool)
-        met = self.glyphs.first_hits(view.origins, view.directions).met.reshape(self.shape)
+        met = self.halo.first_hits(view.origins, view.directions).met.reshape(self.shape)
         for _ in range(2):
             grown = met.copy()
             grown[1:] |= met[:-1]
@@ -306,17 +317,31 @@ class _Painter:
         return light
 
     def _with_glyphs(self, colors: FloatArray, view: _View) -> FloatArray:
-        """Lay the arrows over colours, pale where a mesh is nearer."""
-        if self.glyphs is None:
+        """Lay the arrows with a light rim over colours, pale where a mesh is nearer."""
+        if self.glyphs is None or self.halo is None:
             return colors
+        rim = self.halo.first_hits(view.origins, view.directions)
         hits = self.glyphs.first_hits(view.origins, view.directions)
         met = hits.met
+        lit = rim.met & ~met & (rim.distance <= view.hits.distance)
+        colors[lit] += _RIM * (1.0 - colors[lit])
         facing = np.abs(np.einsum("ij,ij->i", self.glyphs.face_normals[hits.face[met]], view.directions[met]))
         shaded = self.glyph_colors[hits.mesh[met]] * (0.55 + 0.5 * facing)[:, None]
         in_front = hits.distance[met] <= view.hits.distance[met]
         opacity = np.where(in_front, 1.0, self.config.hidden_glyph)[:, None]
         colors[met] = opacity * shaded + (1.0 - opacity) * colors[met]
         return colors
+
+
+def _swollen(mesh: PosedMesh, distance: float) -> tuple[FloatArray, IntArray]:
+    """A mesh whose surface lies farther out [m]."""
+    first, second, third = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    across = np.cross(second - first, third - first)
+    normals = np.zeros(mesh.vertices.shape)
+    for corner in range(3):
+        np.add.at(normals, mesh.faces[:, corner], across)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return mesh.vertices + distance * normals / np.maximum(lengths, 1e-300), mesh.faces
 
 
 def _pixel_centers(camera: Camera) -> FloatArray:

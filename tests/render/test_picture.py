@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -9,7 +11,7 @@ from PIL import Image
 
 from kinematify.config import load_config
 from kinematify.geometry.rays import RayScene
-from kinematify.model.palette import link_colors
+from kinematify.model.palette import link_colors, link_shades, tell_apart
 from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.scene import (
     GLYPH_COLORS,
@@ -22,6 +24,7 @@ from kinematify.model.scene import (
 from kinematify.render.camera import fit_camera
 from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
+from kinematify.robot.colors import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from tests.mechanisms import box, chain, door, drawer, flat_and_fixed, knob
 
@@ -148,7 +151,7 @@ def test_axis_is_drawn_where_it_projects(build, kind):
     assert bright.sum() > 10
     # Nothing changes far from the arrow.
     seen = camera.project(arrow)[0]
-    low, high = np.floor(seen.min(axis=0)).astype(int) - 4, np.ceil(seen.max(axis=0)).astype(int) + 4
+    low, high = np.floor(seen.min(axis=0)).astype(int) - 6, np.ceil(seen.max(axis=0)).astype(int) + 6  # with its rim
     outside = np.ones(after.shape[:2], dtype=bool)
     outside[max(low[1], 0) : high[1], max(low[0], 0) : high[0]] = False
     np.testing.assert_array_equal(after[outside], before[outside])
@@ -166,10 +169,49 @@ def test_hidden_arrow_is_pale():
     assert 0.03 < red - green < 0.35
 
 
+def test_an_arrow_stands_out_of_its_own_colour():
+    red = GLYPH_COLORS[JointType.REVOLUTE]
+    block = mesh_of(trimesh.creation.box((1, 1, 1)), red)
+    vertices, faces = turning_arrow(np.array([0.0, -0.6, 0.0]), UP, 0.6, 0.03, 4.0)
+    arrow = PosedMesh(vertices=vertices, faces=faces, color=red)
+    camera = camera_for([PictureScene(meshes=(block,))], -1.5, CONFIG, size=(100, 100), margin=10)
+    bare, drawn = (
+        np.asarray(render_scene(PictureScene(meshes=(block,), glyphs=glyphs), camera, CONFIG)) / 255.0
+        for glyphs in ((), (arrow,))
+    )
+    assert ((drawn.min(axis=2) > 0.6) & (bare.min(axis=2) < 0.3)).sum() > 30, "a light rim on what was red"
+
+
+def brown_chain():
+    """Five links of one material."""
+    mechanism = chain()
+    parts = tuple(replace(part, color=(0.42, 0.26, 0.15)) for part in mechanism.assembly.parts)
+    return replace(mechanism, assembly=replace(mechanism.assembly, parts=parts)).model()
+
+
+def test_parts_of_one_material_get_shades_of_it_and_numbers(tmp_path):
+    model = brown_chain()
+    colors, shades = link_colors(model), link_shades(model)
+    shown = np.array([srgb_of(shades[link.name] * linear_of(colors[link.name])) for link in model.links])
+    neighbours = np.linalg.norm(np.diff(shown, axis=0), axis=1)
+    assert neighbours.min() > 0.06
+    assert not tell_apart(shown), "five shades of one brown need numbers"
+    render_preview(model, tmp_path / "numbered.png", CONFIG)
+    image = np.asarray(Image.open(tmp_path / "numbered.png").convert("RGB"))
+    render_preview(chain().model(), tmp_path / "colored.png", CONFIG)
+    plain = np.asarray(Image.open(tmp_path / "colored.png").convert("RGB"))
+    white = [(panels[46:200] == 255).all(axis=2).sum() for panels in (image, plain)]
+    assert white[0] > white[1] + 2 * 5 * 150, "a white badge on every part in either panel"
+
+
+def test_what_differs_in_colour_keeps_it():
+    assert set(link_shades(chain().model()).values()) == {1.0}
+
+
 def test_joints_open_in_the_picture():
     opened = opened_configuration(door().model(), CONFIG)["leaf_joint"]
-    assert opened == pytest.approx(0.6 * 1.7)
-    assert opened_configuration(drawer().model(), CONFIG)["drawer_joint"] == pytest.approx(0.21)
+    assert opened == pytest.approx(1.7), "the whole range"
+    assert opened_configuration(drawer().model(), CONFIG)["drawer_joint"] == pytest.approx(0.35)
     assert opened_configuration(knob().model(), CONFIG)["knob_joint"] == pytest.approx(np.deg2rad(35))
     assert set(opened_configuration(flat_and_fixed().model(), CONFIG)) == {"flap_joint"}
 
