@@ -313,6 +313,32 @@ def gapped_pair(*, width: float = 0.4, gap: float = 0.01, seed: int | None = Non
     return known_object("gapped_pair", {"cabinet": carcass(wide, deep, high, wall), "door": door}, joint)
 
 
+def four_bars() -> KnownObject:
+    """A crank, a rocker and the bar between their ends, which turns on the crank and takes the rocker's pin."""
+    radius, clearance = 0.004, 2e-4
+
+    def pin(x: float, y: float, low: float, high: float) -> Manifold:
+        return cylinder(radius, (x, y, low), (x, y, high))
+
+    def hole(x: float, y: float, low: float, high: float) -> Manifold:
+        return cylinder(radius + clearance, (x, y, low - 0.01), (x, y, high + 0.01))
+
+    ground = union(box((-0.02, -0.02, 0), (0.12, 0.02, 0.01)), pin(0, 0, 0.005, 0.0205), pin(0.1, 0, 0.005, 0.0205))
+    parts = {"ground": ground}
+    for name, x in (("crank", 0.0), ("rocker", 0.1)):
+        bar = box((x - 0.01, -0.01, 0.0102), (x + 0.01, 0.07, 0.02)) - hole(x, 0, 0.01, 0.02)
+        parts[name] = union(bar, pin(x, 0.06, 0.015, 0.031))
+    coupler = box((-0.01, 0.05, 0.0202), (0.11, 0.07, 0.03)) - hole(0, 0.06, 0.02, 0.03)
+    parts["coupler"] = coupler - hole(0.1, 0.06, 0.02, 0.03)
+    return known_object(
+        "four_bars",
+        parts,
+        turning("ground", "crank", (0, 0, 1), (0, 0, 0), (-0.5, 0.5)),
+        turning("ground", "rocker", (0, 0, 1), (0.1, 0, 0), (-0.5, 0.5)),
+        turning("crank", "coupler", (0, 0, 1), (0, 0.06, 0), (-0.5, 0.5)),
+    )
+
+
 def ball_in_socket(*, radius: float = 0.015, clearance: float = 4e-4, seed: int | None = None) -> KnownObject:
     """A stud whose ball sits in a socket beyond its equator: three rotations in one joint."""
     vary = varied(seed)

@@ -30,9 +30,9 @@ def keep_candidate(page: Page, joint: str, words: str) -> str:
     """
     page.get_by_text(f"{joint} moves").first.wait_for(timeout=_PATIENCE)
     # Without a graphics card frames are so rare that a page is never seen to stand still, as plain clicks ask for.
-    page.locator("input[aria-haspopup=listbox]").last.evaluate("box => box.click()")
-    page.locator("[role=option]", has_text=words).first.evaluate("option => option.click()")
-    page.locator("button", has_text="Keep this").first.evaluate("button => button.click()")
+    page.locator("input[aria-haspopup=listbox]").last.evaluate("box => box.click()", timeout=_PATIENCE)
+    page.locator("[role=option]", has_text=words).first.evaluate("option => option.click()", timeout=_PATIENCE)
+    page.locator("button", has_text="Keep this").first.evaluate("button => button.click()", timeout=_PATIENCE)
     page.get_by_text("The same from the command line").wait_for(timeout=_PATIENCE)
     return page.inner_text("body")
 

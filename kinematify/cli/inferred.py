@@ -72,10 +72,14 @@ def _describe_doubts(inference: Inference) -> list[str]:
     doubtful = [joint_of[part] for part in inference.doubtful]
     lines = [f"Set aside: {item.part.name} ({item.reason})" for item in inference.assembly.set_aside]
     lines += [f"Note: {warning}" for warning in inference.warnings]
+    lines += [f"Closed chain: {chain.told}" for chain in inference.closed_chains]
     if doubtful:
         names = ", ".join(doubtful)
         count = f"{len(doubtful)} joint{'s' if len(doubtful) > 1 else ''} to look at"
-        lines.append(f"{count}, of which the geometry says least: {names}. What you know, tell with --hint.")
+        from kinematify.pipeline.inference import DOUBTFUL
+
+        below = f"less than {DOUBTFUL:.0%} sure, the least sure first"
+        lines.append(f"{count}, {below}: {names}. What you know, tell with --hint.")
     return [*lines, ""] if lines else []
 
 

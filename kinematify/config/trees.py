@@ -116,6 +116,10 @@ class TopologyConfig(StageConfig):
     """Least quality of an edge whose one part holds the other all around a line."""
     skip_penalty: float
     """Factor on the quality of an edge between two leaves on one pin with a third one between them."""
+    pin_score: float
+    """Score of a bearing line from which two links share a pin."""
+    pin_opens: float
+    """How far a shared pin may come apart without a chain of joints closing there, in diagonals."""
     cluster_penalty: float
     """Factor on the quality of an edge inside a cluster that has a rival."""
     decisive_ratio: float

@@ -311,10 +311,6 @@ class EvidenceSettings(StageConfig):
     """Turns are looked at up to here [deg]."""
     longest_slide: float
     """Slides are looked at up to here, fraction of the child's diagonal."""
-    pin_score: float
-    """Score of a bearing line from which two links share a pin."""
-    pin_opens: float
-    """How far a shared pin may come apart, fraction of the model's diagonal."""
     type_odds: float
     """Log odds from which the other type is worth a warning."""
     one_sided: float

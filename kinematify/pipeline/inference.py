@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from kinematify.model.build import build_model
+from kinematify.pipeline.closed_chains import closed_chains
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.model.kinematic_model import KinematicModel
+    from kinematify.pipeline.closed_chains import ClosedChain
     from kinematify.topology.tree import KinematicTree
 
 DOUBTFUL = 0.5
@@ -54,6 +56,12 @@ class Inference:
         """Parts whose joint is to be looked at, since its confidence is below `DOUBTFUL`; the least sure first."""
         below = sorted((joint.confidence, joint.child) for joint in self.joints if joint.confidence < DOUBTFUL)
         return tuple(self.assembly.names[child] for _, child in below)
+
+    @cached_property
+    def closed_chains(self) -> tuple[ClosedChain, ...]:
+        """Pins that the tree had to leave out; they come apart when its joints move."""
+        found = closed_chains(self.assembly, self.bearings, self.trees, self.model.robot, self.config.topology)
+        return tuple(found)
 
     @cached_property
     def model(self) -> KinematicModel:

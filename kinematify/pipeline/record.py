@@ -13,6 +13,7 @@ from kinematify import __version__
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import MESH_FOLDER, write_model
+from kinematify.pipeline.inference import DOUBTFUL
 from kinematify.versions import package_versions
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.joints.hypotheses.bearing_line import BearingLine
+    from kinematify.pipeline.closed_chains import ClosedChain
     from kinematify.pipeline.inference import Inference
     from kinematify.topology.tree import KinematicTree
 
@@ -111,6 +113,8 @@ def inference_record(inference: Inference) -> dict[str, Any]:
         "trees": [_tree(tree, assembly.names) for tree in inference.trees],
         "joints": [_joint(joint, assembly.names) for joint in inference.joints],
         "doubtful": list(inference.doubtful),
+        "doubtful_below": DOUBTFUL,
+        "closed_chains": [_closed_chain(chain) for chain in inference.closed_chains],
         "hints": list(inference.hints),
         "refinement": inference.refinement,
         "provenance": inference.provenance,
@@ -167,6 +171,20 @@ def _joint(joint: JointEstimate, names: tuple[str, ...]) -> dict[str, Any]:
         "confidence": joint.confidence,
         "evidence": _plain(joint.evidence),
         "candidates": [_candidate(candidate) for candidate in joint.alternatives],
+    }
+
+
+def _closed_chain(chain: ClosedChain) -> dict[str, Any]:
+    return {
+        "parts": list(chain.parts),
+        "axis": chain.line.axis.tolist(),
+        "pivot": chain.line.pivot.tolist(),
+        "joints": list(chain.joints),
+        "opened_by": chain.opening.joint,
+        "opens": chain.opening.distance,
+        "reward": chain.reward,
+        "reward_with_it": chain.rival,
+        "told": chain.told,
     }
 
 

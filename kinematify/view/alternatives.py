@@ -1,19 +1,16 @@
-"""Joints that the inference also thought of, from `inference.json`, in words and as they can be tried on the model."""
+"""Joints that the inference also thought of, in words and as they can be tried on the model."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.errors import InputError
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray
 
@@ -47,61 +44,6 @@ class Alternative:
     """It was set on the page, and its type is meant as it stands: `continuous` turns without end."""
     limits: tuple[float, float] | None = None
     """Lower and upper limit along `axis` [rad or m] where they were set."""
-
-
-def load_doubtful(path: Path) -> tuple[str, ...]:
-    """Return the parts whose joints are to be looked at first, from `inference.json` of a model folder.
-
-    Raises:
-        InputError: It cannot be read.
-    """
-    try:
-        return tuple(map(str, json.loads(path.read_text(encoding="utf-8")).get("doubtful", ())))
-    except (OSError, ValueError, AttributeError, TypeError) as error:
-        raise _no_record(path, error) from error
-
-
-def load_alternatives(path: Path) -> dict[tuple[str, str], tuple[Alternative, ...]]:
-    """Return the candidates of every joint, best first, keyed by (parent, child) part names; the last one is fixed.
-
-    Args:
-        path: `inference.json` of a model folder.
-
-    Raises:
-        InputError: It cannot be read.
-    """
-    try:
-        joints = json.loads(path.read_text(encoding="utf-8"))["joints"]
-        return {(joint["parent"], joint["child"]): tuple(_alternatives(joint)) for joint in joints}
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise _no_record(path, error) from error
-
-
-def _no_record(path: Path, error: Exception) -> InputError:
-    return InputError(
-        f"{path} is no record of an inference ({type(error).__name__}: {error}). Run `kinematify infer` again, or "
-        "view the model from another folder."
-    )
-
-
-def _alternatives(joint: dict[str, Any]) -> list[Alternative]:
-    found = [
-        Alternative(
-            kind=JointType(candidate["type"]),
-            axis=np.asarray(candidate["axis"], dtype=np.float64),
-            pivot=np.asarray(candidate["pivot"], dtype=np.float64),
-            probability=candidate.get("evidence", {}).get("probability"),
-            score=float(candidate["score"]),
-        )
-        for candidate in joint["candidates"]
-    ]
-    fixed = Alternative(
-        kind=JointType.FIXED,
-        axis=np.array([0.0, 0.0, 1.0]),
-        pivot=np.zeros(3),
-        probability=joint.get("evidence", {}).get("probability_fixed"),
-    )
-    return [*found, fixed]
 
 
 def distinct(alternatives: Sequence[Alternative], size: float) -> tuple[Alternative, ...]:

@@ -1,4 +1,4 @@
-"""The viewer itself: a web server with the model, its joints, findings and candidates (viser)."""
+"""The viewer itself: joints are moved, tried, kept and taken back; the panel at its side (viser's gui)."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import trimesh
 from PIL import Image
 
 from kinematify.errors import KinematifyError
+from kinematify.pipeline.inference import DOUBTFUL
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.transforms import quaternion_of, rotation_from_quaternion, rotation_from_x
+from kinematify.robot.transforms import rotation_from_quaternion
 from kinematify.view.alternatives import Alternative, described, distinct
+from kinematify.view.drawn import DrawnModel
 from kinematify.view.film import film_of
 
 if TYPE_CHECKING:
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
     import viser
 
-    from kinematify.robot.appearance import Surface
-    from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Joint
     from kinematify.view.keep import Kept, ModelFolder
     from kinematify.view.scene import Touch
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
 
 _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
-_AXIS = (214, 26, 41)
-_SLIDE = (18, 84, 219)
 _AS_WRITTEN = "as in the file"
 _TYPES = {
     "turns": JointType.REVOLUTE,
@@ -44,8 +41,6 @@ _TYPES = {
     "fixed": JointType.FIXED,
 }
 """What a joint can be set to by hand."""
-_GIZMO = 0.2
-"""Of the model's size."""
 _FRAME = 1.0 / 30.0
 _SWEEP_SECONDS = 4.0
 _SLIDER_STEPS = 400
@@ -54,9 +49,6 @@ _TOLD = 12
 _SIGHTS = 40
 """Findings that are listed; the report has all."""
 _POSES = ("At rest", "Opened", "Random")
-_GLOW = 0.45
-_SWOLLEN = 1.5e-3
-"""Of the model's size: how far the glow stands off the surface."""
 _PICTURE = (1600, 1200)
 
 
@@ -109,16 +101,11 @@ class ModelViewer:
             self._apart = 0.0
             self._stale = True
             self._colliding: frozenset[str] = frozenset()
-            self._frames: dict[str, Any] = {}
-            self._glows: dict[str, Any] = {}
             self._sliders: dict[str, Any] = {}
-            self._axes: dict[str, Any] = {}
             self._gizmo: Any = None
-            self._server.scene.reset()
+            self._drawn = DrawnModel(self._server, scene, shown.chains, self._clicked)
             self._server.gui.reset()
             self._server.gui.set_panel_label(scene.robot.name)
-            self._add_surroundings()
-            self._add_bodies()
             self._add_panel(sights, said)
             self._place()
 
@@ -187,7 +174,7 @@ class ModelViewer:
         self._scene.try_joint(joint, alternative)
         self._sweeping = None
         item = self._scene.robot.joint_by_name[joint]
-        self._draw_axis(item)
+        self._drawn.draw_axis(item)
         self._refit_slider(item)
         self._keep.visible = alternative is not None and self._folder is not None
         self._place()
@@ -204,13 +191,7 @@ class ModelViewer:
             self._end_by_hand()
             self._hand_type.value = next(words for words, item in _TYPES.items() if item is kind)
             self._fit_ends(kind, self._scene.range_of(joint))
-            self._gizmo = self._server.scene.add_transform_controls(
-                "/by_hand",
-                scale=_GIZMO * self._scene.size,
-                depth_test=False,
-                wxyz=quaternion_of(rotation_from_x(axis)),
-                position=pivot,
-            )
+            self._gizmo = self._drawn.add_gizmo(axis, pivot)
             self._gizmo.on_update(_ignoring_event(self._hand_moved))
             for handle in (self._hand_type, self._hand_ends):
                 handle.visible = True
@@ -300,60 +281,6 @@ class ModelViewer:
         for client in self._server.get_clients().values():
             client.add_notification(title, body, color="red")
 
-    def _add_surroundings(self) -> None:
-        """Ground, light, and the first look: from the side towards which the parts move."""
-        scene, size = self._server.scene, self._scene.size
-        scene.set_up_direction("+z")
-        eye, target = self._scene.camera
-        camera = self._server.initial_camera
-        camera.position, camera.look_at, camera.up = tuple(eye), tuple(target), (0.0, 0.0, 1.0)
-        camera.near = 1e-3 * size
-        cell = 10.0 ** math.floor(math.log10(max(size, 1e-6)) - 0.5)
-        scene.add_grid(
-            "/ground",
-            width=4.0 * size,
-            height=4.0 * size,
-            cell_size=cell,
-            section_size=10.0 * cell,
-            cell_thickness=0.6,
-            cell_color=(224, 224, 228),
-            section_color=(196, 196, 204),
-            plane_color=(247, 247, 249),
-            plane_opacity=0.9,
-            shadow_opacity=0.2,
-            position=(float(target[0]), float(target[1]), self._scene.ground - 1e-3 * size),
-        )
-        scene.configure_default_lights(enabled=True, cast_shadow=True)
-
-    def _add_bodies(self) -> None:
-        for top, surfaces in self._scene.surfaces.items():
-            self._frames[top] = self._server.scene.add_frame(f"/parts/{top}", show_axes=False)
-            for number, surface in enumerate(surfaces):
-                handle = self._add_surface(f"/parts/{top}/{number}", surface)
-                handle.on_click(_ignoring_event(partial(self._clicked, top)))
-
-    def _add_surface(self, name: str, surface: Surface) -> Any:
-        material = surface.material
-        if material.texture is None or surface.uv is None:
-            red, green, blue, opacity = material.color
-            return self._server.scene.add_mesh_simple(
-                name,
-                surface.vertices.astype(np.float32),
-                surface.faces.astype(np.uint32),
-                color=(round(255 * red), round(255 * green), round(255 * blue)),
-                opacity=None if opacity >= 1.0 else opacity,
-                flat_shading=True,
-                side="double",
-            )
-        look: Any = trimesh.visual
-        picture = Image.fromarray(material.texture.pixels)
-        mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
-        shown = look.material.PBRMaterial(
-            baseColorTexture=picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True
-        )
-        mesh.visual = look.TextureVisuals(uv=surface.uv, material=shown)
-        return self._server.scene.add_mesh_trimesh(name, mesh)
-
     def _add_panel(self, sights: Sequence[Sight], said: str) -> None:
         gui = self._server.gui
         poses = gui.add_button_group("Pose", _POSES)
@@ -372,7 +299,6 @@ class ModelViewer:
         gui = self._server.gui
         for joint in self._scene.leaders:
             self._add_slider(joint)
-            self._draw_axis(joint)
         if not self._scene.leaders:
             gui.add_markdown("No joint of this model moves.")
         self._told = gui.add_markdown(said)
@@ -459,11 +385,11 @@ class ModelViewer:
     def _add_view(self) -> None:
         gui = self._server.gui
         gui.add_slider("Taken apart [%]", 0, 100, 1, 0).on_update(lambda event: self._take_apart(event.target.value))
-        gui.add_checkbox("Axes", initial_value=True).on_update(lambda event: self._show_axes(event.target.value))
+        gui.add_checkbox("Axes", initial_value=True).on_update(lambda event: self._drawn.show_axes(event.target.value))
         gui.add_button("Picture (PNG)").on_click(lambda event: self._send_picture(event.client))
         gui.add_button("Film (GIF)").on_click(lambda event: self._send_film(event.client))
         with gui.add_folder("Parts", expand_by_default=False):
-            for top in self._frames:
+            for top in self._drawn.parts:
                 box = gui.add_checkbox(top, initial_value=True)
                 box.on_update(partial(self._toggle, top))
 
@@ -508,11 +434,7 @@ class ModelViewer:
                 self.try_candidate(self._chosen, self._options.index(self._choice.value))
 
     def _toggle(self, top: str, event: Any) -> None:
-        self._frames[top].visible = event.target.value
-
-    def _show_axes(self, visible: bool) -> None:  # the value of a box
-        for handle in self._axes.values():
-            handle.visible = visible
+        self._drawn.show_part(top, event.target.value)
 
     def _take_apart(self, percent: float) -> None:
         with self._lock:
@@ -541,36 +463,10 @@ class ModelViewer:
             waiting.remove()
         client.send_file_download(f"{self._scene.robot.name}.gif", film)
 
-    def _draw_axis(self, joint: Joint) -> None:
-        """Draw the axis with the range; it stays with the parent while the joint moves."""
-        points = self._scene.glyph(joint).astype(np.float32)
-        color = _AXIS if self._scene.kind_of(joint).turns else _SLIDE
-        colors = np.broadcast_to(np.array(color, dtype=np.uint8), points.shape)
-        self._axes[joint.name] = self._server.scene.add_line_segments(
-            f"/axes/{joint.name}",
-            points,
-            colors,
-            thickness=3.0,
-            thickness_units="screen",
-            visible=self._scene.kind_of(joint) is not JointType.FIXED,
-        )
-
     def _place(self) -> None:
         """Put everything where the joints stand; collisions are looked for later, since that takes longer."""
-        poses, apart = self._scene.poses(self._q), self._scene.apart(self._apart)
-        with self._server.atomic():
-            for top, frame in self._frames.items():
-                offset = apart.get(top, np.zeros(3))
-                frame.wxyz, frame.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3] + offset
-            for joint in self._scene.leaders:
-                self._place_axis(joint, poses, apart)
+        self._drawn.place(self._q, self._apart)
         self._stale = True
-
-    def _place_axis(self, joint: Joint, poses: Mapping[str, FloatArray], apart: Mapping[str, FloatArray]) -> None:
-        T = poses[joint.parent] @ joint.T_parent_child
-        handle = self._axes[joint.name]
-        offset = apart.get(self._scene.group_of(joint.child), np.zeros(3))
-        handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3] + offset
 
     def _look_for_collisions(self) -> None:
         with self._lock:
@@ -591,33 +487,7 @@ class ModelViewer:
                 color = _WRONG
             elif group.top == chosen:
                 color = _CHOSEN
-            self._let_glow(group.top, color)
-
-    def _let_glow(self, top: str, color: tuple[int, int, int] | None) -> None:
-        handle = self._glows.get(top)
-        if color is None or top not in self._frames:
-            if handle is not None:
-                handle.visible = False
-            return
-        if handle is None:
-            vertices, faces = self._scene.meshes[top]
-            shell = trimesh.Trimesh(vertices, faces, process=False)
-            swollen = vertices + _SWOLLEN * self._scene.size * np.asarray(shell.vertex_normals)
-            handle = self._server.scene.add_mesh_simple(
-                f"/parts/{top}/glow",
-                swollen.astype(np.float32),
-                faces.astype(np.uint32),
-                color=color,
-                opacity=_GLOW,
-                side="double",
-                cast_shadow=False,
-                receive_shadow=False,
-            )
-            handle.on_click(_ignoring_event(partial(self._clicked, top)))
-            self._glows[top] = handle
-        if handle.color != color:
-            handle.color = color
-        handle.visible = True
+            self._drawn.let_glow(group.top, color)
 
 
 def _factor_of(kind: JointType) -> float:
@@ -635,9 +505,12 @@ def _ignoring_event(action: Callable[[], object]) -> Callable[[Any], None]:
 
 
 def _doubts(shown: Shown) -> str:
-    """The joints to look at first, and how to begin."""
-    begin = "Touch a slider or click a part."
-    return f"Look at these, they are least sure: **{', '.join(shown.doubtful)}**. {begin}" if shown.doubtful else begin
+    """How to begin, the joints to look at first, and where chains of joints close."""
+    said = ["Touch a slider or click a part."]
+    if shown.doubtful:
+        said.append(f"Look at these, the inference is less than {DOUBTFUL:.0%} sure: **{', '.join(shown.doubtful)}**.")
+    said += [f"Dashed line: {chain.told}" for chain in shown.chains]
+    return "\n\n".join(said)
 
 
 def _kept_words(kept: Kept) -> str:

@@ -12,7 +12,7 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import EnvironmentFault
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
-from kinematify.view.alternatives import load_alternatives, load_doubtful
+from kinematify.view.record import declared_chains, shown_with
 from kinematify.view.scene import ViewScene
 from kinematify.view.shown import Shown
 
@@ -35,8 +35,8 @@ def read_model(urdf: Path, package_dirs: Sequence[Path]) -> Shown:
     scene = ViewScene(read_robot(urdf, package_dirs=package_dirs, appearance=True), load_settings())
     record = urdf.parent / RECORD_FILE
     if not record.is_file():
-        return Shown(scene=scene)
-    return Shown(scene=scene, alternatives=load_alternatives(record), doubtful=load_doubtful(record))
+        return Shown(scene=scene, chains=declared_chains(scene.robot))
+    return shown_with(scene, record)
 
 
 class Window:

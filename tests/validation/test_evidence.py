@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lxml import etree
-from manifold3d import Manifold
 
-from kinematify.generate.procedural.solids import box, cylinder, union
+from kinematify.generate.procedural.solids import box, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
 from kinematify.validation.checks import checks_of
@@ -22,6 +21,7 @@ from tests.household import (
     button,
     drawer,
     edge_door,
+    four_bars,
     hinge_pin,
     knob,
     laptop,
@@ -243,32 +243,6 @@ def test_axes_that_are_off_by_the_same_few_degrees_are_one_finding(tmp_path: Pat
     assert finding.value == pytest.approx(2.5, abs=0.1)
     assert all(f"drawer_{k}_joint" in finding.message for k in range(3))
     assert found(turned(chest(), "drawer_1", 2.5, (1.0, 0.0, 0.3)), tmp_path / "one") == set()
-
-
-def four_bars() -> KnownObject:
-    """A crank, a rocker and the bar between their ends, which turns on the crank and takes the rocker's pin."""
-    radius, clearance = 0.004, 2e-4
-
-    def pin(x: float, y: float, low: float, high: float) -> Manifold:
-        return cylinder(radius, (x, y, low), (x, y, high))
-
-    def hole(x: float, y: float, low: float, high: float) -> Manifold:
-        return cylinder(radius + clearance, (x, y, low - 0.01), (x, y, high + 0.01))
-
-    ground = union(box((-0.02, -0.02, 0), (0.12, 0.02, 0.01)), pin(0, 0, 0.005, 0.0205), pin(0.1, 0, 0.005, 0.0205))
-    parts = {"ground": ground}
-    for name, x in (("crank", 0.0), ("rocker", 0.1)):
-        bar = box((x - 0.01, -0.01, 0.0102), (x + 0.01, 0.07, 0.02)) - hole(x, 0, 0.01, 0.02)
-        parts[name] = union(bar, pin(x, 0.06, 0.015, 0.031))
-    coupler = box((-0.01, 0.05, 0.0202), (0.11, 0.07, 0.03)) - hole(0, 0.06, 0.02, 0.03)
-    parts["coupler"] = coupler - hole(0.1, 0.06, 0.02, 0.03)
-    return known_object(
-        "four_bars",
-        parts,
-        turning("ground", "crank", (0, 0, 1), (0, 0, 0), (-0.5, 0.5)),
-        turning("ground", "rocker", (0, 0, 1), (0.1, 0, 0), (-0.5, 0.5)),
-        turning("crank", "coupler", (0, 0, 1), (0, 0.06, 0), (-0.5, 0.5)),
-    )
 
 
 def test_the_pin_that_closes_a_linkage_is_named(tmp_path: Path) -> None:

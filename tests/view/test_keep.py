@@ -13,8 +13,9 @@ from kinematify.pipeline import infer, write_inference
 from kinematify.refinement.folder import read_record
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
-from kinematify.view.alternatives import Alternative, load_alternatives
+from kinematify.view.alternatives import Alternative
 from kinematify.view.keep import ModelFolder
+from kinematify.view.record import load_alternatives
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:

@@ -17,7 +17,8 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.view.alternatives import Alternative, described, distinct, load_alternatives
+from kinematify.view.alternatives import Alternative, described, distinct
+from kinematify.view.record import load_alternatives
 from kinematify.view.scene import ViewScene
 
 _URDF = """<robot name="door">

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     blame=Blame.KINEMATICS,
 )
 def open_linkage(result: OpenCheck, pin: SharedPin) -> None:
-    """Two links that no joint joins, and that are both round about one line where they touch (evidence.pin_score), do
-    not come apart there by more than evidence.pin_opens of the model's size when a joint moves alone.
+    """Two links that no joint joins, and that are both round about one line where they touch (topology.pin_score), do
+    not come apart there by more than topology.pin_opens of the model's size when a joint moves alone.
 
     Why it matters: A URDF is a tree: of the loop of a gripper or a four-bar linkage one pin is left out, and in an
     engine the linkage hangs open there.

@@ -5,15 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kinematify.robot.mechanism import Mechanism
-from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.closed_chain import widest_opening
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.config.validation import EvidenceSettings
     from kinematify.joints.hypotheses.bearing_line import BearingLine
     from kinematify.robot.robot import Robot
     from kinematify.validation.evidence.bodies import Bodies
@@ -36,7 +32,7 @@ class SharedPin:
     """[m]"""
 
 
-def shared_pins(bodies: Bodies, robot: Robot, settings: EvidenceSettings) -> Iterator[SharedPin]:
+def shared_pins(bodies: Bodies, robot: Robot) -> Iterator[SharedPin]:
     """Find pins between bodies that are no neighbours in the tree and that its motion pulls apart.
 
     Mimic joints that keep a linkage closed keep its pins closed, too; these are left out.
@@ -44,32 +40,21 @@ def shared_pins(bodies: Bodies, robot: Robot, settings: EvidenceSettings) -> Ite
     Args:
         bodies: The model at rest, with what bears on what.
         robot: The same model.
-        settings: `pin_score` and `pin_opens`.
     """
+    settings = bodies.config.topology
     neighbours = {frozenset(edge) for edge in bodies.tree.edges()}
-    travels = Mechanism(robot=robot).travels
-    rest = {travel.joint: travel.rest for travel in travels}
-    ends = [(travel.joint, end) for travel in travels for end in (travel.lower, travel.upper) if end != travel.rest]
-    at_rest = forward_kinematics(robot, rest)
-    moved = [forward_kinematics(robot, {**rest, joint: end}) for joint, end in ends]
     allowed = settings.pin_opens * bodies.diagonal
     for pair, bearing in bodies.bearings.items():
         if frozenset(pair) in neighbours or not bearing.lines or bearing.lines[0].score < settings.pin_score:
             continue
         first, second = (bodies.links[body] for body in pair)
-        pin = np.append(bearing.lines[0].pivot, 1.0)
-        apart = []
-        for poses in moved:
-            ends_of_pin = [poses[link] @ np.linalg.inv(at_rest[link]) @ pin for link in (first, second)]
-            apart.append(float(np.linalg.norm(ends_of_pin[0] - ends_of_pin[1])))
-        widest = int(np.argmax(apart)) if apart else 0
-        if apart and apart[widest] > allowed:
-            joint, value = ends[widest]
+        opening = widest_opening(robot, (first, second), bearing.lines[0].pivot)
+        if opening is not None and opening.distance > allowed:
             yield SharedPin(
                 links=(first, second),
                 line=bearing.lines[0],
-                joint=joint,
-                value=value,
-                opens=apart[widest],
+                joint=opening.joint,
+                value=opening.value,
+                opens=opening.distance,
                 allowed=allowed,
             )

@@ -52,7 +52,7 @@ def run(request: StageRequest, recorder: Recorder) -> None:
                 result.leave(f"{left} of the joints")
         for finding in result.findings:
             doubts[finding.joint].add(check.id)
-    pins = () if left else tuple(shared_pins(bodies, robot, request.settings.evidence))
+    pins = () if left else tuple(shared_pins(bodies, robot))
     for check in of_pins:
         with recorder.check(check.id) as result:
             for pin in pins:

@@ -1,0 +1,222 @@
+"""What stands in the picture of the page: bodies, the axes of joints, what glows, ground and light (viser's scene)."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import trimesh
+from PIL import Image
+
+from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import quaternion_of, rotation_from_x
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import viser
+
+    from kinematify.robot.appearance import Surface
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Joint
+    from kinematify.view.scene import ViewScene
+    from kinematify.view.shown import ClosedChain
+
+Color = tuple[int, int, int]
+
+_AXIS = (214, 26, 41)
+_SLIDE = (18, 84, 219)
+_CLOSED = (120, 40, 160)
+"""Of the dashed line where a chain of joints closes."""
+_GIZMO = 0.2
+"""Of the model's size."""
+_GLOW = 0.45
+_SWOLLEN = 1.5e-3
+"""Of the model's size: how far the glow stands off the surface."""
+
+
+class DrawnModel:
+    """A model in the scene of a server."""
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        scene: ViewScene,
+        chains: Sequence[ClosedChain],
+        clicked: Callable[[str], None],
+    ) -> None:
+        """Draw everything in place of what was there.
+
+        Args:
+            server: Running.
+            scene: The model.
+            chains: Where it closes.
+            clicked: Called with the top link of a part that is clicked.
+        """
+        self._server, self._scene, self._chains, self._on_click = server, scene, chains, clicked
+        self._frames: dict[str, Any] = {}
+        self._glows: dict[str, Any] = {}
+        self._axes: dict[str, Any] = {}
+        self._dashes: list[Any] = []
+        server.scene.reset()
+        self._add_surroundings()
+        self._add_bodies()
+        for joint in scene.leaders:
+            self.draw_axis(joint)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Top links of what can be seen."""
+        return tuple(self._frames)
+
+    def place(self, q: Mapping[str, float], share: float) -> None:
+        """Put everything where the joints stand.
+
+        Args:
+            q: Leader -> value [rad or m].
+            share: How far the model is taken apart, 0 for not at all.
+        """
+        poses, apart = self._scene.poses(q), self._scene.apart(share)
+        with self._server.atomic():
+            for top, frame in self._frames.items():
+                offset = apart.get(top, np.zeros(3))
+                frame.wxyz, frame.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3] + offset
+            for joint in self._scene.leaders:
+                self._place_axis(joint, poses, apart)
+            self._draw_chains(poses)
+
+    def show_part(self, top: str, visible: bool) -> None:  # the value of a box
+        """Show or hide a part."""
+        self._frames[top].visible = visible
+
+    def show_axes(self, visible: bool) -> None:  # the value of a box
+        """Show or hide the axes of all joints."""
+        for handle in self._axes.values():
+            handle.visible = visible
+
+    def draw_axis(self, joint: Joint) -> None:
+        """Draw the axis with the range; it stays with the parent while the joint moves."""
+        points = self._scene.glyph(joint)
+        color = _AXIS if self._scene.kind_of(joint).turns else _SLIDE
+        self._axes[joint.name] = self._add_lines(
+            f"/axes/{joint.name}", points, color, visible=self._scene.kind_of(joint) is not JointType.FIXED
+        )
+
+    def add_gizmo(self, axis: FloatArray, pivot: FloatArray) -> Any:
+        """Return a gizmo whose red arrow is an axis, frame of the root link [m], shape (3,) each."""
+        return self._server.scene.add_transform_controls(
+            "/by_hand",
+            scale=_GIZMO * self._scene.size,
+            depth_test=False,
+            wxyz=quaternion_of(rotation_from_x(axis)),
+            position=pivot,
+        )
+
+    def let_glow(self, top: str, color: Color | None) -> None:
+        """Let a part glow, or no more."""
+        handle = self._glows.get(top)
+        if color is None or top not in self._frames:
+            if handle is not None:
+                handle.visible = False
+            return
+        if handle is None:
+            handle = self._glows[top] = self._add_glow(top, color)
+        if handle.color != color:
+            handle.color = color
+        handle.visible = True
+
+    def _add_glow(self, top: str, color: Color) -> Any:
+        vertices, faces = self._scene.meshes[top]
+        shell = trimesh.Trimesh(vertices, faces, process=False)
+        swollen = vertices + _SWOLLEN * self._scene.size * np.asarray(shell.vertex_normals)
+        handle = self._server.scene.add_mesh_simple(
+            f"/parts/{top}/glow",
+            swollen.astype(np.float32),
+            faces.astype(np.uint32),
+            color=color,
+            opacity=_GLOW,
+            side="double",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        handle.on_click(partial(self._clicked, top))
+        return handle
+
+    def _clicked(self, top: str, _: Any) -> None:
+        self._on_click(top)
+
+    def _add_surroundings(self) -> None:
+        """Ground, light, and the first look: from the side towards which the parts move."""
+        scene, size = self._server.scene, self._scene.size
+        scene.set_up_direction("+z")
+        eye, target = self._scene.camera
+        camera = self._server.initial_camera
+        camera.position, camera.look_at, camera.up = tuple(eye), tuple(target), (0.0, 0.0, 1.0)
+        camera.near = 1e-3 * size
+        cell = 10.0 ** math.floor(math.log10(max(size, 1e-6)) - 0.5)
+        scene.add_grid(
+            "/ground",
+            width=4.0 * size,
+            height=4.0 * size,
+            cell_size=cell,
+            section_size=10.0 * cell,
+            cell_thickness=0.6,
+            cell_color=(224, 224, 228),
+            section_color=(196, 196, 204),
+            plane_color=(247, 247, 249),
+            plane_opacity=0.9,
+            shadow_opacity=0.2,
+            position=(float(target[0]), float(target[1]), self._scene.ground - 1e-3 * size),
+        )
+        scene.configure_default_lights(enabled=True, cast_shadow=True)
+
+    def _add_bodies(self) -> None:
+        for top, surfaces in self._scene.surfaces.items():
+            self._frames[top] = self._server.scene.add_frame(f"/parts/{top}", show_axes=False)
+            for number, surface in enumerate(surfaces):
+                handle = self._add_surface(f"/parts/{top}/{number}", surface)
+                handle.on_click(partial(self._clicked, top))
+
+    def _add_surface(self, name: str, surface: Surface) -> Any:
+        material = surface.material
+        if material.texture is None or surface.uv is None:
+            red, green, blue, opacity = material.color
+            return self._server.scene.add_mesh_simple(
+                name,
+                surface.vertices.astype(np.float32),
+                surface.faces.astype(np.uint32),
+                color=(round(255 * red), round(255 * green), round(255 * blue)),
+                opacity=None if opacity >= 1.0 else opacity,
+                flat_shading=True,
+                side="double",
+            )
+        look: Any = trimesh.visual
+        picture = Image.fromarray(material.texture.pixels)
+        mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
+        shown = look.material.PBRMaterial(
+            baseColorTexture=picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True
+        )
+        mesh.visual = look.TextureVisuals(uv=surface.uv, material=shown)
+        return self._server.scene.add_mesh_trimesh(name, mesh)
+
+    def _add_lines(self, name: str, points: FloatArray, color: Color, *, visible: bool = True) -> Any:
+        colors = np.broadcast_to(np.array(color, dtype=np.uint8), points.shape)
+        return self._server.scene.add_line_segments(
+            name, points.astype(np.float32), colors, thickness=3.0, thickness_units="screen", visible=visible
+        )
+
+    def _place_axis(self, joint: Joint, poses: Mapping[str, FloatArray], apart: Mapping[str, FloatArray]) -> None:
+        T = poses[joint.parent] @ joint.T_parent_child
+        handle = self._axes[joint.name]
+        offset = apart.get(self._scene.group_of(joint.child), np.zeros(3))
+        handle.wxyz, handle.position = quaternion_of(T[:3, :3]), T[:3, 3] + offset
+
+    def _draw_chains(self, poses: Mapping[str, FloatArray]) -> None:
+        """Draw a dashed line along every pin that was cut, and from one end of it to the other where it came apart."""
+        for number, chain in enumerate(self._chains):
+            points = chain.dashes(poses, self._scene.size)
+            if number == len(self._dashes):
+                self._dashes.append(self._add_lines(f"/closed/{number}", points, _CLOSED))
+            self._dashes[number].points = points.astype(np.float32)
