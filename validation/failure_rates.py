@@ -18,6 +18,8 @@ from kinematify.errors import EnvironmentFault
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.validation.finding import Severity
+
 RIGHT, LINE, TYPE, PARENT = "right", "line", "type", "parent"
 CLASSES = (RIGHT, LINE, TYPE, PARENT)
 """What a joint was: right, or wrong in its line (axis or place), its type or its parent."""
@@ -32,22 +34,23 @@ class FailureRates:
 
     joints: Mapping[str, Mapping[str, int]]
     """Tier -> class of joint -> how many were simulated there."""
-    failures: Mapping[str, Mapping[str, int]]
-    """Check -> class of joint -> how many of them it found fault with."""
+    failures: Mapping[str, Mapping[str, Mapping[str, int]]]
+    """Check -> severity of its worst finding -> class of joint -> how many of them it found that fault with."""
     provenance: Mapping[str, Any]
 
-    def weight(self, check: str, wrong: str) -> float:
+    def weight(self, check: str, severity: Severity, wrong: str) -> float:
         """What a failure of a check says for a wrong joint and against a right one [log odds], 0 if nothing.
 
         Args:
             check: Its id.
+            severity: Of its finding: a warning is more frequent on right joints than an error.
             wrong: `LINE`, `TYPE` or `PARENT`.
         """
-        return max(math.log(self._rate(check, wrong) / self._rate(check, RIGHT)), 0.0)
+        return max(math.log(self._rate(check, severity, wrong) / self._rate(check, severity, RIGHT)), 0.0)
 
-    def _rate(self, check: str, what: str) -> float:
+    def _rate(self, check: str, severity: Severity, what: str) -> float:
         """Rate of failures; few joints are drawn towards the rate of all, so that chance says nothing."""
-        seen, failed = self.joints.get(tier_of(check), {}), self.failures.get(check, {})
+        seen, failed = self.joints.get(tier_of(check), {}), self.failures.get(check, {}).get(severity, {})
         common = (sum(failed.values()) + 0.5) / (sum(seen.values()) + 1.0)
         return (failed.get(what, 0) + _DRAWN * common) / (seen.get(what, 0) + _DRAWN)
 

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.check import FeedbackRow
+from kinematify.validation.check import ENGINE_FAMILIES, FeedbackRow
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.failure_rates import LINE, PARENT, TYPE, shipped_rates
 from kinematify.validation.finding import Blame, Severity
@@ -120,10 +120,11 @@ class Feedback:
         return bool(self.edges or self.lines or self.types or self.ranges)
 
     def against(self, child: str) -> float:
-        """Log odds against the joint of a part, parent left out; each check counts once, whatever engines found it."""
-        lines = {signal.check: signal.weight for signal in self.lines if signal.child == child}
-        types = {signal.check: signal.weight for signal in self.types if signal.child == child}
-        return max(sum(lines.values()), sum(types.values()))
+        """Log odds against the joint of a part, parent left out.
+
+        Of each check its worst finding counts, once; what two engines find of a joint is one failure.
+        """
+        return max(_worst_of_each(self.lines, child), _worst_of_each(self.types, child))
 
     def failed_at(self, child: str) -> frozenset[float]:
         """Values of the joint of a part at which it failed for its line or its type [rad or m]."""
@@ -133,6 +134,21 @@ class Feedback:
     def as_json(self) -> dict[str, Any]:
         """JSON values."""
         return asdict(self)
+
+
+def only_collision_meets(finding: Finding) -> bool:
+    """Whether the exact geometry saw no visible parts meet, so that nothing speaks against the joint."""
+    return finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")
+
+
+def _worst_of_each(signals: Iterable[LineSignal | TypeSignal], child: str) -> float:
+    worst: dict[str, float] = {}
+    for signal in signals:
+        if signal.child == child:
+            family, number = signal.check[:3], signal.check[3:]
+            failure = number if family in ENGINE_FAMILIES.values() else signal.check
+            worst[failure] = max(signal.weight, worst.get(failure, 0.0))
+    return sum(worst.values())
 
 
 def feedback_from(
@@ -202,14 +218,14 @@ class _Case:
 
     def against_line(self, finding: Finding, joint: Joint, reason: str) -> None:
         """Add a signal against the line of a joint, if the failure is more frequent where it is wrong."""
-        weight = self.rates.weight(finding.check, LINE)
+        weight = self.rates.weight(finding.check, finding.severity, LINE)
         if weight > 0.0:
             at = _value_of(finding, joint)
             self.lines.append(LineSignal(child=joint.child, weight=weight, check=finding.check, reason=reason, at=at))
 
     def against_type(self, finding: Finding, joint: Joint, reason: str) -> None:
         """Add a signal against the type of a joint, if the failure is more frequent where it is wrong."""
-        weight = self.rates.weight(finding.check, TYPE)
+        weight = self.rates.weight(finding.check, finding.severity, TYPE)
         if weight > 0.0:
             self.types.append(
                 TypeSignal(
@@ -224,7 +240,7 @@ class _Case:
 
     def against_parent(self, finding: Finding, joint: Joint, reason: str, better: str | None = None) -> None:
         """Add a signal against the parent of a part, if the failure is more frequent where it is wrong."""
-        weight = self.rates.weight(finding.check, PARENT)
+        weight = self.rates.weight(finding.check, finding.severity, PARENT)
         if weight > 0.0:
             self.edges.append(
                 EdgeSignal(
@@ -278,7 +294,7 @@ def _route(case: _Case, finding: Finding) -> None:
         _at_rest(case, finding)
     elif finding.severity is Severity.NOTE:
         return
-    elif row is FeedbackRow.COLLISION or (finding.blame is Blame.PHYSICS and finding.check.startswith("KV3")):
+    elif row is FeedbackRow.COLLISION or only_collision_meets(finding):
         case.leave(finding, "only collision geometry is in the way; decompose it", Blame.PHYSICS)
     elif row is FeedbackRow.EXPORTER:
         case.leave(finding, "frames, masses or files disagree; that is the exporter's to mend")

@@ -24,9 +24,9 @@ class CavlConfig(StageConfig):
     """lambda_coll: price of penetration."""
     pivot_weight: float
     """lambda_p: price of a pivot away from the contact centroid."""
-    surviving_share: float
-    """Share of the contact, that which the motion separates least, that L_cons asks to be kept; the rest counts in
-    L_coll. 1: all of it, as printed."""
+    bounded_separation: bool
+    """L_cons grows no further once a sample has left the contact by `contact_width`, and samples of the contact count
+    in L_coll too (DW-CAVL+; not printed)."""
     length_unit: float
     """Length that counts as 1 in J; a smaller one spreads the scores 1 / (1 + J)."""
     angles_deg: list[float]

@@ -35,6 +35,8 @@ class RefineConfig(StageConfig):
     """A candidate replaces the chosen one if it leads by more [log odds]."""
     lead_elsewhere: float
     """The same for a candidate of another type or direction [log odds]."""
+    lead_by_shape: float
+    """The same for a candidate that fails no less than the chosen one, so that only the shape speaks for it."""
     least_travel: float
     """A range that is blocked may not be cut below this share of what the inference saw free."""
     least_kept: float

@@ -249,12 +249,11 @@ def cavl_terms(
         moved = _move(side, kind, pivots, axes, motions)
         distances = side.field.value(moved)
         apart, inside = (torch.relu(depths - margin) / unit for depths in (distances, -distances))
-        if config.surviving_share < 1.0:
-            separation = _surviving_mean(side.anchored, apart, config.surviving_share, config.epsilon)
-            penetration = _weighted_mean(side.free + side.anchored, inside, config.epsilon)
-        else:
-            separation = _weighted_mean(side.anchored, apart, config.epsilon)
-            penetration = _weighted_mean(side.free, inside, config.epsilon)
+        if config.bounded_separation:
+            apart = _bounded(apart, config.contact_width * scene.diagonal / unit)
+        pushed = side.free + side.anchored if config.bounded_separation else side.free
+        separation = _weighted_mean(side.anchored, apart, config.epsilon)
+        penetration = _weighted_mean(pushed, inside, config.epsilon)
         consistency = consistency + separation / len(scene.sides)
         collision = collision + penetration / len(scene.sides)
     offset = torch.zeros(len(axes), dtype=torch.float64)
@@ -303,17 +302,13 @@ def _weighted_mean(weights: Tensor, depths: Tensor, epsilon: float) -> Tensor:
     return (depths.square() @ weights) / (weights.sum() + epsilon)
 
 
-def _surviving_mean(weights: Tensor, depths: Tensor, share: float, epsilon: float) -> Tensor:
-    """Weighted mean of the squares over that share of the weight that is separated least (DW-CAVL+; not printed).
+def _bounded(depths: Tensor, width: float) -> Tensor:
+    """Depths that approach `width` however large they are: squared, the loss of Geman and McClure (1987).
 
     A closed door touches its frame all around and keeps one side of four: what a motion has to leave is no contact of
-    the joint, whatever the joint is.
+    the joint, and how far it gets says nothing.
     """
-    ascending, order = depths.sort(dim=-1)
-    sorted_weights = weights[order]
-    wanted = share * weights.sum()
-    kept = torch.minimum(sorted_weights, (wanted - (sorted_weights.cumsum(dim=-1) - sorted_weights)).clamp_min(0.0))
-    return (ascending.square() * kept).sum(dim=-1) / (wanted + epsilon)
+    return depths / torch.sqrt(1.0 + (depths / width).square())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

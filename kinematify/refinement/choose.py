@@ -69,11 +69,13 @@ class Chooser:
     simulated: int = 0
     refused: list[str] = field(default_factory=list)
     """Choices that would have hidden a failure, with the reason."""
+    gained: dict[str, float] = field(default_factory=dict)
+    """What joints that were chosen anew have before the old ones, by part [log odds]."""
 
     def choose_again(self, plan: Plan, feedback: Feedback) -> tuple[Plan, list[PlanChange]]:
         """Take decisions about joints again, one part after the other, those that most speaks against first.
 
-        Doubted are the joints that failures blame, and those that score less than a candidate by more than the lead.
+        Doubted are the joints that failures blame, and those that score far less than a candidate by their shape alone.
 
         Args:
             plan: What was simulated.
@@ -91,7 +93,7 @@ class Chooser:
             f"{child}: what failed speaks against its joint, but a hint asked for it; without the hint others are tried"
             for child in sorted(blamed & hinted)
         ]
-        doubted = [child for child in odds if child in blamed or odds[child] > self.config.lead_elsewhere]
+        doubted = [child for child in odds if child in blamed or odds[child] > self.config.lead_by_shape]
         doubted = [child for child in doubted if child not in hinted]
         for child in sorted(doubted, key=lambda child: (-odds[child], child)):
             if child in blamed:
@@ -170,8 +172,8 @@ class Chooser:
         if len(trials) > 1 and self._can_never_move(trials):
             return self._fixed(plan, child, old, trials)
         tried = [trial for trial in trials[1:] if trial.tier == tier]
-        best = max(tried, key=lambda trial: trial.total - self._lead_of(trial, old), default=first)
-        if best.total <= first.total + self._lead_of(best, old) or best.joint.kind is JointType.FIXED:
+        best = max(tried, key=lambda trial: trial.total - self._lead_of(trial, first), default=first)
+        if best.total <= first.total + self._lead_of(best, first) or best.joint.kind is JointType.FIXED:
             return plan, None
         what = "type" if best.joint.kind.turns != old.kind.turns else "axis"
         why = (
@@ -179,11 +181,15 @@ class Chooser:
             f"{first.score:+.1f} and {-first.against:+.1f}"
         )
         change = PlanChange(part=child, what=what, before=described(old), after=described(best.joint), why=why)
+        self.gained[child] = best.total - first.total
         return plan.with_joint(best.joint), change
 
-    def _lead_of(self, trial: Trial, old: JointEstimate) -> float:
-        """What a candidate has to lead by: more if it has another type or direction than what the geometry chose."""
-        alike = abs(float(trial.joint.axis @ old.axis)) > _SAME_WAY and trial.joint.kind.turns == old.kind.turns
+    def _lead_of(self, trial: Trial, first: Trial) -> float:
+        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it fails no less."""
+        if trial.against >= first.against:
+            return self.config.lead_by_shape
+        joint, old = trial.joint, first.joint
+        alike = abs(float(joint.axis @ old.axis)) > _SAME_WAY and joint.kind.turns == old.kind.turns
         return self.config.lead if alike else self.config.lead_elsewhere
 
     def _can_never_move(self, trials: list[Trial]) -> bool:

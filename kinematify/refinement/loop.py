@@ -272,8 +272,11 @@ class _Loop:
         plan, votes = vote(plan, done.contacts.graph, chooser)
         self.simulated += chooser.simulated
         changes += votes
-        if not changes and not carried:  # no joint on this edge is better: it may be the wrong edge
-            plan, changes = self._repaired(done)
+        # Where no joint on an edge gains as much as the failures say against the edge, it may be the wrong one.
+        if not carried and any(edge.weight > chooser.gained.get(edge.child, 0.0) for edge in done.feedback.edges):
+            other, moved = self._repaired(done)
+            if moved:
+                return other, done.contacts, moved, []
         return plan, done.contacts, changes, chooser.refused
 
     def _candidates_of(self, contacts: SearchedContacts) -> CandidateJoints:

@@ -79,13 +79,16 @@ def test_bench_counts_what_refinement_finds_and_repairs(
     monkeypatch.chdir(tmp_path)
     written(tmp_path / "models" / "door")
     words = ["bench", "refine", "--data", "models", "--objects", "*", "--faults", f"{PIVOT},{SIGN}", "--jobs", "1"]
-    assert run([*words, "-o", "out"]) == 0
+    assert run([*words, "--inferred", "-o", "out"]) == 0
     capsys.readouterr()
     records = load_study_report(tmp_path / "out", "refine").records
-    assert [record["fault"] for record in records] == ["nothing", PIVOT, SIGN]
-    assert all(record["repaired"] and not record["harmed"] for record in records)
-    assert [record["found"] for record in records] == [False, True, True]
-    assert "| pivot | 1 | 1 (100%) | 1 (100%) |" in (tmp_path / "out" / "refine.md").read_text()
+    assert [record["fault"] for record in records] == ["nothing", PIVOT, SIGN, "as inferred"]
+    assert [record["wrong"] for record in records] == [0, 1, 1, 0]
+    assert [record["found"] for record in records] == [0, 1, 1, 0]
+    assert all(record["repaired"] == record["wrong"] and not record["harmed"] for record in records)
+    table = (tmp_path / "out" / "refine.md").read_text()
+    assert "| pivot | 1 | 1 (100%) | 1 (100%) | 0 of 0 |" in table
+    assert "| as inferred | - | - | - | 0 of 1 |" in table
 
 
 def test_simulation_tells_a_blocked_mistake_from_a_right_hypothesis_if_one_is_proposed(

@@ -19,7 +19,7 @@ from kinematify.evaluation.prediction import Prediction
 from kinematify.evaluation.study import load_study_report
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.paper.cavl import _surviving_mean
+from kinematify.paper.cavl import _bounded
 from kinematify.paper.contacts import field_gaps
 from kinematify.pipeline import infer, write_inference
 from kinematify.pipeline.stages import rank_trees
@@ -60,13 +60,10 @@ def test_strength_by_proximity_falls_with_the_gap_alone() -> None:
         assert edge.strength == pytest.approx(np.exp(-edge.gap / graph.tolerance))
 
 
-def test_only_the_share_of_the_contact_that_is_separated_least_counts() -> None:
-    weights = torch.tensor([1.0, 1.0, 1.0, 1.0], dtype=torch.float64)
-    depths = torch.tensor([[[3.0, 0.0, 1.0, 2.0]]], dtype=torch.float64)
-    assert float(_surviving_mean(weights, depths, 0.25, 0.0)) == pytest.approx(0.0)
-    assert float(_surviving_mean(weights, depths, 0.5, 0.0)) == pytest.approx(0.5)
-    assert float(_surviving_mean(weights, depths, 0.625, 0.0)) == pytest.approx((1.0 + 0.5 * 4.0) / 2.5)
-    assert float(_surviving_mean(weights, depths, 1.0, 0.0)) == pytest.approx((1.0 + 4.0 + 9.0) / 4.0)
+def test_separation_counts_as_printed_near_the_contact_and_no_more_the_farther_it_gets() -> None:
+    near, far = (_bounded(torch.tensor(depths, dtype=torch.float64), 2.0) for depths in ([0.0, 0.01], [50.0, 5000.0]))
+    assert near.tolist() == pytest.approx([0.0, 0.01], rel=1e-4)
+    assert far.tolist() == pytest.approx([2.0, 2.0], rel=1e-3)
 
 
 def test_bench_tells_the_cost_of_the_true_joint_beside_that_of_the_chosen_one(

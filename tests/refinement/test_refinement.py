@@ -155,7 +155,7 @@ def test_a_wrong_parent_among_right_contacts_is_found_by_the_search() -> None:
 @pytest.mark.parametrize("short", [-50.0, CONFIG.refine.lead_elsewhere - 0.2])
 def test_evidence_of_shape_can_outweigh_the_simulation(short: float) -> None:
     """Blocked both ways is not enough for another direction to lead by less than it has to."""
-    blocked = max(shipped_rates().weight("KV310", wrong) for wrong in (LINE, TYPE))
+    blocked = max(shipped_rates().weight("KV310", Severity.ERROR, wrong) for wrong in (LINE, TYPE))
     lead = blocked - short
     sure = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=lead)
     refinement = refine(sure, seconds=60.0)

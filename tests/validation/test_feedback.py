@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,13 @@ if TYPE_CHECKING:
 CONFIG = load_config().refine.feedback
 RATES = FailureRates(
     joints={tier: {"right": 100, "line": 10, "type": 10, "parent": 10} for tier in ("geometry", "engines", "task")},
-    failures={check: {"right": 5, "line": 6, "type": 4, "parent": 3} for check in CHECKS},
+    failures={
+        check: {
+            "error": {"right": 5, "line": 6, "type": 4, "parent": 3},
+            "warning": {"right": 10, "line": 6, "type": 4, "parent": 3},
+        }
+        for check in CHECKS
+    },
     provenance={},
 )
 
@@ -78,7 +85,7 @@ def test_blocked_to_both_sides_blames_line_and_type_and_no_range(tmp_path: Path)
     assert {signal.child for signal in feedback.lines} == {"drawer"}
     assert {(signal.child, signal.kind) for signal in feedback.types} == {("drawer", "prismatic")}
     assert feedback.ranges == ()
-    assert feedback.against("drawer") == pytest.approx(RATES.weight("KV310", LINE))
+    assert feedback.against("drawer") == pytest.approx(RATES.weight("KV310", Severity.ERROR, LINE))
 
 
 def test_blocked_to_one_side_turns_the_joint_round_and_blames_no_line(tmp_path: Path) -> None:
@@ -108,7 +115,7 @@ def test_what_runs_into_a_stranger_blames_its_parent_for_that_stranger(tmp_path:
     feedback = fed_back(beam(slider, post), tmp_path)
     (signal,) = feedback.edges
     assert (signal.parent, signal.child, signal.better) == ("beam", "slider", "post")
-    assert signal.weight == pytest.approx(RATES.weight("KV311", PARENT))
+    assert signal.weight == pytest.approx(RATES.weight("KV311", Severity.WARNING, PARENT))
     assert feedback.lines == ()
 
 
@@ -197,7 +204,13 @@ def test_what_fails_as_loaded_in_two_engines_counts_once(tmp_path: Path, check: 
     jams = engine(check, blame=Blame.PHYSICS)
     feedback = fed_back(cabinet(), tmp_path, jams, replace(jams, engine="pybullet"))
     assert {signal.check for signal in (*feedback.lines, *feedback.types, *feedback.edges)} == {check}
-    assert feedback.against("drawer") == pytest.approx(RATES.weight(check, LINE))
+    assert feedback.against("drawer") == pytest.approx(RATES.weight(check, Severity.ERROR, LINE))
+
+
+def test_a_joint_that_neither_engine_can_drive_failed_once(tmp_path: Path) -> None:
+    stuck, stuck_elsewhere, warned = engine("KV405"), engine("KV505"), engine("KV405", severity=Severity.WARNING)
+    feedback = fed_back(cabinet(), tmp_path, warned, stuck, stuck_elsewhere)
+    assert feedback.against("drawer") == pytest.approx(RATES.weight("KV405", Severity.ERROR, LINE))
 
 
 def test_what_its_carrier_moves_into_another_body_blames_that_carrier(tmp_path: Path) -> None:
@@ -210,24 +223,30 @@ def test_what_its_carrier_moves_into_another_body_blames_that_carrier(tmp_path: 
 def test_a_failure_weighs_the_ratio_of_its_rates_and_chance_weighs_nothing() -> None:
     rare = FailureRates(
         joints={"geometry": {"right": 300, "line": 300, "parent": 2}},
-        failures={"KV310": {"right": 3, "line": 240}, "KV312": {"right": 30, "line": 30}},
+        failures={
+            "KV310": {"error": {"right": 3, "line": 240}, "warning": {"right": 12, "line": 24}},
+            "KV312": {"error": {"right": 30, "line": 30}},
+        },
         provenance={},
     )
-    assert rare.weight("KV310", LINE) == pytest.approx(np.log(240 / 3), rel=0.15)
-    assert rare.weight("KV312", LINE) == pytest.approx(0.0, abs=1e-9)
-    assert rare.weight("KV320", LINE) == pytest.approx(0.0, abs=1e-2), "never seen on any joint"
-    assert rare.weight("KV312", PARENT) < 0.5, "two joints say little"
+    assert rare.weight("KV310", Severity.ERROR, LINE) == pytest.approx(np.log(240 / 3), rel=0.15)
+    assert rare.weight("KV310", Severity.WARNING, LINE) == pytest.approx(np.log(24 / 12), rel=0.15)
+    assert rare.weight("KV312", Severity.ERROR, LINE) == pytest.approx(0.0, abs=1e-9)
+    assert rare.weight("KV320", Severity.ERROR, LINE) == pytest.approx(0.0, abs=1e-2), "never seen on any joint"
+    assert rare.weight("KV312", Severity.ERROR, PARENT) < 0.5, "two joints say little"
 
 
 def test_the_shipped_rates_are_of_known_checks_and_no_failure_is_counted_twice() -> None:
     shipped = shipped_rates()
     assert shipped.joints["geometry"]["right"] > 0
     assert set(shipped.joints) == set(shipped.provenance)
-    for check, counts in shipped.failures.items():
+    for check, by_severity in shipped.failures.items():
         assert check in CHECKS
-        assert set(counts) <= set(CLASSES)
-        assert all(counts[what] <= shipped.joints[tier_of(check)][what] for what in counts), check
-    assert min(shipped.weight("KV310", LINE), shipped.weight("KV310", TYPE)) > 0.0
+        assert set(by_severity) <= {Severity.ERROR, Severity.WARNING}
+        failed = sum((Counter(counts) for counts in by_severity.values()), Counter())
+        assert set(failed) <= set(CLASSES)
+        assert all(failed[what] <= shipped.joints[tier_of(check)][what] for what in failed), check
+    assert min(shipped.weight("KV310", Severity.ERROR, wrong) for wrong in (LINE, TYPE)) > 0.0
 
 
 @pytest.mark.parametrize(("placements", "blamed"), [(1, False), (CONFIG.placements, True)])

@@ -2,8 +2,9 @@
 
 Wrong joints are planted in true mechanisms as `kinematify bench refine` does, and nothing is refined. *Line*: an axis
 turned by 90 deg, a moved pivot, or the second-best hypothesis where it is of the right type; *type*, *parent*: the
-other type, another parent. A joint failed a check that found an error or a warning about it. The logarithm of the ratio
-of a rate to that on right joints is what the failure weighs in `kinematify refine`; `--write FILE` writes the counts as
+other type, another parent. A joint failed a check that found an error about it, or a warning and no error; the two are
+counted apart, and what only collision geometry is to blame for is not counted. The logarithm of the ratio of a rate to
+that on right joints is what the failure weighs in `kinematify refine`; `--write FILE` writes the counts as
 `validation/failure_rates.json` has them.
 """
 
@@ -32,10 +33,11 @@ from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.tiers import TIERS, dear_verdict
 from kinematify.validation import failure_rates
 from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
+from kinematify.validation.feedback import only_collision_meets
 from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from kinematify.evaluation.record import Report
     from kinematify.evaluation.study import Measured, Record, Work
@@ -43,10 +45,13 @@ if TYPE_CHECKING:
     from kinematify.validation.finding import Finding
 
 SAMPLE = (
-    "bigym_base_doors", "bigym_base_drawers", "bigym_dishwasher", "bigym_wall_cabinet", "drake_cupboard",
-    "fs_boxcabinet", "gz_hinged_door", "gz_scanse_sweep", "gz_src_doorway", "gz_wooden_case", "habitat_fridge",
-    "jsk_fridge", "koki_handle_door", "lb_white_cabinet", "robel_valve3", "src_solar_panel", "tz_button",
-    "urdformer_13", "urdformer_55",
+    "audibot", "bigym_base_doors", "bigym_base_drawers", "bigym_dishwasher", "bigym_wall_cabinet", "bullet_racecar",
+    "calvin_table_A", "calvin_table_B", "doorgym_pull_left", "doorgym_pull_right", "drake_cupboard", "fs_boxcabinet",
+    "fs_hood_panel", "gz_cart_rigid", "gz_cessna", "gz_hinged_door", "gz_polaris_ev", "gz_prius_hybrid",
+    "gz_scanse_sweep", "gz_src_doorway", "gz_tricycle", "gz_velodyne", "gz_wooden_case", "habitat_fridge",
+    "jsk_fridge", "koki_handle_door", "lb_white_cabinet", "px4_bluerov2", "px4_gimbal", "px4_lawnmower",
+    "px4_rover_ackermann", "robel_valve3", "robel_valve4", "simpler_mk_station", "src_leak_patch_tool",
+    "src_satellite_dish", "src_solar_panel", "tz_button", "tz_cabinet_hammer", "urdformer_13", "urdformer_55",
 )  # fmt: skip
 """Objects of other hands whose licence lets us fit to them; none of them is measured by `kinematify bench refine`."""
 _FAULTS = (AXIS, PIVOT, TYPE, PARENT, SECOND)
@@ -99,11 +104,11 @@ def watched(asked: Watched) -> Record:
     if mechanism is None:
         return {"joints": []}
     right = _failed(mechanism.inference, asked.tier)
-    joints = [_record(asked, part, RIGHT, NOTHING, checks) for part, checks in right.items()]
+    joints = [_record(asked, part, RIGHT, NOTHING, failed) for part, failed in right.items()]
     for planted in planted_faults(mechanism, asked.seed, _FAULTS):
-        checks = _failed(planted.inference, asked.tier)[planted.part]
+        failed = _failed(planted.inference, asked.tier)[planted.part]
         what = _CLASS.get(planted.fault) or _class_of_second(mechanism.inference, planted.inference, planted.part)
-        joints.append(_record(asked, planted.part, what, planted.fault, checks))
+        joints.append(_record(asked, planted.part, what, planted.fault, failed))
     return {"joints": joints}
 
 
@@ -113,27 +118,33 @@ def _class_of_second(right: Inference, wrong: Inference, part: str) -> str:
     return failure_rates.LINE if kinds[0] == kinds[1] else failure_rates.TYPE
 
 
-def _record(asked: Watched, part: str, what: str, fault: str, checks: Iterable[str]) -> Record:
+def _record(asked: Watched, part: str, what: str, fault: str, failed: Mapping[str, Severity]) -> Record:
     return {
         "object": asked.item.name,
         "tier": asked.tier,
         "part": part,
         "class": what,
         "fault": fault,
-        "failed": sorted(checks),
+        "failed": dict(sorted(failed.items())),
     }
 
 
-def _failed(inference: Inference, tier: str) -> dict[str, set[str]]:
-    """Checks of a tier that found fault with the joint above each part."""
+def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
+    """Checks of a tier that found fault with the joint above each part, with the worst that they found."""
     plan = Plan(assembly=inference.assembly, config=inference.config, tree=inference.trees[0], joints=inference.joints)
     settings = load_settings()
     verdict = Simulator(plan.model, settings.geometry).judge(plan.model)
     if tier != GEOMETRY:
         verdict = dear_verdict(plan, verdict, tier=tier, settings=settings)
-    told = [item for item in verdict.findings if item.severity is not Severity.NOTE and tier_of(item.check) == tier]
     carrier = {joint.child: joint.name for joint in plan.model.joints}
-    return {part: {item.check for item in told if _blamed(item, carrier) == name} for part, name in carrier.items()}
+    failed: dict[str, dict[str, Severity]] = {name: {} for name in carrier.values()}
+    for finding in verdict.findings:
+        joint = _blamed(finding, carrier)
+        if joint not in failed or tier_of(finding.check) != tier or only_collision_meets(finding):
+            continue
+        if finding.severity is not Severity.NOTE and failed[joint].get(finding.check) is not Severity.ERROR:
+            failed[joint][finding.check] = finding.severity
+    return {part: failed[name] for part, name in carrier.items()}
 
 
 def _blamed(finding: Finding, carrier: dict[str, str]) -> str | None:
@@ -147,14 +158,17 @@ def _blamed(finding: Finding, carrier: dict[str, str]) -> str | None:
 def rates_of(records: Iterable[Record], provenance: Record) -> FailureRates:
     """Count joints and failures by class."""
     joints: dict[str, Counter[str]] = {}
-    failures: dict[str, Counter[str]] = {}
+    failures: dict[str, dict[str, Counter[str]]] = {}
     for record in records:
         joints.setdefault(record["tier"], Counter())[record["class"]] += 1
-        for check in record["failed"]:
-            failures.setdefault(check, Counter())[record["class"]] += 1
+        for check, severity in record["failed"].items():
+            failures.setdefault(check, {}).setdefault(severity, Counter())[record["class"]] += 1
     return FailureRates(
         joints={tier: dict(counts) for tier, counts in joints.items()},
-        failures={check: dict(failures[check]) for check in sorted(failures)},
+        failures={
+            check: {severity: dict(counts) for severity, counts in sorted(failures[check].items())}
+            for check in sorted(failures)
+        },
         provenance=dict.fromkeys(joints, provenance),
     )
 
@@ -177,18 +191,20 @@ def _write(rates: FailureRates, path: Path) -> None:
 
 
 def report(found: Report[Record]) -> list[str]:
-    """Rates and weights of every check."""
+    """Rates and weights of every check, errors and warnings apart."""
     rates = rates_of(found.records, {})
     wrong = [what for what in CLASSES if what != RIGHT]
     rows = [
         (
             check,
+            severity,
             *(_rate(counts.get(what, 0), rates.joints[tier_of(check)].get(what, 0)) for what in CLASSES),
-            *(f"{rates.weight(check, what):.2f}" for what in wrong),
+            *(f"{rates.weight(check, Severity(severity), what):.2f}" for what in wrong),
         )
-        for check, counts in rates.failures.items()
+        for check, by_severity in rates.failures.items()
+        for severity, counts in by_severity.items()
     ]
-    return [explained(__doc__), table(("check", *CLASSES, *(f"weight, {what}" for what in wrong)), rows)]
+    return [explained(__doc__), table(("check", "finding", *CLASSES, *(f"weight, {what}" for what in wrong)), rows)]
 
 
 def _rate(failed: int, joints: int) -> str:

@@ -6,11 +6,11 @@ pieces of cut parts are not joined. Contact strength is exp(-gap / tolerance), f
 no formula; *by area* it is the area of the contact beside the largest one. Gaps are exact, *by fields* they are the
 smallest signed distance of surface samples in the field of the other part, as the paper has it.
 
-Joints: on the true tree, DW-CAVL as printed and DW-CAVL+, in which only the quarter of the contact that the motion
-separates least counts as the contact of the joint, and the rest of it as free surface. J of the true joint stands
-beside J of the chosen one. Where a joint is wrong (type, or axis off by more than 10 deg), the *objective* is at fault
-if the true joint costs more than the chosen one, else the *pool* if no candidate of the true type lies within 10 deg,
-else the *optimiser*. Signed distances from grids unless --sdf neural is asked for.
+Joints: on the true tree, DW-CAVL as printed and DW-CAVL+, in which a sample that has left the contact by more than
+sigma_c costs no more the farther it gets, and samples of the contact count in L_coll as others do. J of the true joint
+stands beside J of the chosen one. Where a joint is wrong (type, or axis off by more than 10 deg), the *objective* is at
+fault if the true joint costs more than the chosen one, else the *pool* if no candidate of the true type lies within 10
+deg, else the *optimiser*. Signed distances from grids unless --sdf neural is asked for.
 
 Whole: tree and joints of every configuration, and without MCTS (breadth-first search) or DW-CAVL (no anchor term), as
 the paper's ablation has it. Types by the configuration's own rule, or by an oracle in place of the paper's

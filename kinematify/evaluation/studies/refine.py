@@ -7,12 +7,13 @@ candidates are those of inference, the right one among them. The other wrong joi
 choice gives them beside the candidates, with --level those of the best candidate, so that only simulation tells them
 apart. *Found*: a failure blames the joint. *Repaired*: parent, type, axis within 10 deg, line within a tenth of the
 part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is inferred anew. *Harm*:
-joints that were right and are not, or whose range overlaps the true one by .1 less. The rows *nothing* are the true
-mechanisms as they are.
+joints that were right and are not any more, or whose range overlaps the true one by .1 less. The rows *nothing* are the
+true mechanisms as they are.
 
---inferred asks what simulation can do at all about the joints that inference gets wrong, with the true tree given:
-right near-best hypotheses are simulated beside the chosen one. *In the pool*: there is one. *Told*: the simulation has
-more against the joint that was chosen than against a right one. No loop that chooses by simulation repairs more.
+--inferred asks what simulation can do about the joints that inference gets wrong, with the true tree given. The rows
+*as inferred* refine what inference chooses there, with nothing planted. Then right near-best hypotheses are simulated
+beside every joint that was chosen wrong. *In the pool*: there is one. *Told*: the simulation has more against the joint
+that was chosen than against a right one. No loop that chooses by simulation repairs more.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ SAMPLE = (
 _SECONDS = 300.0
 """For each refinement, so that no answer depends on how busy the machine is [s]."""
 _IOU_LOST = 0.1
-INFERRED = "inferred"
+AS_INFERRED, INFERRED = "as inferred", "inferred"
 
 
 class RefineOptions(Options):
@@ -95,7 +96,7 @@ def measure(options: RefineOptions, work: Work) -> Measured:
     }
     found = list(work.each(refined_faults, asked, timeout=7200.0).values())
     if options.inferred:
-        found += work.each(judged_mistakes, asked, timeout=7200.0).values()
+        found += work.each(judged_inferences, asked, timeout=7200.0).values()
     return [record for object_record in found for record in object_record["faults"]], {}
 
 
@@ -109,11 +110,17 @@ def refined_faults(asked: Planting) -> Record:
     return {"faults": [_refined(mechanism, fault, asked) for fault in planted]}
 
 
-def judged_mistakes(asked: Planting) -> Record:
-    """What simulation can tell of the joints that inference gets wrong on the true tree of one object."""
+def judged_inferences(asked: Planting) -> Record:
+    """Refine what inference chooses on the true tree of one object, and judge its mistakes by simulation."""
     mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config(asked.config))
-    rows = [] if mechanism is None else mistakes(mechanism, asked.tier)
-    return {"faults": [{"object": asked.item.name, "tier": asked.tier, "fault": INFERRED, **row} for row in rows]}
+    if mechanism is None:
+        return {"faults": []}
+    whole = Planted(fault=AS_INFERRED, part="", inference=replace(mechanism.inference, joints=mechanism.chosen))
+    judged = [
+        {"object": asked.item.name, "tier": asked.tier, "fault": INFERRED, **row}
+        for row in mistakes(mechanism, asked.tier)
+    ]
+    return {"faults": [_refined(mechanism, whole, asked), *judged]}
 
 
 def mistakes(mechanism: Mechanism, tier: str) -> list[Record]:
@@ -157,20 +164,22 @@ def _refined(mechanism: Mechanism, planted: Planted, asked: Planting) -> Record:
     refinement = refine(planted.inference, tier=asked.tier, seconds=_SECONDS)
     seconds = time.perf_counter() - start
     history, answer = refinement.history, refinement.inference
-    wrong, before, after = mechanism.wrong(answer), mechanism.scores(planted.inference), mechanism.scores(answer)
-    spoilt = (wrong - mechanism.wrong(planted.inference)) | {
-        part for part in before if part != planted.part and after[part].limit_iou < before[part].limit_iou - _IOU_LOST
-    }
+    before, after = mechanism.scores(planted.inference), mechanism.scores(answer)
+    wrong, left = mechanism.wrong(planted.inference), mechanism.wrong(answer)
+    shorter = {part for part in before if after[part].limit_iou < before[part].limit_iou - _IOU_LOST}
+    blamed = {part for part in wrong if any(item.startswith(f"{part}: ") for item in history.rounds[0].blamed)}
+    cured = {part for part in wrong if after[part].matched} if planted.fault == PARENT else wrong - left
     return {
         "object": asked.item.name,
         "tier": asked.tier,
         "fault": planted.fault,
         "part": planted.part,
         "failed": list(history.rounds[0].failed),
-        "found": any(blamed.startswith(f"{planted.part}: ") for blamed in history.rounds[0].blamed),
-        "repaired": after[planted.part].matched if planted.fault == PARENT else planted.part not in wrong,
+        "wrong": len(wrong),
+        "found": len(blamed),
+        "repaired": len(cured),
         "joints": len(before),
-        "harmed": sorted(spoilt),
+        "harmed": sorted((left | shorter) - wrong),
         "changes": [f"{item.part}: {item.what} {item.before} -> {item.after}" for item in history.changed],
         "seconds": round(seconds, 2),
         "inference_seconds": round(sum(mechanism.inference.timings.values()), 2),
@@ -194,7 +203,7 @@ def report(found: Report[Record]) -> list[str]:
     for tier, records in grouped(planted, by=itemgetter("tier")).items():
         titles = ("planted", "faults", "found", "repaired", "harm", "time")
         by_fault = grouped(records, by=itemgetter("fault"))
-        rows = [_row(fault, by_fault[fault]) for fault in (*FAULTS, NOTHING) if fault in by_fault]
+        rows = [_row(fault, by_fault[fault]) for fault in (*FAULTS, NOTHING, AS_INFERRED) if fault in by_fault]
         usual = [record for record in records if record["fault"] in FAULTS[:-1]]
         rows += [_row("**all but second best**", usual)] if usual else []
         blocks += [f"## Simulated by {tier}", table(titles, rows), "### Not repaired", _misses(records)]
@@ -206,28 +215,26 @@ def _mistake_row(tier: str, records: Sequence[Record]) -> tuple[str, ...]:
     return (
         tier,
         str(len(records)),
-        _share([row["in_pool"] for row in records]),
-        _share(found),
-        _share([row["told"] for row in records]),
+        _part_of(sum(row["in_pool"] for row in records), len(records)),
+        _part_of(sum(found), len(records)),
+        _part_of(sum(row["told"] for row in records), len(records)),
     )
 
 
 def _row(title: str, records: Sequence[Record]) -> tuple[str, ...]:
-    faults = [record for record in records if record["fault"] != NOTHING]
-    joints = sum(record["joints"] for record in records)
+    wrong, joints = (sum(record[what] for record in records) for what in ("wrong", "joints"))
     harmed = sum(len(record["harmed"]) for record in records)
     return (
         title,
-        str(len(faults)) if faults else "-",
-        _share([record["found"] for record in faults]),
-        _share([record["repaired"] for record in faults]),
-        f"{harmed} of {joints}",
+        str(wrong) if wrong else "-",
+        *(_part_of(sum(record[what] for record in records), wrong) for what in ("found", "repaired")),
+        f"{harmed} of {joints - wrong}",
         f"{median(record['seconds'] / max(record['inference_seconds'], 0.01) for record in records):.2f}",
     )
 
 
-def _share(values: Sequence[bool]) -> str:
-    return f"{sum(values)} ({sum(values) / len(values):.0%})" if values else "-"
+def _part_of(some: int, of: int) -> str:
+    return f"{some} ({some / of:.0%})" if of else "-"
 
 
 def sentence(found: Report[Record]) -> str:
@@ -240,10 +247,16 @@ def sentence(found: Report[Record]) -> str:
         second = [record["repaired"] for record in by_fault.get(SECOND, [])]
         harmed = sum(len(record["harmed"]) for record in by_fault.get(NOTHING, []))
         joints = sum(record["joints"] for record in by_fault.get(NOTHING, []))
+        own = by_fault.get(AS_INFERRED, [])
+        wrong, cured, right = (sum(record[what] for record in own) for what in ("wrong", "repaired", "joints"))
+        of_its_own = (
+            f"; of what is inferred, with the true tree given, it repairs {cured} of {wrong} wrong joints and spoils "
+            f"{sum(len(record['harmed']) for record in own)} of {right - wrong} right ones"
+        )
         parts.append(
             f"simulated by {tier} it repairs {sum(planted)} of {len(planted)} wrong joints that were planted in true "
             f"mechanisms, {sum(second)} of {len(second)} where the second-best hypothesis stands in place of the best, "
-            f"as inference errs, and spoils {harmed} of {joints} joints that were right"
+            f"as inference errs, and spoils {harmed} of {joints} joints that were right" + (of_its_own if own else "")
         )
     return f"What it is worth on everyday objects: {'; '.join(parts)} ([results/refine.md](../results/refine.md))."
 
@@ -254,7 +267,7 @@ def _misses(records: Sequence[Record]) -> str:
         f"{', '.join(record['failed']) or 'nothing'}; changed: {'; '.join(record['changes']) or 'nothing'}"
         + (f"; harm: {', '.join(record['harmed'])}" if record["harmed"] else "")
         for record in records
-        if (record["fault"] != NOTHING and not record["repaired"]) or record["harmed"]
+        if record["repaired"] < record["wrong"] or record["harmed"]
     ]
     return "\n".join(lines) or "None."
 
