@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
     Likely = Mapping[str, Sequence[FloatArray]]
 
-_SEEDS = (0, 1)
+_SEEDS, _NETWORK_SEEDS = (0, 1), (0, 1, 2)
 _LEAST = 10  # joints below which calibration says nothing
 _LEARNING = (0.25, 0.5, 1.0)
 
@@ -124,7 +124,7 @@ def fit_and_judge(
         "recipe": recipe_key(list({name for example in fitted for name in example.measured})),
         "real": sorted({example.object for example in fitted if example.origin not in GENERATED}),
     }
-    scorer = fit_scorer(fitted, seeds=_SEEDS, provenance=provenance)
+    scorer = fit_scorer(fitted, seeds=_SEEDS, network_seeds=_NETWORK_SEEDS, provenance=provenance)
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
     write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)

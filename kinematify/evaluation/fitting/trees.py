@@ -12,9 +12,11 @@ from scipy.optimize import minimize
 
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.evaluation.fitting.examples import VERDICTS, content_key
+from kinematify.evaluation.fitting.network import PARAMETERS as NETWORK_PARAMETERS
+from kinematify.evaluation.fitting.network import fit_network
 from kinematify.joints.choice.opening import side_columns
 from kinematify.joints.choice.rigid import rigid_columns
-from kinematify.joints.choice.scorer import FORMAT, SUMMARIES, Scorer, base_columns, stacked
+from kinematify.joints.choice.scorer import FORMAT, NETWORK, SUMMARIES, Scorer, base_columns, stacked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -39,7 +41,7 @@ _PARAMETERS = {
     "deterministic": True,
     "verbosity": -1,
 }
-_ROUNDS, _ROUNDS_UNTOLD = 220, 280  # those who are not told what the cues say have more to find out
+_ROUNDS = 220
 _RIGIDITY = {"learning_rate": 0.06, "min_data_in_leaf": 30, "min_sum_hessian_in_leaf": 1e-3}
 _RIGIDITY_ROUNDS = 250
 _OPENING = {"learning_rate": 0.05, "num_leaves": 5, "min_data_in_leaf": 15, "feature_fraction": 0.2}
@@ -51,11 +53,10 @@ _SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
 """Weight of an example of such an origin beside one of a real object."""
 
 
-def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
-    """Fit the scorer to examples: the average of trees of several seeds, of which half see no verdicts.
-
-    Those that see what the weighted cues say are better on furniture, those that do not on all else; together they are
-    better on both (`results/choice.md`).
+def fit_scorer(
+    examples: Sequence[Example], *, seeds: Sequence[int], network_seeds: Sequence[int], provenance: Mapping[str, Any]
+) -> Scorer:
+    """Fit the scorer to examples: trees of several seeds, and networks of several seeds.
 
     Raises:
         InputError: There is nothing to fit to.
@@ -71,17 +72,18 @@ def fit_scorer(examples: Sequence[Example], *, seeds: Sequence[int], provenance:
     columns = np.concatenate([stacked(example.kinds, example.measured, names) for example in usable])
     starts = np.cumsum([0, *(len(example.kinds) for example in usable)])
     target = np.concatenate([example.target for example in usable])
-    weights = _weights(usable)[np.repeat(np.arange(len(usable)), np.diff(starts))]
+    of_edges = _weights(usable)
+    weights = of_edges[np.repeat(np.arange(len(usable)), np.diff(starts))]
     begun = np.concatenate([base_columns(example.kinds, example.measured) for example in usable])
     base = _fit_base(begun, starts, target, weights)
-    told = [_boost(columns, begun @ base, starts, target, weights, seed=seed, rounds=_ROUNDS) for seed in seeds]
-    verdicts = {name for example in usable for name in example.groups[VERDICTS]}
-    hidden = 3 + np.array([k for k, name in enumerate(names) if name in verdicts])
-    columns[:, [*hidden, *(hidden + len(names))]] = np.nan
-    nothing = np.zeros(len(columns))
-    untold = [_boost(columns, nothing, starts, target, weights, seed=seed, rounds=_ROUNDS_UNTOLD) for seed in seeds]
+    trees = [_boost(columns, begun @ base, starts, target, weights, seed=seed) for seed in seeds]
+    of_cues = {name for example in usable for name in example.groups[VERDICTS]}
+    verdicts = np.zeros(columns.shape[1], dtype=bool)
+    hidden = 3 + np.array([k for k, name in enumerate(names) if name in of_cues])
+    verdicts[[*hidden, *(hidden + len(names))]] = True
+    network = fit_network(columns, starts, target, of_edges, verdicts, seeds=network_seeds)
     return Scorer(
-        measurements=names, base=0.5 * base, temperature=1.0, provenance=dict(provenance), **_arrays([*told, *untold])
+        measurements=names, base=base, temperature=1.0, provenance=dict(provenance), network=network, **_arrays(trees)
     )
 
 
@@ -140,7 +142,7 @@ def is_fixed(example: Example) -> bool:
 
 def recipe_key(measurements: Sequence[str]) -> str:
     """Hash of how weights are fitted: of what measurements, from which start, with which parameters."""
-    return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, _ROUNDS_UNTOLD, _SHARE)
+    return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, NETWORK_PARAMETERS, _SHARE)
 
 
 def rigidity_recipe_key(measurements: Sequence[str]) -> str:
@@ -178,6 +180,11 @@ def write_scorer(scorer: Scorer, path: Path) -> None:
         "provenance": scorer.provenance,
     }
     arrays = {name: getattr(scorer, name) for name in (*_DTYPES, "base")}
+    if scorer.network is not None:
+        scale, network = vars(scorer.network.scale), {**vars(scorer.network)}
+        del network["scale"]
+        small = {name: layer if name == "verdicts" else layer.astype(np.float16) for name, layer in network.items()}
+        arrays |= {f"{NETWORK}{name}": layer for name, layer in {**scale, **small}.items()}
     np.savez_compressed(path, facts=json.dumps(facts), **arrays)
 
 
@@ -223,7 +230,6 @@ def _boost(
     weights: FloatArray,
     *,
     seed: int,
-    rounds: int,
 ) -> Any:
     lightgbm = _lightgbm()
 
@@ -234,7 +240,7 @@ def _boost(
     data = lightgbm.Dataset(
         columns, label=target, init_score=begun, params={"max_bin": _PARAMETERS["max_bin"], "verbosity": -1}
     )
-    return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, rounds)
+    return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, _ROUNDS)
 
 
 def _lightgbm() -> Any:
@@ -257,7 +263,7 @@ _DTYPES = {
 }
 
 
-def _arrays(boosters: Sequence[Any]) -> dict[str, NDArray[Any]]:
+def _arrays(boosters: Sequence[Any]) -> dict[str, Any]:
     """Every tree as rows of nodes; the average of the boosters is the sum of trees with a share of their values."""
     trees = [
         _nodes(tree["tree_structure"], 1.0 / len(boosters))

@@ -1,21 +1,25 @@
 """The fitted choice: one score for every hypothesis of an edge, from what is measured of it.
 
-Gradient-boosted trees (Friedman 2001) that were fitted listwise: with scores s_i of the hypotheses of an edge, the
-probability of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the likelihood of the right ones. So
-type, line and confidence come out at once. Evaluated in numpy; what fitted them is not needed.
+Gradient-boosted trees (Friedman 2001) and a small network (`network.py`) that were fitted listwise: with scores s_i of
+the hypotheses of an edge, the probability of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the
+likelihood of the right ones. So type, line and confidence come out at once. Trees err where the network does not and
+the other way round; the mean of their log probabilities is what counts. Evaluated in numpy; what fitted them is not
+needed.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.special import log_softmax, softmax
 
 from kinematify.errors import EnvironmentFault
+from kinematify.joints.choice.network import Network, Scale
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:
@@ -28,8 +32,10 @@ if TYPE_CHECKING:
 WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
 OPENING_WEIGHTS = "opening.npz"
+NETWORK = "network_"
+"""Before the names of its arrays in a file of weights."""
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
-FORMAT = 1
+FORMAT = 2
 """Raised where the meaning of the file changes."""
 
 SUMMARIES = (
@@ -72,6 +78,8 @@ class Scorer:
     temperature: float
     """Scores are divided by it, so that probabilities hold on what was left out."""
     provenance: Mapping[str, Any]
+    network: Network | None = None
+    """Asked beside the trees which hypothesis is right; without it, trees answer alone."""
 
     def probabilities(self, kinds: IntArray, measured: Mapping[str, FloatArray]) -> FloatArray:
         """How likely each hypothesis of an edge is the right one.
@@ -84,9 +92,10 @@ class Scorer:
             Shape (h,), sum 1.
         """
         columns = stacked(kinds, measured, self.measurements)
-        scores = (base_columns(kinds, measured) @ self.base + self.sums(columns)) / self.temperature
-        likely = np.exp(scores - scores.max())
-        return np.asarray(likely / likely.sum())
+        logs = log_softmax((base_columns(kinds, measured) @ self.base + self.sums(columns)) / self.temperature)
+        if self.network is not None:
+            logs = 0.5 * (logs + self.network.log_probabilities(columns))
+        return np.asarray(softmax(logs))
 
     def sums(self, columns: NDArray[Any]) -> FloatArray:
         """What the trees say of each row of columns (n, f), shape (n,)."""
@@ -174,6 +183,7 @@ def _shipped(name: str, of: str) -> Scorer:
         with path.open("rb") as file, np.load(file) as stored:
             facts = json.loads(str(stored["facts"]))
             arrays = {key: stored[key] for key in _ARRAYS}
+            network = _network(stored)
     except (OSError, ValueError, KeyError) as error:
         raise EnvironmentFault(f"The weights of {of} ({name}) cannot be read. {remedy}") from error
     if facts.get("format") != FORMAT:
@@ -185,5 +195,16 @@ def _shipped(name: str, of: str) -> Scorer:
         measurements=tuple(facts["measurements"]),
         temperature=float(facts["temperature"]),
         provenance=facts["provenance"],
+        network=network,
         **arrays,
     )
+
+
+def _network(stored: Mapping[str, NDArray[Any]]) -> Network | None:
+    """The network of a file of weights, if there is one."""
+    arrays = {key.removeprefix(NETWORK): stored[key] for key in stored if key.startswith(NETWORK)}
+    if not arrays:
+        return None
+    scale = Scale(**{field.name: arrays.pop(field.name) for field in fields(Scale)})
+    layers: dict[str, Any] = {name: layer.astype(np.float32) for name, layer in arrays.items() if name != "verdicts"}
+    return Network(scale=scale, verdicts=arrays["verdicts"], **layers)
