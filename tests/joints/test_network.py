@@ -1,0 +1,65 @@
+"""The network of the choice: what it reads, and that arrays say what the fitted layers said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.evaluation.fitting.network import fit_network, scale_of
+from kinematify.joints.choice.network import Network
+
+EDGES, HYPOTHESES, COLUMNS = 800, 5, 4
+
+
+def edges_where_the_largest_is_right() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Columns, of which the second tells the right hypothesis by its rank among its rivals; starts; target."""
+    rng = np.random.default_rng(0)
+    columns = rng.normal(size=(EDGES * HYPOTHESES, COLUMNS)).astype(np.float32)
+    columns[:, 1] += np.repeat(rng.normal(scale=3.0, size=EDGES), HYPOTHESES)  # alone, its value says little
+    columns[rng.random(len(columns)) < 0.2, 2] = np.nan
+    starts = np.arange(0, len(columns) + 1, HYPOTHESES)
+    best = columns[:, 1].reshape(EDGES, HYPOTHESES).argmax(axis=1)
+    target = np.zeros(len(columns))
+    target[starts[:-1] + best] = 1.0
+    return columns, starts, target
+
+
+def fitted(columns: np.ndarray, starts: np.ndarray, target: np.ndarray) -> Network:
+    """One network that may see everything."""
+    return fit_network(columns, starts, target, np.ones(EDGES), np.zeros(COLUMNS, dtype=bool), seeds=(0,))
+
+
+def test_it_learns_what_only_the_rivals_tell() -> None:
+    columns, starts, target = edges_where_the_largest_is_right()
+    network = fitted(columns, starts, target)
+    right = [
+        np.argmax(network.log_probabilities(columns[a:b])) == np.argmax(target[a:b])
+        for a, b in zip(starts[:-1], starts[1:], strict=True)
+    ]
+    assert np.mean(right) > 0.6, "by chance 0.2"
+
+
+def test_probabilities_sum_to_one_and_follow_the_hypotheses_in_any_order() -> None:
+    columns, starts, target = edges_where_the_largest_is_right()
+    network = fitted(columns, starts, target)
+    logs = network.log_probabilities(columns[:HYPOTHESES])
+    assert np.exp(logs).sum() == pytest.approx(1.0)
+    order = np.array([3, 1, 4, 0, 2])
+    np.testing.assert_allclose(network.log_probabilities(columns[:HYPOTHESES][order]), logs[order])
+
+
+def test_what_is_missing_stands_in_the_middle_and_is_told() -> None:
+    columns = np.array([[0.0, np.nan], [1.0, 5.0], [2.0, 6.0], [4.0, 8.0]], dtype=np.float32)
+    scale = scale_of(columns)
+    inputs = scale.inputs(columns)
+    np.testing.assert_array_equal(scale.missing, [1])
+    assert inputs[0, 1] == 0.0
+    np.testing.assert_array_equal(inputs[:, 2], [1.0, 0.0, 0.0, 0.0])
+    assert (np.diff(inputs[:, 0]) > 0.0).all()
+    np.testing.assert_allclose(inputs[[0, -1], 0], [-1.0, 1.0])
+
+
+def test_what_never_varies_is_not_read() -> None:
+    columns = np.column_stack([np.full(9, 7.0), np.arange(9.0)]).astype(np.float32)
+    beyond = np.array([[1e9, 100.0]], dtype=np.float32)
+    np.testing.assert_allclose(scale_of(columns).inputs(beyond), [[0.0, 1.0]])
