@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -32,10 +34,7 @@ def fitted(columns: np.ndarray, starts: np.ndarray, target: np.ndarray) -> Netwo
 def test_it_learns_what_only_the_rivals_tell() -> None:
     columns, starts, target = edges_where_the_largest_is_right()
     network = fitted(columns, starts, target)
-    right = [
-        np.argmax(network.log_probabilities(columns[a:b])) == np.argmax(target[a:b])
-        for a, b in zip(starts[:-1], starts[1:], strict=True)
-    ]
+    right = [np.argmax(network.log_probabilities(columns[a:b])) == np.argmax(target[a:b]) for a, b in pairwise(starts)]
     assert np.mean(right) > 0.6, "by chance 0.2"
 
 

@@ -34,10 +34,13 @@ if TYPE_CHECKING:
     from kinematify.joints.measure.scene import JointScene
     from kinematify.robot.arrays import FloatArray, IntArray
 
+CUES = "cues"
+"""Group of what was measured for the weighted cues (`judge.cues_of`)."""
 VERDICTS = "verdicts"
 """Group of what the weighted cues say (`judge.verdicts_of`)."""
 
 _ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
+_WHOLE_TURN = 2.0 * np.pi - 0.1  # [rad]
 _DISTANCE = 0.05  # of the child's diagonal, the same for a line
 
 
@@ -75,6 +78,8 @@ class Example:
     sides: Mapping[str, FloatArray] = field(default_factory=dict)
     """What is measured towards either side of the true turn (`measure_sides`), the one that opens first, shape (2,)
     each; empty where the joint slides, goes both ways or is a link in series."""
+    goes_round: bool | None = None
+    """The true joint turns by a whole turn or without end; None where it does not turn."""
 
     @property
     def kinds(self) -> IntArray:
@@ -135,7 +140,7 @@ def examples_of(
         rows = np.arange(len(hypotheses))
         right, angles, same = (np.array([item[k] for item in judged])[best, rows] for k in range(3))
         groups = measure_groups(weighed.scene, hypotheses)
-        groups |= {"cues": cues_of(weighed), VERDICTS: verdicts_of(weighed)}
+        groups |= {CUES: cues_of(weighed), VERDICTS: verdicts_of(weighed)}
         slides = weighed.decision.kind is JointType.PRISMATIC
         stuck = weighed.decision.kind is JointType.FIXED
         found.append(
@@ -156,6 +161,7 @@ def examples_of(
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
                 sides={} if broken else _sides(weighed.scene, joints[0]),
+                goes_round=_goes_round(joints[0]),
             )
         )
     return found
@@ -167,6 +173,11 @@ def _sides(scene: JointScene, joint: TrueJoint) -> Values:
     if opens == 0 or joint.kind is not JointType.REVOLUTE or scene.serial:
         return {}
     return measure_sides(scene, opens * joint.axis, joint.pivot)
+
+
+def _goes_round(joint: TrueJoint) -> bool | None:
+    """See `Example.goes_round`."""
+    return joint.upper - joint.lower > _WHOLE_TURN if joint.kind.turns else None
 
 
 def _rightness(
@@ -212,6 +223,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
                 "size": example.size,
                 "groups": example.groups,
                 "alike": example.alike,
+                "goes_round": example.goes_round,
                 "sources": example.hypotheses.sources,
                 "names": names,
                 "side_names": sorted(example.sides),

@@ -12,7 +12,16 @@ import numpy as np
 from kinematify.config import load_config
 from kinematify.evaluation.fitting.categories import category_of
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
-from kinematify.evaluation.fitting.trees import fit_opening, fit_rigidity, fit_scorer, is_fixed, rigidity_odds
+from kinematify.evaluation.fitting.trees import (
+    fit_opening,
+    fit_rigidity,
+    fit_scorer,
+    fit_turning,
+    is_fixed,
+    rigidity_odds,
+    turns_known,
+    turns_of,
+)
 from kinematify.joints.choice.judge import Judgement, lead_of
 from kinematify.joints.choice.opening import opening_odds
 from kinematify.joints.choice.twins import agreed
@@ -154,6 +163,40 @@ def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]
             right[k] = opening_odds(scorer, turning[k].sides) > 0.0
     return {
         name: OpeningRow(turns=len(index), right=float(right[index].mean())) for name, index in sets_of(turning).items()
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurningRow:
+    """How well it is told which turns of a set go round, left out by category."""
+
+    rounds: int
+    found: float | None
+    """Share of those that go round which are taken for such."""
+    stopped: int
+    lost: float | None
+    """Share of the others that are taken to go round."""
+
+
+def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]:
+    """What goes round, by trees whose fit had nothing of the category; by set. Links in series are told otherwise."""
+    turning = [example for example in examples if turns_known(example)]
+    taken = np.zeros(len(turning), dtype=bool)
+    folds = np.array(folds_of(turning, category_of))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(turning, folds, strict=True) if example.fits and at != fold]
+        scorer = fit_turning(fitted, seeds=(0,), provenance={})
+        judged = np.flatnonzero(folds == fold)
+        taken[judged] = scorer.sums(turns_of([turning[k] for k in judged], scorer.measurements)) > 0.0
+    rounds = np.array([bool(example.goes_round) for example in turning])
+    return {
+        name: TurningRow(
+            rounds=int(rounds[index].sum()),
+            found=_share(taken[index][rounds[index]]),
+            stopped=int((~rounds[index]).sum()),
+            lost=_share(taken[index][~rounds[index]]),
+        )
+        for name, index in sets_of(turning).items()
     }
 
 

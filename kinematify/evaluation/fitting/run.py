@@ -29,6 +29,7 @@ from kinematify.evaluation.fitting.judged import (
     judge_left_out,
     judge_opening_left_out,
     judge_rigidity_left_out,
+    judge_turning_left_out,
     picked,
     row_of,
     sets_of,
@@ -39,14 +40,17 @@ from kinematify.evaluation.fitting.trees import (
     fit_opening,
     fit_rigidity,
     fit_scorer,
+    fit_turning,
     is_fixed,
     opening_recipe_key,
     recipe_key,
     rigidity_recipe_key,
+    turning_recipe_key,
+    turns_known,
     write_scorer,
 )
 from kinematify.evaluation.record import table
-from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, WEIGHTS
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -129,6 +133,7 @@ def fit_and_judge(
     write_scorer(scorer, out / WEIGHTS)
     write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
     write_scorer(_opening(examples, provenance), out / OPENING_WEIGHTS)
+    write_scorer(_turning(examples, provenance), out / TURNING_WEIGHTS)
     likely = {"left out by category": judge_left_out(examples, category_of, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
@@ -141,6 +146,7 @@ def fit_and_judge(
         "calibration": _calibration(examples, likely["left out by category"]),
         "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
         "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
+        "turning": {name: asdict(row) for name, row in judge_turning_left_out(examples).items()},
     }
     if ablation:
         report |= _ablation(examples, progress)
@@ -167,6 +173,14 @@ def _opening(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scor
     names = list({name for example in fitted for name in example.sides})
     facts = {"joints": len(fitted), "recipe": opening_recipe_key(names)}
     return fit_opening(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
+
+
+def _turning(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
+    """What tells which turns go round, fitted to all that may enter weights."""
+    fitted = [example for example in examples if example.fits and turns_known(example)]
+    scorer = fit_turning(fitted, seeds=_SEEDS, provenance={})
+    facts = {"joints": len(fitted), "recipe": turning_recipe_key(scorer.measurements)}
+    return replace(scorer, provenance={**provenance, **facts})
 
 
 def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
@@ -283,6 +297,14 @@ def as_markdown(report: dict[str, Any]) -> str:
         titles = ("set", "turns that open one way", "right, left out by category")
         rows_of_sets = [(name, f"{row['turns']}", f"{row['right']:.1%}") for name, row in opening.items()]
         blocks += ["Which way a turn opens, of the true line:", table(titles, rows_of_sets)]
+    turning = report["turning"]
+    if turning:
+        columns = ("set", "go round", "found", "turn between stops", "taken to go round")
+        counted = [
+            (name, f"{row['rounds']}", _percent(row["found"]), f"{row['stopped']}", _percent(row["lost"]))
+            for name, row in turning.items()
+        ]
+        blocks += ["Which turns go round, of the true line, left out by category:", table(columns, counted)]
     for key, title in (
         (
             "ablation",

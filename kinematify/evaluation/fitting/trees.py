@@ -11,12 +11,13 @@ import numpy as np
 from scipy.optimize import minimize
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.evaluation.fitting.examples import VERDICTS, content_key
+from kinematify.evaluation.fitting.examples import CUES, VERDICTS, content_key
 from kinematify.evaluation.fitting.network import PARAMETERS as NETWORK_PARAMETERS
 from kinematify.evaluation.fitting.network import fit_network
 from kinematify.joints.choice.opening import side_columns
 from kinematify.joints.choice.rigid import rigid_columns
 from kinematify.joints.choice.scorer import FORMAT, NETWORK, SUMMARIES, Scorer, base_columns, stacked
+from kinematify.joints.choice.turning import turning_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,6 +48,9 @@ _RIGIDITY_ROUNDS = 250
 _OPENING = {"learning_rate": 0.05, "num_leaves": 5, "min_data_in_leaf": 15, "feature_fraction": 0.2}
 _OPENING |= {"min_sum_hessian_in_leaf": 1e-3}
 _OPENING_ROUNDS = 150
+_TURNING = {"learning_rate": 0.05, "min_data_in_leaf": 20, "feature_fraction": 0.15, "min_sum_hessian_in_leaf": 1e-3}
+_TURNING_ROUNDS = 120
+_PROPOSED = 0.2  # how right the best hypothesis must be, for its measurements to be those of the true joint
 _FIXED_SHARE = 0.5
 """Weight of all fixed parts together beside all others."""
 _SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
@@ -135,6 +139,46 @@ def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     )
 
 
+def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
+    """Fit whether a turn goes round, to examples that turn; trees of several seeds are averaged.
+
+    Raises:
+        EnvironmentFault: LightGBM is not installed.
+    """
+    names = turning_names(examples)
+    columns = turns_of(examples, names)
+    rounds = np.array([example.goes_round for example in examples], dtype=np.float64)
+    weights = _weights(examples)
+    lightgbm = _lightgbm()
+    boosters = [
+        lightgbm.train(
+            {**_PARAMETERS, **_TURNING, "objective": "binary", "seed": seed},
+            lightgbm.Dataset(columns, rounds, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
+            _TURNING_ROUNDS,
+        )
+        for seed in seeds
+    ]
+    return Scorer(
+        measurements=names, base=np.zeros(3), temperature=1.0, provenance=dict(provenance), **_arrays(boosters)
+    )
+
+
+def turning_names(examples: Sequence[Example]) -> tuple[str, ...]:
+    """Measurements of one hypothesis by itself: all but cues."""
+    groups = {group for example in examples for group in example.groups} - {CUES, VERDICTS}
+    return tuple(sorted({name for example in examples for group in groups for name in example.groups.get(group, ())}))
+
+
+def turns_of(examples: Sequence[Example], names: Sequence[str]) -> NDArray[Any]:
+    """What is measured of the hypothesis that fits each true turn best, shape (n, f)."""
+    return np.stack([turning_columns(example.measured, int(np.argmax(example.right)), names) for example in examples])
+
+
+def turns_known(example: Example) -> bool:
+    """The joint turns, and its line was proposed."""
+    return example.goes_round is not None and example.right.max() >= _PROPOSED
+
+
 def is_fixed(example: Example) -> bool:
     """The true joint is none."""
     return bool(example.right[0] > 0.5)
@@ -153,6 +197,11 @@ def rigidity_recipe_key(measurements: Sequence[str]) -> str:
 def opening_recipe_key(measurements: Sequence[str]) -> str:
     """The same of the weights of which way a turn opens."""
     return content_key(sorted(measurements), FORMAT, _PARAMETERS, _OPENING, _OPENING_ROUNDS, _SHARE)
+
+
+def turning_recipe_key(measurements: Sequence[str]) -> str:
+    """The same of the weights of what goes round."""
+    return content_key(sorted(measurements), FORMAT, _PARAMETERS, _TURNING, _TURNING_ROUNDS, _SHARE)
 
 
 def rigidity_odds(scorer: Scorer, examples: Sequence[Example]) -> FloatArray:

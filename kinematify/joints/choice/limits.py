@@ -13,6 +13,7 @@ import numpy as np
 
 from kinematify.joints.choice.joint_range import Range
 from kinematify.joints.choice.opening import turn_sign
+from kinematify.joints.choice.turning import goes_round
 from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.closing import closing_turns
 from kinematify.joints.measure.opening_direction import clockwise_sign, neutral_sign, swing_sign
@@ -46,7 +47,7 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
 
 def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
     free = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
-    if free.min() >= np.pi and _turns_freely(scene, axis, pivot, config):
+    if goes_round(scene, axis, pivot):
         return Range(
             kind=JointType.CONTINUOUS,
             sign=clockwise_sign(scene, axis),
@@ -168,17 +169,7 @@ def _panel_range(
     return _range(sign, lower, min(forward, np.radians(limits.panel_deg)), free, config)
 
 
-# ---- knobs and levers ----------------------------------------------------------------------------------------------
-
-
-def _turns_freely(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> bool:
-    """A knob, wheel or turntable: a bearing through the part, or a round part, whose mass is even about the axis."""
-    disc = scene.disc > 0.5 and abs(float(axis @ scene.frame.axes[scene.frame.thin])) > 0.99
-    link = scene.serial and scene.smallness < 1.0 and not scene.rolls
-    if not (scene.has_bearing or disc) or link:
-        return False
-    anchor = scene.contact.centroid if scene.has_bearing else pivot
-    return eccentricity(scene, axis, anchor) < config.limits.even
+# ---- levers ----------------------------------------------------------------------------------------------
 
 
 def _is_lever(scene: JointScene, axis: FloatArray, config: JointsConfig) -> bool:

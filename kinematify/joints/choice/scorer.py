@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
 OPENING_WEIGHTS = "opening.npz"
+TURNING_WEIGHTS = "turning.npz"
 NETWORK = "network_"
 """Before the names of its arrays in a file of weights."""
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
@@ -174,6 +175,16 @@ def shipped_opening() -> Scorer:
         EnvironmentFault: Its file is missing, damaged or of another version.
     """
     return _shipped(OPENING_WEIGHTS, "the opening direction")
+
+
+@cache
+def shipped_turning() -> Scorer:
+    """The scorer of whether a turn goes round that comes with the package.
+
+    Raises:
+        EnvironmentFault: Its file is missing, damaged or of another version.
+    """
+    return _shipped(TURNING_WEIGHTS, "what goes round")
 
 
 def _shipped(name: str, of: str) -> Scorer:
