@@ -1,0 +1,46 @@
+"""What goes round and round, and what turns between stops, as the fitted trees say it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.evaluation.fitting.trees import turning_recipe_key
+from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.joints.choice.scorer import shipped_turning
+from kinematify.joints.choice.turning import goes_round, turning_columns
+from tests.joints.joint_scenes import scene_of
+from tests.known import known_object, turning
+
+Y, Z = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
+
+
+def wheel(gap: float):
+    """A wheel with its axle in a block; its tyre stands in the mudguard by as much as the gap is negative [m]."""
+    block = box((-0.3, -0.1, 0.0), (0.3, 0.1, 0.2)) - cylinder(0.0101, (0, 0.0, 0.05), (0, 0.2, 0.05))
+    guard = box((-0.12, 0.1, 0.05 + 0.1 + gap), (0.12, 0.16, 0.2))
+    tyre = cylinder(0.1, (0, 0.11, 0.05), (0, 0.15, 0.05)) + cylinder(0.01, (0, 0.01, 0.05), (0, 0.12, 0.05))
+    joint = turning("body", "wheel", Y, (0.0, 0.13, 0.05), (-np.inf, np.inf))
+    return scene_of(known_object("cart", {"body": block + guard, "wheel": tyre}, joint), "wheel")
+
+
+@pytest.mark.parametrize("gap", [0.01, -0.002])
+def test_a_wheel_goes_round_even_where_its_tyre_stands_in_the_mudguard(gap: float) -> None:
+    assert goes_round(wheel(gap), Y, np.array([0.0, 0.13, 0.05]))
+
+
+def test_a_door_does_not() -> None:
+    shell = box((0, 0, 0), (0.6, 0.5, 0.8)) - box((0.02, -1, 0.02), (0.58, 0.48, 0.78))
+    joint = turning("shell", "door", -Z, (0.0, -0.01, 0.4), (0.0, 1.6))
+    known = known_object("cabinet", {"shell": shell, "door": box((0, -0.021, 0), (0.6, -0.001, 0.8))}, joint)
+    assert not goes_round(scene_of(known, "door"), -Z, np.array([0.0, -0.01, 0.4]))
+
+
+def test_what_is_not_finite_never_reaches_the_trees() -> None:
+    columns = turning_columns({"a": np.array([0.0, np.inf]), "b": np.array([0.0, 2.0])}, 1, ("a", "b", "absent"))
+    np.testing.assert_array_equal(columns, np.array([np.nan, 2.0, np.nan], dtype=np.float32))
+
+
+def test_the_weights_are_of_the_recipe() -> None:
+    shipped = shipped_turning()
+    assert shipped.provenance["recipe"] == turning_recipe_key(shipped.measurements)
