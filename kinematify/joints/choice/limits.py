@@ -47,7 +47,7 @@ def find_range(scene: JointScene, kind: JointType, axis: FloatArray, pivot: Floa
 
 def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: JointsConfig) -> Range:
     free = _free_turn(scene, axis, pivot, (scene.parent, *scene.others), config)
-    if goes_round(scene, axis, pivot):
+    if goes_round(scene, axis, pivot, free):
         return Range(
             kind=JointType.CONTINUOUS,
             sign=clockwise_sign(scene, axis),

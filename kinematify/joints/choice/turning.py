@@ -22,19 +22,24 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> bool:
+_STOPPED = 1.0  # log odds beyond which what meets something on its way, as a tyre its mudguard, goes round
+
+
+def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
     """Whether a turn has no end: wheels, knobs and propellers, but not links in series, of which each has its stops.
 
     Args:
         scene: The pair.
         axis: Unit direction, shape (3,).
         pivot: Point on the line [m], shape (3,).
+        free: Free angle towards + and - [rad], shape (2,).
     """
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     turn = Hypotheses(kinds=np.array([TURN]), axes=axis[None], pivots=pivot[None], sources=("chosen",))
     scorer = shipped_turning()
-    return bool(scorer.sums(turning_columns(measure(scene, turn), 0, scorer.measurements)[None])[0] > 0.0)
+    odds = scorer.sums(turning_columns(measure(scene, turn), 0, scorer.measurements)[None])[0] / scorer.temperature
+    return bool(odds > (0.0 if free.min() >= np.pi else _STOPPED))
 
 
 def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
