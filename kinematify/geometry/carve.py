@@ -20,7 +20,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.geometry.convex import ConvexPiece
 from kinematify.geometry.hull import convex_hull
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
     BoolArray = NDArray[np.bool_]
-    FreeRange = Callable[[int, int, int], tuple[float, float]]
-    """Values of a sweep between which two bodies may be kept apart [rad or m]: sweep, body, body."""
+    FreeEnd = Callable[[int, int, int, float], float]
+    """Value up to which two bodies may be kept apart on one side of a sweep [rad or m]: sweep, body, body, its sign."""
 
 _SAME = 1e-4
 """A point lies on two pieces if they are equally near to it, but for this share of the body's size."""
@@ -120,7 +120,8 @@ class _Polytope:
         normals = crossed(b - a, c - a)
         areas = lengths_of(normals)
         normals = normals[areas > 0.0] / areas[areas > 0.0, None]
-        _, first = np.unique(np.round(normals * 500.0).astype(np.int64), axis=0, return_index=True)
+        x, y, z = np.round(normals.T * 500.0).astype(np.int64) + 500
+        _, first = np.unique((x << 20) + (y << 10) + z, return_index=True)
         distinct = normals[np.sort(first)]
         return distinct, (distinct @ self.vertices.T).max(axis=1)
 
@@ -147,13 +148,13 @@ class _Polytope:
             return self
         marks = self.marks[self.marks @ normal >= offset]
         faces = self.piece.faces
-        edges = np.unique(
-            np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0
-        )
-        start, end = heights[edges[:, 0]], heights[edges[:, 1]]
-        crossing = start * end < 0.0
-        share = (start[crossing] / (start[crossing] - end[crossing]))[:, None]
-        first, second = self.vertices[edges[crossing, 0]], self.vertices[edges[crossing, 1]]
+        following = faces[:, [1, 2, 0]]
+        crossing = heights[faces] * heights[following] < 0.0
+        ends = np.stack([faces[crossing], following[crossing]])
+        edges = np.unique(ends.min(axis=0) * len(self.vertices) + ends.max(axis=0))  # two faces share each
+        one, other = np.divmod(edges, len(self.vertices))
+        share = (heights[one] / (heights[one] - heights[other]))[:, None]
+        first, second = self.vertices[one], self.vertices[other]
         points = np.concatenate([self.vertices[heights >= 0.0], first + share * (second - first)])
         try:
             vertices, faces = convex_hull(points)
@@ -179,7 +180,7 @@ def carved(
     bodies: Sequence[Sequence[ConvexPiece]],
     surfaces: Sequence[FloatArray],
     sweeps: Sequence[Sweep],
-    free_range: FreeRange,
+    free_end: FreeEnd,
     *,
     clearance: float,
     thinnest: float,
@@ -191,8 +192,8 @@ def carved(
         bodies: Convex pieces of every body, world frame at rest.
         surfaces: Points on the surface of every body, shape (n, 3) each, spread evenly.
         sweeps: One per joint that moves.
-        free_range: Where the bodies themselves do not block each other; asked only for those whose pieces meet. What
-            lies beyond is left as it is: carving there would hide that the motion is not possible.
+        free_end: Where the bodies themselves begin to block each other, infinite where they never do; asked only where
+            pieces meet. What lies beyond is left as it is: carving there would hide that the motion is not possible.
         clearance: Distance that is kept between what moves and what does not [m].
         thinnest: What would be left thinner than this is dropped [m].
         most: Pieces of a body at most; those are dropped that stand for least of its surface.
@@ -206,7 +207,7 @@ def carved(
     ]
     jams: list[tuple[int, int, int]] = []
     for number, sweep in enumerate(sweeps):
-        free = partial(free_range, number)
+        free = partial(free_end, number)
         clearing = _Clearing(alive, volumes, extents, sweep, free, clearance=clearance, thinnest=thinnest)
         jams += [(number, one, other) for one, other in clearing.run()]
     for group, volume, surface in zip(alive, volumes, surfaces, strict=True):
@@ -241,14 +242,14 @@ class _Clearing:
         volumes: Sequence[float],
         extents: Sequence[float],
         sweep: Sweep,
-        free_range: Callable[[int, int], tuple[float, float]],
+        free_end: Callable[[int, int, float], float],
         *,
         clearance: float,
         thinnest: float,
     ) -> None:
         """Keep the pieces of all bodies, which are cut in place, and volumes and extents of bodies."""
         self._alive, self._volumes, self._extents, self._thinnest = alive, volumes, extents, thinnest
-        self._free_range, self._clearance = cache(free_range), clearance
+        self._free_end, self._clearance = cache(free_end), clearance
         self._moving = [item for body in sorted(sweep.moved) for item in alive[body]]
         self._resting = [item for body, group in enumerate(alive) if body not in sweep.moved for item in group]
         self._path = _Path(sweep, self._moving, clearance)
@@ -271,7 +272,7 @@ class _Clearing:
     def _meets(self, moving: _Polytope, resting: _Polytope, clearance: float) -> IntArray:
         """Steps in which two pieces come nearer than the clearance although their bodies are free to move there."""
         steps = self._path.meets(moving, resting, clearance)
-        return self._path.within(steps, *self._free_range(moving.body, resting.body)) if len(steps) else steps
+        return self._path.within(steps, partial(self._free_end, moving.body, resting.body))
 
     def _separated(self, moving: _Polytope, resting: _Polytope, steps: IntArray) -> bool:
         """Cut the piece that loses less of its body; False if either body would have nothing left."""
@@ -363,37 +364,48 @@ class _Path:
         self._arc = 1.0 - np.cos(0.5 * np.diff(self._values).max()) if sweep.turns else 0.0
         self._across = np.concatenate([np.eye(3), sweep.axis[None], -np.eye(3), -sweep.axis[None]])
         self._tracks: dict[tuple[_Polytope, bool], FloatArray] = {}
+        self._boxed: dict[_Polytope, tuple[FloatArray, FloatArray]] = {}
 
     def near(self, moving: Sequence[_Polytope], resting: Sequence[_Polytope]) -> list[tuple[_Polytope, _Polytope]]:
         """Pairs whose boxes meet in some step, those of the first pieces last."""
-        rest_low = np.array([item.low for item in resting]).reshape(-1, 1, 3) - self._clearance
-        rest_high = np.array([item.high for item in resting]).reshape(-1, 1, 3) + self._clearance
-        found = []
-        for item in moving:
-            low, high = self._boxes(item)
-            apart = np.any((low > rest_high) | (high < rest_low), axis=2)
-            found += [(item, other) for other, always in zip(resting, np.all(apart, axis=1), strict=True) if not always]
+        found = [(item, other) for item in moving for other in resting if self._box_steps(item, other).any()]
         return found[::-1]
+
+    def _box_steps(self, moving: _Polytope, resting: _Polytope) -> BoolArray:
+        """Whether the boxes of two pieces come nearer than the clearance, for every step, shape (n,)."""
+        low, high = self._boxes(moving)
+        return all_three((low <= resting.high + self._clearance) & (high >= resting.low - self._clearance))
 
     def _boxes(self, piece: _Polytope) -> tuple[FloatArray, FloatArray]:
         """Lower and upper corners of boxes around what moves, for every step, shape (n, 3) each; arcs included."""
-        track, rise = self._track(piece, backwards=False), self._rise(piece)
-        low, high = track.min(axis=1), track.max(axis=1)
-        return np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
+        if piece not in self._boxed:
+            track, rise = self._track(piece, backwards=False), self._rise(piece)
+            low, high = track.min(axis=1), track.max(axis=1)
+            self._boxed[piece] = np.minimum(low[:-1], low[1:]) - rise, np.maximum(high[:-1], high[1:]) + rise
+        return self._boxed[piece]
 
-    def within(self, steps: IntArray, lower: float, upper: float) -> IntArray:
-        """Those of some steps that lie within a range of values [rad or m], or begin there; rest always does."""
+    def within(self, steps: IntArray, free_end: Callable[[float], float]) -> IntArray:
+        """Those of some steps that lie before the free ends [rad or m], or begin there; rest always does."""
         start, end = self._values[steps], self._values[steps + 1]
         begun = _BEGUN * (end - start)
-        return np.asarray(steps[((end - begun >= lower) & (start + begun <= upper)) | (start == end)])
+        inside = start == end
+        for sign, nearer in ((-1.0, end - begun), (1.0, start + begun)):
+            beside = sign * nearer > 0.0
+            if beside.any():
+                inside |= beside & (sign * nearer <= sign * free_end(sign))
+        return np.asarray(steps[inside])
 
     def meets(self, moving: _Polytope, resting: _Polytope, clearance: float) -> IntArray:
-        """Steps in which no plane keeps two pieces apart by the clearance."""
+        """Steps in which no plane keeps two pieces apart by a clearance that is at most that of the sweep."""
+        near = np.flatnonzero(self._box_steps(moving, resting))
+        if not len(near):
+            return near
+        ends = slice(near[0], near[-1] + 2)
         apart = np.maximum(
-            self._beyond(resting, moving, backwards=False) - self._rise(moving),
-            self._beyond(moving, resting, backwards=True) - self._rise(resting),
+            self._beyond(resting, moving, ends, backwards=False) - self._rise(moving),
+            self._beyond(moving, resting, ends, backwards=True) - self._rise(resting),
         )
-        return np.flatnonzero(apart < clearance)
+        return np.asarray(near[0] + np.flatnonzero(apart < clearance))
 
     def best_plane(
         self, piece: _Polytope, obstacle: _Polytope, steps: IntArray, clearance: float, *, backwards: bool
@@ -420,12 +432,12 @@ class _Path:
         turns = self._rotations[np.union1d(some, some + 1)]
         return np.asarray(np.einsum("nji,pj->npi" if backwards else "nij,pj->npi", turns, own).reshape(-1, 3))
 
-    def _beyond(self, still: _Polytope, passing: _Polytope, *, backwards: bool) -> FloatArray:
-        """How far beyond the best plane of `still` the other one is in each step [m], shape (n,)."""
+    def _beyond(self, still: _Polytope, passing: _Polytope, ends: slice, *, backwards: bool) -> FloatArray:
+        """How far beyond the best plane of `still` the other one is in each step between some ends [m], shape (n,)."""
         normals, offsets = still.planes
         normals = np.concatenate([normals, self._across])
         offsets = np.concatenate([offsets, (self._across @ still.vertices.T).max(axis=1)])
-        heights = (self._track(passing, backwards=backwards) @ normals.T).min(axis=1) - offsets
+        heights = (self._track(passing, backwards=backwards)[ends] @ normals.T).min(axis=1) - offsets
         return np.asarray(np.minimum(heights[:-1], heights[1:]).max(axis=1))
 
     def _track(self, piece: _Polytope, *, backwards: bool) -> FloatArray:

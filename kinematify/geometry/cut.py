@@ -14,10 +14,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import fast_simplification
-import igl
 import numpy as np
 
 from kinematify.geometry.convex import ConvexPiece, convex_piece, outermost, surface_points
+from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.robot.vectors import crossed, lengths_of
 from kinematify.robot.weld import snapped
 
@@ -69,10 +69,8 @@ class Surface:
         self.faces = np.ascontiguousarray(faces)
 
     @cached_property
-    def _tree(self) -> igl.AABB:
-        tree = igl.AABB()
-        tree.init(self.vertices, self.faces)
-        return tree
+    def _tree(self) -> DistanceTree:
+        return DistanceTree(self.vertices, self.faces)
 
     @cached_property
     def closed(self) -> bool:
@@ -86,10 +84,8 @@ class Surface:
         return bool(np.linalg.norm(areas.sum(axis=0)) <= _HOLES * lengths_of(areas).sum())
 
     @cached_property
-    def _winding(self) -> igl.FastWindingNumberBVH:
-        tree = igl.FastWindingNumberBVH()
-        tree.init(self.vertices, self.faces)
-        return tree
+    def _winding(self) -> WindingTree:
+        return WindingTree(self.vertices, self.faces)
 
     def gap(self, piece: ConvexPiece, tolerance: float) -> float:
         """How far a piece reaches beyond the surface at most [m]; what lies inside it does not count."""
@@ -97,12 +93,11 @@ class Surface:
 
     def gaps(self, piece: ConvexPiece, tolerance: float) -> FloatArray:
         """Distances of points on a piece from the surface [m], 0 inside it; `tolerance` is near enough to be on it."""
-        points = np.ascontiguousarray(surface_points(piece.vertices, piece.faces, _PROBES))
-        squared, _, _ = self._tree.squared_distance(self.vertices, self.faces, points)
-        distances = np.sqrt(np.maximum(squared, 0.0))
+        points = surface_points(piece.vertices, piece.faces, _PROBES)
+        distances = self._tree.distances(points)
         far = distances > tolerance
         if self.closed and far.any():
-            winding = self._winding.winding_number(points[far])
+            winding = self._winding.numbers(points[far])
             distances[far] = np.where(np.abs(winding) > 0.5, 0.0, distances[far])
         return np.asarray(distances)
 
@@ -125,9 +120,9 @@ class Surface:
         """True if some triangle (n, 3, 3) is far from the surface, or none is left: simplification closes pots."""
         if not len(triangles):
             return True
-        middles = np.ascontiguousarray(triangles.mean(axis=1), dtype=np.float64)
-        squared, _, _ = self._tree.squared_distance(self.vertices, self.faces, middles)
-        return float(squared.max()) > (_STRAY * float(np.linalg.norm(np.ptp(self.vertices, axis=0)))) ** 2
+        middles = np.asarray(triangles.mean(axis=1), dtype=np.float64)
+        size = float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+        return float(self._tree.distances(middles).max()) > _STRAY * size
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

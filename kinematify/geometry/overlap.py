@@ -8,8 +8,7 @@ import fcl
 import numpy as np
 
 from kinematify.geometry.scene import inverse, transformed
-from kinematify.geometry.solid import all_three
-from kinematify.robot.vectors import lengths_of
+from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -92,8 +92,7 @@ def curve_order(corners: FloatArray, areas: FloatArray) -> IntArray:
     lower, upper = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     # Rounding decides the cell; the half cell keeps symmetric parts away from its edge.
     cells = ((centres - lower) / (upper - lower).max() * (2**_MORTON_BITS - 2) + 0.5).astype(np.int64)
-    code = _every_third_bit(cells) @ np.array([1, 2, 4])
-    return np.lexsort((areas, code))
+    return np.lexsort((areas, morton_codes(cells)))
 
 
 def place_samples(
@@ -115,6 +114,11 @@ def place_samples(
     faces = _systematic_faces(areas, order, count, shift[0])
     square = (np.arange(1, count + 1)[:, None] * _KRONECKER + shift[1:]) % 1.0
     return faces, _unturned(_barycentric(square), corners[faces])
+
+
+def morton_codes(cells: IntArray) -> IntArray:
+    """Places of cells (n, 3) of 20 bits along a Morton curve, shape (n,)."""
+    return np.asarray(_every_third_bit(cells) @ np.array([1, 2, 4]))
 
 
 def _every_third_bit(cells: IntArray) -> IntArray:

@@ -6,18 +6,17 @@ that of sampled points of one body below the surface of the other one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import fcl
-import igl
 import numpy as np
 
+from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.rays import RayScene
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.geometry.shells import shells_of
-from kinematify.robot.vectors import crossed, highest, lengths_of, lowest
+from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -110,7 +109,7 @@ class Solid:
         inside = first & second
         doubtful = np.flatnonzero(first ^ second)
         if len(doubtful):
-            inside[doubtful] = np.abs(self._winding.winding_number(np.ascontiguousarray(local[doubtful]))) > 0.5
+            inside[doubtful] = np.abs(self._winding.numbers(local[doubtful])) > 0.5
         return inside
 
     def _meets_from_behind(self, local: FloatArray, along: FloatArray) -> BoolArray:
@@ -155,21 +154,19 @@ class Solid:
         return found
 
     def _local(self, points: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(points - self.middle)
+        return points - self.middle
 
     @cached_property
-    def _winding(self) -> igl.FastWindingNumberBVH:
-        tree = igl.FastWindingNumberBVH()
-        tree.init(self._closed.vertices, self._closed.faces)
-        return tree
+    def _winding(self) -> WindingTree:
+        return WindingTree(self._closed.vertices, self._closed.faces)
 
     @cached_property
-    def _closed(self) -> _Nearest:
-        return _Nearest.of(self._local(self.shells.vertices), self.shells.closed)
+    def _closed(self) -> DistanceTree:
+        return DistanceTree(self._local(self.shells.vertices), self.shells.closed)
 
     @cached_property
-    def _sheets(self) -> _Nearest:
-        return _Nearest.of(self._local(self.shells.vertices), self.shells.sheets)
+    def _sheets(self) -> DistanceTree:
+        return DistanceTree(self._local(self.shells.vertices), self.shells.sheets)
 
     @cached_property
     def _closed_rays(self) -> RayScene:
@@ -187,31 +184,6 @@ class Solid:
         low, high = np.sort(sides, axis=1).T
         _, name, uses = np.unique(low * len(self.shells.vertices) + high, return_inverse=True, return_counts=True)
         return np.asarray((uses[name.reshape(-1)] == 1).reshape(3, -1).T)
-
-
-@dataclass(frozen=True, eq=False)
-class _Nearest:
-    """Tree over some of the triangles."""
-
-    tree: igl.AABB
-    vertices: FloatArray
-    faces: IntArray
-
-    @classmethod
-    def of(cls, vertices: FloatArray, faces: IntArray) -> _Nearest:
-        tree, faces = igl.AABB(), np.ascontiguousarray(faces)
-        tree.init(vertices, faces)
-        return cls(tree, vertices, faces)
-
-    def nearest(self, points: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
-        """Distance (n,), face (n,) and place on it (n, 3)."""
-        squares, face, foot = self.tree.squared_distance(self.vertices, self.faces, points)
-        return np.sqrt(np.maximum(squares, 0.0)), face, foot
-
-
-def all_three(flags: BoolArray) -> BoolArray:
-    """True where all of x, y and z are, (n, 3) -> (n,); several times as fast as `all` along so short an axis."""
-    return np.asarray(flags[:, 0] & flags[:, 1] & flags[:, 2])
 
 
 def _at_edges(corners: FloatArray, foot: FloatArray) -> BoolArray:

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import fcl
-import igl
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
@@ -28,6 +27,7 @@ from kinematify.geometry.denoise import (
 )
 from kinematify.geometry.directions import main_directions
 from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.geometry.mesh_trees import DistanceTree
 from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -247,19 +247,16 @@ class PartSurface:
 
     def distance(self, points: FloatArray) -> FloatArray:
         """Exact unsigned distance from `points` (n, 3) to the surface [m], shape (n,)."""
-        tree, origin, vertices, faces = self._distance_tree
-        squared, _, _ = tree.squared_distance(vertices, faces, np.ascontiguousarray(points - origin))
-        return np.asarray(np.sqrt(np.maximum(squared, 0.0)))
+        return self._distance_tree.distances(points - self._middle)
 
     @cached_property
-    def _distance_tree(self) -> tuple[igl.AABB, FloatArray, FloatArray, IntArray]:
-        """Tree over the triangles, centred: far from the origin, squares would eat the digits."""
+    def _middle(self) -> FloatArray:
+        return np.asarray(self.part.bounds.mean(axis=0))
+
+    @cached_property
+    def _distance_tree(self) -> DistanceTree:
         vertices, faces = self.welded
-        origin = self.part.bounds.mean(axis=0)
-        centred, faces = np.ascontiguousarray(vertices - origin), np.ascontiguousarray(faces)
-        tree = igl.AABB()
-        tree.init(centred, faces)
-        return tree, origin, centred, faces
+        return DistanceTree(vertices - self._middle, faces)
 
     @cached_property
     def corner_normals(self) -> FloatArray:

@@ -131,7 +131,7 @@ def fit_collision(
         bodies,
         [_marks(link, poses[link.name]) for link in robot.links],
         _sweeps(robot, poses, config),
-        exact.free_range,
+        exact.free_end,
         clearance=clearance,
         thinnest=config.thinnest_share * clearance,
         most=config.most_carved,
@@ -212,30 +212,28 @@ class _ExactSweeps:
         self._sweeper = Sweeper.of(self._scene)
         self._body_of = {name: index for index, body in enumerate(self._scene.bodies) for name in body.links}
         self._leader_of = {travel.joint: index for index, travel in enumerate(self._scene.travels)}
-        self._asked: dict[tuple[int, int, int], tuple[float, float]] = {}
+        self._asked: dict[tuple[int, int, int, float], float] = {}
         self.blocked: list[Blocked] = []
 
-    def free_range(self, sweep: int, first: int, second: int) -> tuple[float, float]:
-        """Range around rest in which a joint does not bring two links into each other [rad or m]."""
+    def free_end(self, sweep: int, first: int, second: int, sign: float) -> float:
+        """Value from rest up to which a joint does not bring two links into each other on one side [rad or m]."""
         joint = self._joints[sweep].name
         a, b = sorted(self._body_of[self._robot.links[link].name] for link in (first, second))
         if joint not in self._leader_of:  # followers are swept for the clearance alone: they never move by themselves
-            return -np.inf, np.inf
-        leader = self._leader_of[joint]
-        key = (leader, a, b)
+            return sign * np.inf
+        key = (self._leader_of[joint], a, b, sign)
         if key not in self._asked:
-            self._asked[key] = self._range(leader, (a, b))
+            self._asked[key] = self._end(*key)
         return self._asked[key]
 
-    def _range(self, leader: int, pair: tuple[int, int]) -> tuple[float, float]:
-        travel, ends = self._scene.travels[leader], [-np.inf, np.inf]
-        for side, sign in enumerate((-1.0, 1.0)):
-            meeting = self._sweeper.meeting(leader, pair, sign)
-            if meeting is not None and meeting.depth > self._forced:
-                ends[side] = meeting.first - travel.rest
-                links = self._scene.name(pair)
-                self.blocked.append(Blocked(joint=travel.joint, links=links, at=meeting.first, depth=meeting.depth))
-        return ends[0], ends[1]
+    def _end(self, leader: int, first: int, second: int, sign: float) -> float:
+        meeting = self._sweeper.meeting(leader, (first, second), sign)
+        if meeting is None or meeting.depth <= self._forced:
+            return sign * np.inf
+        travel = self._scene.travels[leader]
+        links = self._scene.name((first, second))
+        self.blocked.append(Blocked(joint=travel.joint, links=links, at=meeting.first, depth=meeting.depth))
+        return meeting.first - travel.rest
 
 
 def _moving(robot: Robot) -> list[Joint]:

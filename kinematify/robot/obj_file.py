@@ -181,8 +181,10 @@ def _read_faces(text: str, content: _Content) -> None:
     content.faces.setdefault(content.label, []).append(block.reshape(-1, 3))
     if content.appearance:
         content.used.setdefault(content.label, []).append(content.material)
-        places = [corner for line in _lines(text) for corner in _places_of_fan(line, len(content.uv))]
-        content.places.setdefault(content.label, []).append(np.array(places, dtype=np.int64).reshape(-1, 3))
+        places = np.full(block.size, -1)
+        if "/" in text:
+            places = np.array([corner for line in _lines(text) for corner in _places_of_fan(line, len(content.uv))])
+        content.places.setdefault(content.label, []).append(places.astype(np.int64).reshape(-1, 3))
 
 
 def _places_of_fan(line: str, count: int) -> list[tuple[int, int, int]]:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kinematify.robot.arrays import FloatArray
 
 
@@ -40,3 +42,8 @@ def lowest(points: FloatArray) -> FloatArray:
 def highest(points: FloatArray) -> FloatArray:
     """Largest x, y and z as ``points.max(axis=0)``, (n, 3) -> (3,), n > 0."""
     return np.asarray(np.ascontiguousarray(points.T).max(axis=1))
+
+
+def all_three(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """True where x, y and z are, as ``flags.all(axis=1)``, (n, 3) -> (n,)."""
+    return np.asarray(flags[:, 0] & flags[:, 1] & flags[:, 2])

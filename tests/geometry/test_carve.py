@@ -42,15 +42,15 @@ def turn(moved: int, pivot: tuple[float, float, float], lower: float, upper: flo
     return Sweep(moved=frozenset({moved}), turns=True, axis=axis, pivot=np.array(pivot), lower=lower, upper=upper)
 
 
-def everywhere(sweep: int, first: int, second: int) -> tuple[float, float]:
-    return -math.inf, math.inf
+def everywhere(sweep: int, first: int, second: int, sign: float) -> float:
+    return sign * math.inf
 
 
-def freed(bodies: Sequence[Sequence[ConvexPiece]], sweep: Sweep, free_range=everywhere, most: int = 64) -> Carved:
+def freed(bodies: Sequence[Sequence[ConvexPiece]], sweep: Sweep, free_end=everywhere, most: int = 64) -> Carved:
     surfaces = [
         np.concatenate([surface_points(piece.vertices, piece.faces, 500) for piece in pieces]) for pieces in bodies
     ]
-    return carved(bodies, surfaces, [sweep], free_range, clearance=CLEARANCE, thinnest=0.2 * CLEARANCE, most=most)
+    return carved(bodies, surfaces, [sweep], free_end, clearance=CLEARANCE, thinnest=0.2 * CLEARANCE, most=most)
 
 
 def convex(piece: ConvexPiece) -> coal.ConvexBase:
@@ -125,9 +125,25 @@ def test_a_drawer_in_a_block_keeps_its_box() -> None:
 def test_what_is_blocked_is_not_carved() -> None:
     bodies, _ = SCENES["a drawer flush between boards"]
     sideways = slide(1, (1.0, 0.0, 0.0), 0.3)
-    result = freed(bodies, sideways, lambda sweep, first, second: (-math.inf, 0.0))
+    result = freed(bodies, sideways, lambda sweep, first, second, sign: min(sign * math.inf, 0.0))
     assert max(result.lost) < 0.2
     assert nearest(result, sideways) < -0.05
+
+
+def test_the_bodies_are_asked_only_on_the_side_where_pieces_meet() -> None:
+    asked: list[float] = []
+
+    def free_end(sweep: int, first: int, second: int, sign: float) -> float:
+        asked.append(sign)
+        return sign * math.inf
+
+    post, arm = rod(0.02, 0.3), rod(0.02, 0.3)
+    beside = ConvexPiece(vertices=arm.vertices + np.array([0.1, 0.0, 0.0]), faces=arm.faces)
+    sweep = Sweep(
+        moved=frozenset({1}), turns=False, axis=np.array([-1.0, 0.0, 0.0]), pivot=np.zeros(3), lower=-0.1, upper=0.1
+    )
+    freed([[post], [beside]], sweep, free_end)
+    assert asked == [1.0]
 
 
 def test_a_body_inside_another_one_keeps_a_piece() -> None:

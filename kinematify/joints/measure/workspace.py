@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import igl
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
+from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
 from kinematify.joints.hypotheses.frames import body_axes
+from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.sampling import SurfaceSamples
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
 
@@ -105,11 +106,11 @@ class PartCache:
         fractions = np.full(len(origins), np.inf)
         lower, upper = self.assembly.parts[part].bounds
         ends = origins + steps
-        near = np.all((np.minimum(origins, ends) <= upper) & (np.maximum(origins, ends) >= lower), axis=1)
+        near = all_three((np.minimum(origins, ends) <= upper) & (np.maximum(origins, ends) >= lower))
         index = np.flatnonzero(near)
         if len(index) == 0:
             return fractions
-        lengths = np.linalg.norm(steps[index], axis=1)
+        lengths = lengths_of(steps[index])
         index, lengths = index[lengths > 0], lengths[lengths > 0]
         directions = (steps[index] / lengths[:, None]).astype(np.float32)
         reach = lengths.astype(np.float32)
@@ -122,9 +123,7 @@ class PartCache:
 
     def distances(self, part: int, points: FloatArray) -> FloatArray:
         """Exact unsigned distance [m] from points (n, 3) in the world frame to the surface of a part, shape (n,)."""
-        tree, vertices, faces = self._tree(part)
-        squared = tree.squared_distance(vertices, faces, np.ascontiguousarray(points))[0]
-        return np.asarray(np.sqrt(np.maximum(squared, 0.0)))
+        return self._tree(part).distances(points)
 
     def closest(self, part: int, points: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Nearest place on the surface of a part.
@@ -138,20 +137,20 @@ class PartCache:
         """
         if len(points) == 0:
             return np.empty(0), np.empty((0, 3)), np.empty((0, 3))
-        tree, vertices, faces = self._tree(part)
-        squared, index, closest = tree.squared_distance(vertices, faces, np.ascontiguousarray(points))
-        corners = vertices[faces[index]]
+        tree = self._tree(part)
+        distances, index, closest = tree.nearest(points)
+        corners = tree.vertices[tree.faces[index]]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
-        return np.sqrt(np.maximum(squared, 0.0)), np.asarray(closest), normals
+        return distances, closest, normals
 
     def inside(self, part: int, points: FloatArray) -> BoolArray:
         """Whether points (n, 3) in the world frame lie inside the solid of a part, by winding number, shape (n,)."""
         lower, upper = self.assembly.parts[part].bounds
-        result = np.all((points > lower) & (points < upper), axis=1)
+        result = all_three((points > lower) & (points < upper))
         near = np.flatnonzero(result)
         for accuracy, clear in _WINDING if len(near) else ():
-            off = np.abs(self._solid(part).winding_number(points[near], accuracy)) - 0.5
+            off = np.abs(self._solid(part).numbers(points[near], accuracy)) - 0.5
             result[near] = off > 0.0
             near = near[np.abs(off) < clear]
         return np.asarray(result)
@@ -193,24 +192,14 @@ class PartCache:
 
         return self._once("scene", part, build)
 
-    def _tree(self, part: int) -> tuple[igl.AABB, FloatArray, IntArray]:
-        def build() -> tuple[igl.AABB, FloatArray, IntArray]:
-            mesh = self.assembly.parts[part]
-            tree = igl.AABB()
-            tree.init(mesh.vertices, mesh.faces)
-            return tree, mesh.vertices, mesh.faces
-
-        found: tuple[igl.AABB, FloatArray, IntArray] = self._once("tree", part, build)
+    def _tree(self, part: int) -> DistanceTree:
+        mesh = self.assembly.parts[part]
+        found: DistanceTree = self._once("tree", part, lambda: DistanceTree(mesh.vertices, mesh.faces))
         return found
 
-    def _solid(self, part: int) -> igl.FastWindingNumberBVH:
-        def build() -> igl.FastWindingNumberBVH:
-            mesh = self.assembly.parts[part]
-            solid = igl.FastWindingNumberBVH()
-            solid.init(mesh.vertices, mesh.faces)
-            return solid
-
-        found: igl.FastWindingNumberBVH = self._once("solid", part, build)
+    def _solid(self, part: int) -> WindingTree:
+        mesh = self.assembly.parts[part]
+        found: WindingTree = self._once("solid", part, lambda: WindingTree(mesh.vertices, mesh.faces))
         return found
 
     def _once(self, kind: str, part: int, build: Callable[[], Any]) -> Any:
