@@ -16,7 +16,7 @@ import numpy as np
 from kinematify.config.validation import load_settings
 from kinematify.envs.articulated_object import loadable
 from kinematify.envs.settings import load_settings as load_env_settings
-from kinematify.envs.verdict import content_digest, keep, kept
+from kinematify.envs.verdict import content_digest, keep, kept, tell
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.kinematics import Arm
@@ -124,6 +124,7 @@ def robot_plan(articulated_object: ArticulatedObject, joint: str, robot: EnvRobo
     ).hexdigest()
     known = kept("plans", digest)
     if known is None:
+        tell(f"planning how the robot opens {joint} of {articulated_object.source}; it takes seconds, once")
         known = _planned(articulated_object, joint, robot)
         keep("plans", digest, known)
     facts: dict[str, Any] = {

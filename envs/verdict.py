@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import multiprocessing
 import subprocess
 import sys
 from contextlib import suppress
@@ -67,6 +68,13 @@ def kept(folder: str, digest: str) -> dict[str, object] | None:
     return None
 
 
+def tell(text: str) -> None:
+    """Write a line of progress before what takes seconds; workers of AsyncVectorEnv leave it to their parent."""
+    if multiprocessing.parent_process() is None:
+        sys.stderr.write(f"kinematify: {text}\n")
+        sys.stderr.flush()
+
+
 def keep(folder: str, digest: str, facts: dict[str, object]) -> None:
     """Keep facts for later runs; a full or read-only disk costs time only."""
     place = cache_folder().parent / folder
@@ -85,6 +93,7 @@ def _verdict(articulated_object: ArticulatedObject, engine: str) -> tuple[str, l
     digest = hashlib.sha256(f"{content_digest(articulated_object)} {engine}".encode()).hexdigest()
     known = kept("verdicts", digest)
     if known is None:
+        tell(f"validating {articulated_object.source} in {engine}; it takes seconds, once for a model")
         known = _validated(articulated_object.urdf, engine)
         keep("verdicts", digest, known)
     errors = known["errors"]

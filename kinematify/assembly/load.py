@@ -24,8 +24,11 @@ from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.assembly.part import Assembly
     from kinematify.config import AssemblyConfig
+    from kinematify.robot.arrays import FloatArray
 
 _TO_Z_UP = {
     "x": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
@@ -45,6 +48,10 @@ _STATED_UP = {"X_UP": "x", "Y_UP": "y"}
 """What a COLLADA file says -> a key of `_TO_Z_UP`."""
 _GUESSES = (("millimetres", 1e-3), ("centimetres", 1e-2), ("metres, and were divided by a thousand", 1e3))
 """What lengths may be in that cannot be metres, the likeliest first, and metres per unit."""
+_ON_GROUND, _BELOW_GROUND = 0.005, 0.1
+"""Of the object's diagonal: what is nearer lies on the ground, what is lower is under it."""
+_STANDS, _LIES = 0.5, 0.1
+"""Shares of a footprint with which an object stands for certain, and hardly can."""
 _UNITS = {"millimeter": 1e-3, "micron": 1e-6, "centimeter": 1e-2, "inch": 0.0254, "foot": 0.3048}
 
 
@@ -55,6 +62,8 @@ class _Given:
     meshes: tuple[RawMesh, ...]
     """One per part, in the frame and unit of the file but z up."""
     warnings: tuple[str, ...] = ()
+    up_by_standard: bool = False
+    """y was taken for up because glTF says so, and nobody else did."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,6 +112,8 @@ def load_assembly(
     stated = _unit_warnings(given.meshes) if scale == 1.0 else ()
     assembly = assemble(scaled, source=str(path), config=config, warnings=(*given.warnings, *stated))
     doubts = () if stated else _size_warnings(assembly, scale, config)
+    if given.up_by_standard:
+        doubts += _up_warnings(assembly)
     return replace(assembly, warnings=(*assembly.warnings, *doubts))
 
 
@@ -158,7 +169,8 @@ def _folder(folder: Path, reading: _Reading) -> _Given:
         )
     ignored = [entry.name for entry in visible if entry not in files and _is_noticed(entry)]
     warnings = (f"Not read, because they are no mesh files: {', '.join(ignored[:20])}.",) if ignored else ()
-    return _Given(meshes=tuple(_whole_file(file, reading) for file in files), warnings=warnings)
+    meshes = tuple(_whole_file(file, reading) for file in files)
+    return _Given(meshes=meshes, warnings=warnings, up_by_standard=_up_by_standard(files, reading))
 
 
 def _instead(entries: list[Path]) -> str:
@@ -223,9 +235,11 @@ def _single_file(path: Path, reading: _Reading) -> _Given:
     if reading.labels is not None:
         return _Given(meshes=labelled_parts(merged(meshes, path.stem), reading.labels))
     if len(meshes) > 1:
-        return _Given(meshes=tuple(mesh if mesh.name else replace(mesh, name=path.stem) for mesh in meshes))
-    check_finite(meshes[0], str(path))
-    return _Given(meshes=connected_pieces(meshes[0], reading.config.weld))
+        meshes = tuple(mesh if mesh.name else replace(mesh, name=path.stem) for mesh in meshes)
+    else:
+        check_finite(meshes[0], str(path))
+        meshes = connected_pieces(meshes[0], reading.config.weld)
+    return _Given(meshes=meshes, up_by_standard=_up_by_standard([path], reading))
 
 
 def _read(path: Path, reading: _Reading, *, empty_ok: bool) -> tuple[RawMesh, ...]:
@@ -272,6 +286,33 @@ def _size_warnings(assembly: Assembly, scale: float, config: AssemblyConfig) -> 
     said = f"The object is {length_text(size)} long with {scale:g} m to the unit, which is unusual. "
     guess = f"If its lengths are in {unit}, it is {length_text(size * factor)} long: give --scale {scale * factor:g}."
     return (said + guess,)
+
+
+def _up_by_standard(files: Sequence[Path], reading: _Reading) -> bool:
+    return reading.up == "auto" and any(file.suffix.lower() in GLTF_SUFFIXES for file in files)
+
+
+def _up_warnings(assembly: Assembly) -> tuple[str, ...]:
+    """Tell of an object that was turned from y up to z up, and that looks as if z had been up before."""
+    points = np.concatenate([part.vertices[np.unique(part.faces)] for part in assembly.parts])
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float(np.linalg.norm(high - low))
+    # The file's z is -y now, and its y is z.
+    if abs(high[1]) < _ON_GROUND * size and low[2] < -_BELOW_GROUND * size:
+        looks = "it stands on z = 0 and reaches below y = 0"
+    elif _foot(points, 1, high[1]) > _STANDS and _foot(points, 2, low[2]) < _LIES:
+        looks = "it has a broad foot at its lowest z, and next to none at its lowest y"
+    else:
+        return ()
+    return (f"The file was read with y up, as glTF has it, but {looks}. If it lies on its back, give --up z.",)
+
+
+def _foot(points: FloatArray, axis: int, end: float) -> float:
+    """Share of the object's extent across an axis that what lies at one end of it spans."""
+    extent = np.ptp(points, axis=0)
+    across = [other for other in range(3) if other != axis]
+    at_end = points[np.abs(points[:, axis] - end) < _ON_GROUND * float(np.linalg.norm(extent))]
+    return float(np.prod(np.ptp(at_end[:, across], axis=0) / np.maximum(extent[across], 1e-300)))
 
 
 def _metres(unit: str) -> str:

@@ -6,7 +6,7 @@ import io
 import logging
 import warnings
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from lxml import etree
@@ -186,9 +186,13 @@ def _read_scene(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
     suffix = path.suffix.lower()
     # Without `process` no vertex is merged, so that faces keep their order and labels per face stay valid.
     scene = trimesh.load_scene(path, file_type=suffix[1:], process=False, skip_materials=not appearance)
-    if suffix == ".dae" and not scene.geometry:
-        # What is bound to a material that the file does not hold is dropped with it.
-        scene = trimesh.load_scene(_without_materials(path), file_type="dae", process=False, skip_materials=True)
+    if suffix == ".dae":
+        content = io.BytesIO(path.read_bytes())
+        if not scene.geometry:
+            # What is bound to a material that the file does not hold is dropped with it.
+            content = _without_materials(path)
+            scene = trimesh.load_scene(content, file_type="dae", process=False, skip_materials=True)
+        return _collada_meshes(scene, path, content, trimesh.Trimesh, appearance=appearance)
     meshes = tuple(_scene_meshes(scene, path, trimesh.Trimesh, appearance=appearance))
     if suffix == ".stl" and not meshes and not _is_empty_stl(path):
         raise ValueError("it is neither a binary STL of the length that it states nor a complete ASCII one")
@@ -211,7 +215,6 @@ def _is_empty_stl(path: Path) -> bool:
 def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh], *, appearance: bool) -> Iterator[RawMesh]:
     suffix = path.suffix.lower()
     looks = _scene_appearances(scene, path) if appearance else {}
-    unit, up = _collada_asset(path) if suffix == ".dae" else (1.0, "")
     for node in scene.graph.nodes_geometry:
         transform, key = scene.graph[node]
         geometry = scene.geometry[key]
@@ -220,10 +223,8 @@ def _scene_meshes(scene: Scene, path: Path, kind: type[Trimesh], *, appearance: 
         vertices = np.asarray(geometry.vertices, dtype=np.float64)
         faces = np.asarray(geometry.faces, dtype=np.int64)
         stated = str(geometry.metadata.get("units", "")) if suffix == ".3mf" else ""
-        mesh = RawMesh(
-            name=str(node), vertices=vertices, faces=faces, unit=stated, up=up, appearance=looks.get(str(key))
-        )
-        yield _placed(mesh, transform, unit)
+        mesh = RawMesh(name=str(node), vertices=vertices, faces=faces, unit=stated, appearance=looks.get(str(key)))
+        yield _placed(mesh, transform)
 
 
 def _scene_appearances(scene: Scene, path: Path) -> dict[str, Appearance | None]:
@@ -239,26 +240,65 @@ def _scene_appearances(scene: Scene, path: Path) -> dict[str, Appearance | None]
     return {key: painted(item) if stated else None for key, (item, stated) in zip(scene.geometry, colors, strict=True)}
 
 
-def _placed(mesh: RawMesh, transform: FloatArray, unit: float = 1.0) -> RawMesh:
-    """Apply the transform of a node, shape (4, 4), then a change of unit; mirroring would turn a mesh inside out."""
-    if unit == 1.0 and np.array_equal(transform, np.eye(4)):
+def _placed(mesh: RawMesh, transform: FloatArray) -> RawMesh:
+    """Apply the transform of a node, shape (4, 4); mirroring would turn a mesh inside out."""
+    if np.array_equal(transform, np.eye(4)):
         return mesh  # formats without nodes can hold millions of vertices: no copy
-    moved = mesh.moved(transform[:3, :3], transform[:3, 3]).moved(unit * np.eye(3))
+    moved = mesh.moved(transform[:3, :3], transform[:3, 3])
     if np.linalg.det(transform[:3, :3]) >= 0:
         return moved
     appearance = None if mesh.appearance is None else mesh.appearance.mirrored()
     return replace(moved, faces=mesh.faces[:, [0, 2, 1]], appearance=appearance)
 
 
-def _collada_asset(path: Path) -> tuple[float, str]:
-    """Metres per unit and the axis that points up as stated in the asset element; 1 and empty where it is silent."""
+def _collada_meshes(
+    scene: Scene, path: Path, content: io.BytesIO, kind: type[Trimesh], *, appearance: bool
+) -> tuple[RawMesh, ...]:
+    """One mesh per node with its name, in metres; up as stated in the asset element, empty where it is silent."""
     from collada import Collada, DaeError  # noqa: PLC0415  # only COLLADA files need it
 
-    with path.open("rb") as file:
-        stated = Collada(file, ignore=[DaeError]).assetInfo
-    return 1.0 if stated.unitmeter is None else float(
-        stated.unitmeter
-    ), stated.upaxis if stated.upaxis in TO_Z_UP else ""
+    content.seek(0)
+    document = Collada(content, ignore=[DaeError])
+    stated = document.assetInfo
+    unit = 1.0 if stated.unitmeter is None else float(stated.unitmeter)
+    up = stated.upaxis if stated.upaxis in TO_Z_UP else ""
+    # The scene has a geometry of a name of its own for every piece, in the order of the document.
+    nodes = document.scene.nodes if document.scene else ()
+    holders = [holder for node in nodes for holder in _collada_holders(node, _Holder(""))]
+    known = len(holders) == len(scene.geometry)
+    holder_of = dict(zip(scene.geometry, holders, strict=True)) if known else {}
+    pieces: dict[object, list[RawMesh]] = {}
+    for mesh in _scene_meshes(scene, path, kind, appearance=appearance):
+        pieces.setdefault(holder_of.get(mesh.name, mesh.name), []).append(mesh)
+    whole = (merged(tuple(items), str(holder)) for holder, items in pieces.items())
+    return tuple(replace(mesh, up=up).moved(unit * np.eye(3)) for mesh in whole)
+
+
+@dataclass(frozen=True, eq=False)
+class _Holder:
+    """A node of a COLLADA document where it stands: what is instanced twice has two."""
+
+    name: str
+
+    def __str__(self) -> str:
+        return self.name
+
+
+def _collada_holders(node: Any, holder: _Holder) -> Iterator[_Holder]:
+    """The nodes that hold the pieces of triangles below a node, one per piece, as trimesh goes through them."""
+    from collada.polylist import Polylist  # noqa: PLC0415
+    from collada.scene import GeometryNode, Node  # noqa: PLC0415
+    from collada.triangleset import TriangleSet  # noqa: PLC0415
+
+    if isinstance(node, GeometryNode):
+        for piece in node.geometry.primitives:
+            triangles = piece.triangleset() if isinstance(piece, Polylist) else piece
+            if isinstance(triangles, TriangleSet) and triangles.vertex is not None:
+                yield holder
+    elif isinstance(node, Node):
+        own = _Holder(node.xmlnode.get("name") or node.id or "")
+        for child in node.children or ():
+            yield from _collada_holders(child, own)
 
 
 _READERS = {

@@ -99,6 +99,33 @@ def test_up_axis_and_scale_can_be_given(tmp_path: Path) -> None:
     np.testing.assert_allclose(load(folder).parts[0].bounds, [[0, 0, 0], [1, 2, 3]], atol=1e-6)
 
 
+def cabinet(z: float, front: float) -> trimesh.Scene:
+    """Two bodies and a handle in front of them, z up, on the height `z`, the front at y = `front`."""
+    made = trimesh.Scene()
+    made.add_geometry(trimesh.creation.box(bounds=[[0, front, z], [1, front + 0.5, z + 0.8]]), node_name="body")
+    made.add_geometry(trimesh.creation.box(bounds=[[1, front, z], [2, front + 0.5, z + 0.8]]), node_name="door")
+    knob = [[1.4, front - 0.03, z + 0.3], [1.44, front, z + 0.34]]
+    made.add_geometry(trimesh.creation.box(bounds=knob), node_name="knob")
+    return made
+
+
+@pytest.mark.parametrize(
+    ("z", "front", "words"), [(0.0, -0.25, "stands on z = 0"), (-0.4, -0.25, "broad foot"), (0.7, 0.2, "broad foot")]
+)
+def test_a_gltf_file_that_looks_z_up_is_told_with_the_remedy(
+    z: float, front: float, words: str, tmp_path: Path
+) -> None:
+    made = cabinet(z, front)
+    made.export(tmp_path / "a.glb")
+    (warning,) = load(tmp_path / "a.glb").warnings
+    assert words in warning
+    assert "--up z" in warning
+    assert load(tmp_path / "a.glb", up="z").warnings == ()
+    made.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, (1, 0, 0)))
+    made.export(tmp_path / "b.glb")
+    assert load(tmp_path / "b.glb").warnings == (), "with y up, as the standard says"
+
+
 def test_turning_upright_keeps_handedness(tmp_path: Path) -> None:
     scene().export(tmp_path / "a.glb")
     part = load(tmp_path / "a.glb").parts[0]
@@ -174,8 +201,13 @@ def test_obj_polygons_and_indices_that_count_back(tmp_path: Path) -> None:
 def test_collada_nodes_are_parts_and_its_up_axis_and_unit_are_heeded(tmp_path: Path) -> None:
     corners = box().vertices.reshape(-1).tolist()
     faces = box().faces.reshape(-1).tolist()
+    pieces = "".join(
+        '<triangles count="6"><input semantic="VERTEX" source="#v" offset="0"/>'
+        f"<p>{' '.join(map(str, half))}</p></triangles>"
+        for half in (faces[:18], faces[18:])
+    )
     nodes = "".join(
-        f'<node id="{name}" name="{name}"><translate>{2 * k} 0 0</translate><instance_geometry url="#box"/></node>'
+        f'<node id="ID{k}" name="{name}"><translate>{2 * k} 0 0</translate><instance_geometry url="#box"/></node>'
         for k, name in enumerate(("body", "door"))
     )
     (tmp_path / "a.dae").write_text(
@@ -185,13 +217,13 @@ def test_collada_nodes_are_parts_and_its_up_axis_and_unit_are_heeded(tmp_path: P
         f'<accessor source="#a" count="{len(corners) // 3}" stride="3"><param name="X" type="float"/>'
         '<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>'
         '<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>'
-        f'<triangles count="{len(faces) // 3}"><input semantic="VERTEX" source="#v" offset="0"/>'
-        f"<p>{' '.join(map(str, faces))}</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+        f"{pieces}</mesh></geometry></library_geometries><library_visual_scenes>"
         f'<visual_scene id="s">{nodes}</visual_scene></library_visual_scenes><scene>'
         '<instance_visual_scene url="#s"/></scene></COLLADA>'
     )
     loaded = load(tmp_path / "a.dae")
-    assert len(loaded.parts) == 2
+    assert loaded.names == ("body", "door"), "a node of two materials is one part"
+    assert [len(part.faces) for part in loaded.parts] == [12, 12]
     assert np.allclose(loaded.parts[0].bounds, [[0.0, -0.03, 0.0], [0.01, 0.0, 0.02]]), "y points up, centimetres"
     assert np.allclose(load(tmp_path / "a.dae", up="z").parts[0].bounds[1], [0.01, 0.02, 0.03])
 

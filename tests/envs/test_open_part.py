@@ -260,14 +260,18 @@ def test_a_model_without_movable_joints_is_refused(tmp_path: Path) -> None:
         OpenPartEnv(write_slider(tmp_path / "stiff.urdf", kind="fixed"))
 
 
-def test_a_model_that_fails_validation_is_refused_unless_asked_for(tmp_path: Path) -> None:
+def test_a_model_that_fails_validation_is_refused_unless_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     wall = """<link name="wall"><visual><geometry><box size="0.4 0.02 0.2"/></geometry></visual>
     <collision><geometry><box size="0.4 0.02 0.2"/></geometry></collision></link>
   <joint name="wall_joint" type="fixed"><parent link="body"/><child link="wall"/><origin xyz="0 -0.3 0"/></joint>"""
     model = write_slider(tmp_path / "walled.urdf", extra=wall)
     with pytest.raises(InputError, match=r"does not pass kinematify validate: KV\d+.*allow_invalid=True"):
         OpenPartEnv(model)
+    assert capsys.readouterr().err.count("validating") == 1, "seconds of silence look like a hang"
     env = OpenPartEnv(model, allow_invalid=True)
+    assert capsys.readouterr().err == "", "the verdict is kept"
     assert env.reset(seed=0)[1]["validation"] == "fail"
     _, info = run(gymnasium.make(OPEN_PART, model=model, allow_invalid=True), steady, seed=0)
     assert info["open_fraction"] < 0.6  # real contacts: the wall is in the way
