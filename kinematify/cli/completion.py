@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 def categories(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
     """Categories of objects that begin so."""
-    from kinematify.generate.procedural.families import FAMILIES
+    from kinematify.generate.described import known_families
 
-    return [name for name in FAMILIES if name.startswith(begun)]
+    return [name for name in known_families() if name.startswith(begun)]
 
 
 def checks(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:

@@ -268,9 +268,12 @@ def _pairs(settings: Sequence[str]) -> dict[str, str]:
 def _categories() -> str:
     from kinematify.generate.composer.bodies import BODIES
     from kinematify.generate.composer.mechanisms import MECHANISMS
-    from kinematify.generate.procedural.families import FAMILIES
+    from kinematify.generate.described import known_families
 
-    rows = [(family.name, family.title, ", ".join(p.name for p in family.parameters)) for family in FAMILIES.values()]
+    rows = [
+        (family.name, family.title, ", ".join(p.name for p in family.parameters))
+        for family in known_families().values()
+    ]
     table = format_table(("category", "what it is", "parameters"), rows)
     return (
         f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
@@ -291,10 +294,10 @@ def _listing(category: str | None) -> dict[str, Any]:
     """Categories with their parameters, or one of them, as JSON values."""
     from kinematify.generate.composer.bodies import BODIES
     from kinematify.generate.composer.mechanisms import MECHANISMS
-    from kinematify.generate.procedural.families import FAMILIES
+    from kinematify.generate.described import known_families
     from kinematify.generate.procedural.request import find_family
 
-    families = [find_family(category)] if category else list(FAMILIES.values())
+    families = [find_family(category)] if category else list(known_families().values())
     return {
         "schema": 1,
         "categories": [

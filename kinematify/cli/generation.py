@@ -56,6 +56,11 @@ class Requested(Protocol):
         """Words of a sentence that were left out."""
         ...
 
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """Words of a sentence that change nothing."""
+        ...
+
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object.
 
@@ -143,6 +148,7 @@ class Generation:
             "parameters": dict(self.blueprint.parameters),
             "understood": list(self.request.understood),
             "ignored": list(self.request.ignored),
+            "unused": list(self.request.unused),
             "validation": summary_of(self.report),
             "accuracy": None if self.inference is None else _accuracy(self.score(self.inference)),
         }
@@ -212,6 +218,8 @@ def summary_of(report: ValidationReport | None) -> dict[str, Any] | None:
 
 def _understood(request: Requested) -> str:
     lines = [f"Understood: {', '.join(request.understood)}."] if request.understood else []
+    if request.unused:
+        lines.append(f"Of no effect on shape or motion: {', '.join(request.unused)}.")
     if request.ignored:
         lines.append(f"Not understood, and left out: {', '.join(request.ignored)}.")
     return "\n".join(lines)

@@ -15,7 +15,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.generate.composer.bodies import BODIES
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLOR_WORDS, COLORS, MATERIALS
 from kinematify.robot.joint_type import JointType
@@ -33,6 +33,7 @@ SETS = {
     "new": "new ones, written before the parser was looked at",
     "fresh": "sixty more, committed before they were tried",
     "visitors": "sixty in the styles of many visitors, committed before they were tried",
+    "walked_in": "sixty of people who walk in, committed before they were tried",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
@@ -93,7 +94,7 @@ def _family(made: Blueprint, closed: Blueprint, wanted: str) -> list[str]:
 
 
 def _object(made: Blueprint, closed: Blueprint, wanted: list[str]) -> list[str]:
-    family = FAMILIES.get(made.family)
+    family = known_families().get(made.family)
     kind = made.family.replace("_", " ")
     names = family.words if family else next(body.words for body in BODIES if kind in body.words)
     called = any(f" {name}".endswith(f" {word}") for name in names for word in wanted)

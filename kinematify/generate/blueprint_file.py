@@ -314,16 +314,18 @@ class PartDescription(_Described):
             raise ValueError("red, green and blue must be from 0 to 1")
         return color
 
+    def solid(self) -> Manifold:
+        """What is left of its shapes."""
+        solid = union(*(shape.solid() for shape in self.shapes))
+        return solid - union(*(shape.solid() for shape in self.subtract)) if self.subtract else solid
+
     def part(self) -> Part:
         """The part as a closed mesh.
 
         Raises:
             InputError: Nothing is left of it.
         """
-        solid = union(*(shape.solid() for shape in self.shapes))
-        if self.subtract:
-            solid -= union(*(shape.solid() for shape in self.subtract))
-        mesh = solid.to_mesh64()
+        mesh = self.solid().to_mesh64()
         if len(mesh.tri_verts) == 0:
             raise InputError(
                 f"Nothing is left of the part {self.name}. Give it shapes with a volume, and subtract less."
@@ -493,7 +495,7 @@ def described_blueprint(values: Mapping[str, Any], *, source: str = "blueprint")
         raise InputError(f"The {source} cannot be built: {_problems(error)}.") from error
     except InputError as error:
         raise InputError(f"The {source} cannot be built. {error}") from error
-    joints = _parents_first([joint.joint() for joint in described.joints])
+    joints = parents_first([joint.joint() for joint in described.joints])
     root = next(name for name in parts if name not in {joint.child for joint in joints})
     blueprint = Blueprint(
         name=described.name,
@@ -532,6 +534,7 @@ class WrittenBlueprint:
     understood: tuple[str, ...] = ()
     """Nothing of it is a sentence."""
     ignored: tuple[str, ...] = ()
+    unused: tuple[str, ...] = ()
 
     @cached_property
     def _built(self) -> Blueprint:
@@ -552,7 +555,8 @@ class WrittenBlueprint:
         return self._built
 
 
-def _parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...]:
+def parents_first(joints: Sequence[BlueprintJoint]) -> tuple[BlueprintJoint, ...]:
+    """Return joints in an order in which every parent link is there before its child."""
     by_parent: dict[str, list[BlueprintJoint]] = {}
     for joint in joints:
         by_parent.setdefault(joint.parent, []).append(joint)

@@ -109,7 +109,7 @@ Made by `{command}`. All pictures show an object at rest and with every joint mo
 ## From a sentence
 
 A sentence asks for an object of a family with what is said of it, or for mechanisms on a body, which are then composed;
-every word is understood, or the sentence is refused.
+every word is understood, or the sentence is refused; what asks for no shape and no motion is told.
 
 {_pictures(sentences)}
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from kinematify.generate.composer.side import side_of
 from kinematify.generate.procedural.parameter import phrases
 from kinematify.generate.procedural.pieces.fronts import Opening
-from kinematify.generate.procedural.solids import box, cylinder, rounded_box
+from kinematify.generate.procedural.solids import ball, box, cylinder, hull, ring, rounded_box
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
+
+    from manifold3d import Manifold
 
     from kinematify.generate.composer.side import Side
     from kinematify.generate.procedural.workshop import Workshop
@@ -37,6 +39,12 @@ class Body:
     """First word of a mechanism without which it would not be called so -> how many, if nothing else is said."""
     usual: Mapping[str, int] = field(default_factory=dict)
     """The same of what it has if nothing at all is asked for."""
+    says: Mapping[str, str] = field(default_factory=dict)
+    """Word -> first word of the mechanism that it means on this body: the door of an oven is a flap."""
+    details: Mapping[str, int] = field(default_factory=dict)
+    """Word for what belongs to the body itself -> how many of it there are."""
+    fine: float = 1.0
+    """Room that mechanisms need here, as a share of what they need elsewhere."""
 
 
 def _area(width: float, bottom: float, top: float, depth: float, wall: float) -> Opening:
@@ -74,6 +82,162 @@ def _tub(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     sides["front"] = side_of("front", (0, 0, 0), shallow, hollow=False)
     sides["top"] = side_of("top", (0, 0, height), sides["top"].area, is_open=True)
     return sides
+
+
+def _coffer(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A box that is open at the top, above a closed lower half that may hold drawers."""
+    width, depth, height = size
+    sides = _block(workshop, size, wall)
+    floor = 0.55 * height
+    workshop.cut(BODY, box((wall - 0.5 * width, wall, floor), (0.5 * width - wall, depth - wall, height + wall)))
+    front = _area(width, min(0.3 * height, 0.04), floor, depth, wall)
+    sides["front"] = side_of("front", (0, 0, 0), front)
+    sides["top"] = side_of("top", (0, 0, height), sides["top"].area, is_open=True)
+    return sides
+
+
+def _wagon(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A bed with walls, open at the back, and a drawbar."""
+    width, depth, height = size
+    sides = _block(workshop, size, wall)
+    floor = 0.4 * height
+    workshop.cut(BODY, box((wall - 0.5 * width, wall, floor), (0.5 * width - wall, depth + wall, height + wall)))
+    bar = 0.03 * depth
+    workshop.add(BODY, box((-bar, -0.35 * depth, 0.1 * height), (bar, 1e-3, 0.1 * height + 1.5 * bar)))
+    gate = Opening(left=-0.5 * width, right=0.5 * width, bottom=floor, top=height, depth=wall, wall=wall)
+    sides["back"] = side_of("back", (0, depth, 0), gate, is_open=True)
+    return {name: sides[name] for name in ("left", "right", "back")}
+
+
+def _slab(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """Something flat that lies there, with its controls on top."""
+    width, depth, height = size
+    workshop.body(BODY, rounded_box((-0.5 * width, 0, 0), (0.5 * width, depth, height), 0.1 * min(width, depth)))
+    rim = 0.06 * min(width, depth)
+    return {"top": side_of("top", (0, 0, height), _area(width, 0.0, depth, 0.8 * height, rim), hollow=False)}
+
+
+def _van(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A van that looks along -y: doors for those in front, and a hold with doors behind."""
+    sides, (width, depth, height) = _bus(workshop, size, wall), size
+    doorway = Opening(
+        left=-0.09 * depth, right=0.09 * depth, bottom=0.2 * height, top=0.9 * height, depth=0.4 * width, wall=wall
+    )
+    low = _low(size)
+    behind = _area(width, 0.18 * height, 0.95 * height, 0.4 * depth, wall)
+    flanks = {name: _flank(name, size, doorway, low, 0.32 * depth) for name in ("left", "right")}
+    return {**sides, **flanks, "back": side_of("back", (0, depth, 0), behind)}
+
+
+def _bus(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A bus that looks along -y: windows all around, and doors on its right."""
+    width, depth, height = size
+    half, sill = 0.5 * width, 0.15 * height
+    workshop.body(BODY, box((-half, 0, sill), (half, depth, height)))
+    panes = [box((-0.85 * half, -2e-3, 0.55 * height), (0.85 * half, 1e-3, 0.9 * height))]
+    workshop.add(BODY, *workshop.painted(*panes, material="plastic", color="dark grey"))
+    doorway = Opening(
+        left=-0.1 * depth, right=0.1 * depth, bottom=0.2 * height, top=0.92 * height, depth=0.3 * width, wall=wall
+    )
+    flank = side_of("left", (-half, 0.5 * depth, 0), _area(depth, 0.5 * height, height, 0.1, wall), axles=_low(size))
+    right = _flank("right", size, doorway, _low(size), 0.3 * depth)
+    return {"left": replace(flank, hollow=False), "right": right}
+
+
+def _low(size: Size) -> Opening:
+    """Where the wheels of a bus or a van stand, from the middle of its side."""
+    width, depth, height = size
+    along = 0.38 * depth
+    return Opening(left=-along, right=along, bottom=0.1 * height, top=0.18 * height, depth=0.2 * width, wall=0.05)
+
+
+def _stool(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A post on a round foot, with a ring for the feet."""
+    width, _, height = size
+    radius, post, middle = 0.5 * width, 0.07 * width, 0.5 * width
+    ring_at = (0, middle, 0.4 * height)
+    workshop.body(
+        BODY,
+        cylinder(radius, (0, middle, 0), (0, middle, 0.03)),
+        cylinder(post, (0, middle, 0.02), (0, middle, height)),
+        ring(0.7 * radius, 0.01).translate(ring_at),
+        box((-0.7 * radius, middle - 0.008, ring_at[2] - 0.008), (0.7 * radius, middle + 0.008, ring_at[2] + 0.008)),
+        material="metal",
+    )
+    square = 1.4 * post
+    area = _area(square, -0.5 * square, 0.5 * square, 0.1, 1e-3)
+    return {"top": side_of("top", (0, middle, height), area, hollow=False, end="post")}
+
+
+def _trestle(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """Two hollow legs on feet, for a top that goes up and down in them."""
+    width, depth, height = size
+    leg = 0.035
+    solids = []
+    for x in (-0.35 * width, 0.35 * width):
+        solids += [box((x - 0.04, 0, 0), (x + 0.04, depth, 0.04)), _upright(x, depth, 0.0, height, leg)]
+    beam = box(
+        (-0.35 * width, 0.5 * depth - 0.02, 0.3 * height), (0.35 * width, 0.5 * depth + 0.02, 0.3 * height + 0.06)
+    )
+    workshop.body(BODY, *solids, beam, material="metal")
+    return {
+        "top": side_of("top", (0, 0, height), _area(width, 0.0, depth, 0.7 * height, 1e-3), hollow=False, end="legs")
+    }
+
+
+def _upright(x: float, depth: float, bottom: float, top: float, half: float) -> Manifold:
+    return box((x - half, 0.5 * depth - half, bottom), (x + half, 0.5 * depth + half, top))
+
+
+def _pot(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A round vessel with two ears, open at the top."""
+    width, _, height = size
+    sides = _vessel(workshop, size)
+    for x in (-0.5 * width, 0.5 * width):
+        ear = ring(0.12 * width, 0.006).translate((x, 0.5 * width, 0.75 * height))
+        workshop.add(BODY, ear - cylinder(0.47 * width, (0, 0.5 * width, 0), (0, 0.5 * width, height)))
+    return sides
+
+
+def _kettle(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A round vessel with a spout on the left and a handle on the right."""
+    width, _, height = size
+    radius, middle = 0.5 * width, 0.5 * width
+    sides = _vessel(workshop, size)
+    inside = cylinder(0.94 * radius, (0, middle, 0), (0, middle, 2.0 * height))
+    spout = hull(
+        ball(0.2 * radius, (-0.9 * radius, middle, 0.45 * height)),
+        ball(0.09 * radius, (-1.5 * radius, middle, 0.85 * height)),
+    )
+    grip = (
+        ring(0.35 * height, 0.05 * height, 180.0).rotate((90, 90, 0)).translate((0.97 * radius, middle, 0.5 * height))
+    )
+    workshop.add(BODY, spout - inside, *workshop.as_handle(grip - inside))
+    return sides
+
+
+def _vessel(workshop: Workshop, size: Size) -> dict[str, Side]:
+    width, _, height = size
+    radius, middle, thick = 0.5 * width, 0.5 * width, 0.04 * width
+    workshop.body(BODY, cylinder(radius, (0, middle, 0), (0, middle, height)))
+    workshop.cut(BODY, cylinder(radius - thick, (0, middle, thick), (0, middle, 2.0 * height)))
+    mouth = Opening(left=-radius, right=radius, bottom=-radius, top=radius, depth=thick, wall=thick)
+    return {"top": side_of("top", (0, middle, height), mouth, is_open=True, end="round mouth")}
+
+
+def _turbine(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
+    """A tall mast with a nacelle; what turns before it is larger than it is."""
+    width, depth, height = size
+    long, half = 2.0 * width, 0.5 * width
+    workshop.body(
+        BODY,
+        cylinder(width, (0, depth, 0), (0, depth, 0.04 * height)),
+        cylinder(0.4 * width, (0, depth, 0), (0, depth, height)),
+        box((-half, 0, height - half), (half, depth + long, height + half)),
+    )
+    reach = 0.4 * height
+    area = Opening(left=-reach, right=reach, bottom=height - reach, top=height + reach, depth=depth, wall=half)
+    return {"front": side_of("front", (0, 0, 0), area, hollow=False)}
 
 
 def _table(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
@@ -231,7 +395,9 @@ def _column(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         "back": side_of("back", (0, start + post, 0), face, hollow=False),
         "left": side_of("left", (-0.5 * post, 0.5 * depth, 0), face, hollow=False),
         "right": side_of("right", (0.5 * post, 0.5 * depth, 0), face, hollow=False),
-        "top": side_of("top", (0, start, height), _area(post, 0.0, post, 0.2 * height, 0.002), hollow=False),
+        "top": side_of(
+            "top", (0, start, height), _area(post, 0.0, post, 0.2 * height, 0.002), hollow=False, end="post"
+        ),
         "bottom": side_of("bottom", (0, depth, 0), _area(width, 0.0, depth, foot, 0.01), hollow=False),
     }
 
@@ -267,86 +433,299 @@ def _frame(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     return {"front": side_of("front", (0, 0, 0), area, is_open=True)}
 
 
+def _kinds(
+    build: Callable[[Workshop, Size, float], dict[str, Side]],
+    rows: str,
+    *,
+    material: str = "steel",
+    always: Mapping[str, int] | None = None,
+    usual: Mapping[str, int] | None = None,
+    says: Mapping[str, str] | None = None,
+    details: Mapping[str, int] | None = None,
+    fine: float = 1.0,
+) -> Iterator[Body]:
+    """Bodies that are built alike, one a line: width, depth and height [m], then the words for it."""
+    for row in rows.strip().splitlines():
+        width, depth, height, words = row.split(maxsplit=3)
+        yield Body(
+            words=phrases(words),
+            size=(float(width), float(depth), float(height)),
+            build=build,
+            material=material,
+            always=always or {},
+            usual=usual or {},
+            says=says or {},
+            details=details or {},
+            fine=fine,
+        )
+
+
+_FURNITURE = """
+0.7 0.45 0.9 cabinet, cupboard, locker, sideboard, kiosk, shoe cabinet, display cabinet, shoe rack
+0.9 0.45 0.8 aquarium stand, fish tank stand, media console, media cabinet, media unit, hi-fi stand, kitchen island
+0.6 0.4 1.2 bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet
+0.5 0.2 0.6 medicine cabinet, key cabinet, first aid cabinet, wall cabinet, spice cabinet, spice rack
+0.7 0.5 0.85 vanity, vanity unit, washstand, sink unit, changing table, baby changing table, island, reception desk
+0.5 0.4 0.55 night table, end table, night stand, printer stand, plant stand
+1.2 0.6 2.0 wardrobe, armoire, closet, garderobe, linen closet
+1.5 0.4 0.5 tv stand, tv unit, tv bench, tv lowboard, lowboard, entertainment center, entertainment unit, media bench
+3.0 4.0 2.6 barn, shed, garden shed, hut, cabin, garage, stable, playhouse, tiny house, house
+0.6 0.5 0.7 dollhouse, doll house, rabbit hutch, chicken coop, dog house, doghouse, kennel, bird house, birdhouse
+0.9 0.45 0.9 dresser, drawer unit, tallboy dresser, lingerie chest, apothecary cabinet, card catalog, map cabinet
+0.9 0.9 2.1 phone booth, telephone booth, shower cabin, shower enclosure, sauna, elevator, elevator cabin, lift cabin
+"""
+_MACHINES = """
+0.4 0.22 0.3 control box, console, housing, machine housing, lab box, instrument box, junction box, control unit
+0.5 0.2 0.7 electrical panel, fuse box, breaker box, switch cabinet, electrical cabinet, switchgear, distribution board
+0.45 0.6 1.1 filing cabinet, file cabinet
+0.7 0.45 0.9 tool chest, rolling tool chest, tool cabinet, rolling cabinet, tool storage cabinet
+0.6 0.8 2.0 server rack, rack cabinet, server cabinet, network cabinet, charging station, charging cabinet
+0.7 0.7 1.7 arcade machine, arcade cabinet, jukebox, slot machine, atm, cash machine, gumball machine, pinball machine
+0.35 0.35 1.1 water dispenser, water cooler, fuel pump, gas pump, parking machine, parking meter, hand sanitizer station
+0.35 0.25 0.2 radio, amplifier, stereo, speaker, loudspeaker, hi-fi, receiver, oscilloscope, power supply, generator
+0.3 0.35 0.4 coffee grinder, juicer, popcorn machine, ice cream maker, bread maker, air fryer, humidifier, air purifier
+0.15 0.05 0.2 thermostat, intercom, doorbell, alarm panel, keypad, light switch panel, timer
+0.5 0.45 0.5 3d printer, incubator, autoclave, centrifuge, fume hood, glove box, kiln, air conditioner, heater
+0.6 0.6 0.85 drum washer, tumble dryer, dryer, clothes dryer, compactor
+"""
 BODIES = (
-    Body(
-        words=phrases("cabinet, cupboard, locker, sideboard, kiosk, shoe cabinet, display cabinet"),
-        size=(0.7, 0.45, 0.9),
-        build=_block,
-        material="wood",
-    ),
-    Body(
-        words=phrases("control box, console, housing, machine housing, lab box, instrument box"),
-        size=(0.4, 0.22, 0.3),
-        build=_block,
-    ),
-    Body(words=phrases("wardrobe, armoire, closet"), size=(1.2, 0.6, 2.0), build=_block, material="wood"),
-    Body(
-        words=phrases("tv stand, tv unit, tv bench, tv lowboard, lowboard"),
-        size=(1.5, 0.4, 0.5),
-        build=_block,
-        material="wood",
-    ),
-    Body(
-        words=phrases("vending machine, ticket machine"),
-        size=(0.9, 0.8, 1.8),
-        build=_block,
+    *_kinds(_block, _FURNITURE, material="wood"),
+    *_kinds(_block, _MACHINES),
+    *_kinds(
+        _block,
+        "0.9 0.8 1.8 vending machine, ticket machine, snack machine, drinks machine",
         usual={"door": 1, "button": 6, "flap": 1},
         material="metal",
     ),
-    Body(words=phrases("printer, copier"), size=(0.5, 0.45, 0.35), build=_block, usual={"lid": 1, "tray": 1}),
-    Body(
-        words=phrases("mobile robot, mobile base, robot base"),
-        size=(0.45, 0.45, 0.25),
-        build=_block,
-        usual={"wheel": 2, "caster": 1},
+    *_kinds(_block, "0.5 0.45 0.35 printer, copier, scanner, photocopier, laser printer", usual={"lid": 1, "tray": 1}),
+    *_kinds(_block, "0.42 0.42 0.3 cash register, till, cash drawer", always={"drawer": 1}, usual={"button": 12}),
+    *_kinds(
+        _block,
+        "0.4 0.3 0.35 mailbox, letterbox, letter box, mail box, post box, postbox, parcel box, drop box",
+        always={"flap": 1},
+        says={"door": "flap"},
     ),
-    Body(
-        words=phrases("cart, trolley, tool cart, tool trolley, utility cart, serving cart"),
-        size=(0.75, 0.45, 0.7),
-        build=_block,
+    *_kinds(
+        _block,
+        """
+        0.6 0.6 0.85 stove, oven, cooker, range cooker, kitchen range, gas range
+        0.6 0.6 0.85 dishwasher
+        0.45 0.35 0.28 toaster oven, mini oven, pizza oven
+        0.8 0.6 1.0 baking oven, fireplace, wood stove, pellet stove
+        """,
+        always={"flap": 1},
+        says={"oven door": "flap", "door": "flap"},
+    ),
+    *_kinds(
+        _block,
+        """
+        0.6 0.6 0.85 washing machine, washer, front loader
+        0.5 0.4 0.3 microwave, microwave oven
+        0.4 0.4 0.5 safe, gun safe, strongbox, wall safe, hotel safe
+        """,
+        always={"door": 1},
+    ),
+    *_kinds(
+        _block, "0.45 0.45 0.25 mobile robot, mobile base, robot base, delivery robot", usual={"wheel": 2, "caster": 1}
+    ),
+    *_kinds(
+        _block,
+        """
+        0.75 0.45 0.7 cart, trolley, tool cart, tool trolley, utility cart, serving cart, medical cart, bar cart
+        0.6 0.45 0.9 kitchen trolley, kitchen cart, hospital cart, crash cart, cleaning cart, luggage trolley
+        """,
         usual={"caster": 4, "push handle": 1},
     ),
-    Body(words=phrases("platform, dolly, base plate"), size=(0.8, 0.5, 0.1), build=_block),
-    Body(
-        words=phrases("crate, tub, toolbox, tool box, bin, wheelie bin, container, chest"),
-        size=(0.55, 0.35, 0.32),
-        build=_tub,
-        material="plastic",
+    *_kinds(_block, "0.8 0.5 0.1 platform, dolly, base plate, pallet, moving dolly, plant dolly, furniture dolly"),
+    *_kinds(
+        _block,
+        "0.22 0.8 0.05 skateboard, longboard",
+        material="wood",
+        always={"wheel": 4},
+        details={"deck": 1, "board": 1},
     ),
-    Body(words=phrases("table, desk, workbench, counter"), size=(1.2, 0.6, 0.75), build=_table, material="wood"),
-    Body(
-        words=phrases("folding table, camping table, trestle table, table top"),
-        size=(1.5, 0.7, 0.72),
-        build=_top,
+    *_kinds(
+        _tub,
+        """
+        0.55 0.35 0.32 crate, tub, toolbox, tool box, bin, wheelie bin, container, chest, trunk, treasure chest, box
+        1.1 0.45 0.5 storage bench, ottoman, hope chest, blanket chest, toy box, toy chest, window seat, bench
+        1.0 0.6 0.85 chest freezer, freezer chest, deep freezer, ice cream freezer, dumpster, compost bin, composter
+        0.6 0.4 0.4 cooler, cool box, ice chest, esky, picnic basket, basket, laundry basket, hamper, planter, sandbox
+        0.25 0.15 0.1 lunch box, lunchbox, pencil case, pencil box, music box, tin, gift box, ring box, glasses case
+        0.45 0.3 0.2 bread box, bread bin, briefcase, instrument case, record case, camera case, cash box, file box
+        """,
+        material="plastic",
+        details={"handle": 2, "carrying handle": 2},
+    ),
+    *_kinds(
+        _coffer,
+        """
+        0.7 0.5 0.9 grill, barbecue, bbq, barbecue grill, smoker, fire pit
+        1.0 2.0 0.5 bed, storage bed, daybed, platform bed, captain bed
+        """,
+        details={"mattress": 1},
+    ),
+    *_kinds(
+        _coffer,
+        "0.4 0.28 0.3 jewelry box, jewellery box, sewing box, tackle box, makeup box, makeup case, tea box, cigar box",
+        material="wood",
+    ),
+    *_kinds(
+        _tub,
+        """
+        0.5 0.75 0.5 stroller, baby stroller, pram, baby carriage, pushchair, buggy
+        0.55 0.8 0.5 shopping cart, shopping trolley, laundry cart, laundry trolley, supermarket trolley, luggage cart
+        """,
+        always={"wheel": 4, "push handle": 1},
+        says={"handlebar": "push handle", "handle": "push handle"},
+        details={"basket": 1, "seat": 1},
+        material="metal",
+    ),
+    *_kinds(
+        _wagon,
+        """
+        1.2 2.2 0.8 trailer, cargo trailer, flatbed trailer, car trailer, utility trailer
+        0.5 0.9 0.4 wagon, toy wagon, pull wagon, pull cart, handcart, hand cart, beach wagon, garden cart
+        """,
+        always={"wheel": 4},
+        details={"drawbar": 1, "bed": 1, "pull handle": 1, "handle": 1},
+    ),
+    *_kinds(
+        _van,
+        """
+        1.9 4.8 2.1 van, delivery van, cargo van, transporter, ambulance, minivan, camper, camper van, motorhome
+        2.3 6.5 3.0 delivery truck, moving truck, fire truck, fire engine, garbage truck, ice cream truck
+        0.2 0.5 0.25 toy van, toy ambulance, toy fire truck
+        """,
+        material="plastic",
+        always={"wheel": 4},
+        usual={"door": 2},
+        details={"window": 1, "windshield": 1, "windscreen": 1},
+    ),
+    *_kinds(
+        _bus,
+        """
+        2.5 9.0 3.0 bus, school bus, coach, city bus, tour bus
+        2.6 12.0 3.4 tram, streetcar, train, railway carriage, subway car, train carriage, metro car
+        0.2 0.7 0.25 toy bus, toy train, toy tram
+        """,
+        material="plastic",
+        always={"wheel": 4},
+        usual={"door": 1},
+        details={"window": 1, "windshield": 1, "windscreen": 1},
+    ),
+    *_kinds(
+        _table,
+        """
+        1.2 0.6 0.75 table, desk, workbench, counter, writing desk, work table, dining table, lab bench
+        1.1 0.6 0.5 coffee table, cocktail table, sofa table, tea table
+        1.0 0.4 0.8 console table, hallway table, entry table, dressing table, vanity table, sewing table, potting bench
+        0.7 0.5 0.7 school desk, side table, card table, chess table, occasional table, picnic table
+        """,
+        material="wood",
+        details={"leg": 4, "top": 1},
+    ),
+    *_kinds(
+        _top,
+        "1.5 0.7 0.72 folding table, camping table, trestle table, table top, foldable table, fold up table",
         material="wood",
         always={"leg": 4},
     ),
-    Body(
-        words=phrases("scissor lift, lift table, scissor table, scissor lift platform, lifting table"),
-        size=(0.9, 0.5, 0.15),
-        build=_block,
+    *_kinds(
+        _trestle,
+        """
+        1.4 0.7 0.7 standing desk, sit stand desk, height adjustable desk, adjustable desk, lift desk, standing table
+        0.8 0.4 0.7 overbed table, hospital table, height adjustable table, adjustable table, lectern
+        """,
+        always={"desktop": 1},
+        details={"leg": 2, "foot": 2},
+    ),
+    *_kinds(
+        _block,
+        "0.9 0.5 0.15 scissor lift, lift table, scissor table, scissor lift platform, lifting table",
         always={"lifting platform": 1},
     ),
-    Body(
-        words=phrases("refrigerator, fridge"), size=(0.6, 0.6, 1.8), build=_block, usual={"door": 2}, material="metal"
-    ),
-    Body(words=phrases("filing cabinet, file cabinet"), size=(0.45, 0.6, 1.1), build=_block),
-    Body(words=phrases("tool chest, rolling tool chest, tool cabinet"), size=(0.7, 0.45, 0.9), build=_block),
-    Body(words=phrases("electrical panel, fuse box, breaker box, switch cabinet"), size=(0.5, 0.2, 0.7), build=_block),
-    Body(words=phrases("barn, shed, garden shed, hut"), size=(3.0, 4.0, 2.6), build=_block, material="wood"),
-    Body(words=phrases("dresser, drawer unit"), size=(0.9, 0.45, 0.9), build=_block, material="wood"),
-    Body(
-        words=phrases("pickup truck, pickup, truck, lorry, toy truck"),
-        size=(1.8, 4.6, 1.75),
-        build=_truck,
+    *_kinds(_block, "0.6 0.6 1.8 refrigerator, fridge, freezer, wine cooler", usual={"door": 2}, material="metal"),
+    *_kinds(
+        _truck,
+        "1.8 4.6 1.75 pickup truck, pickup, truck, lorry, toy truck, toy pickup, ute",
         material="plastic",
         always={"wheel": 4},
         usual={"door": 2, "flap": 1},
+        details={"bed": 1, "cab": 1, "headlight": 2},
     ),
-    Body(words=phrases("car, toy car"), size=(0.8, 1.8, 0.6), build=_car, always={"wheel": 4}),
-    Body(words=phrases("drum, barrel, tank"), size=(0.5, 0.5, 0.7), build=_drum),
-    Body(words=phrases("column, post, pedestal, stand"), size=(0.36, 0.36, 1.0), build=_column),
-    Body(words=phrases("control panel, panel, board"), size=(0.6, 0.2, 0.45), build=_panel),
-    Body(words=phrases("frame, portal, doorway"), size=(1.0, 0.12, 2.1), build=_frame, material="wood"),
+    *_kinds(_car, "0.8 1.8 0.6 car, toy car, sedan, race car, sports car, golf cart, taxi", always={"wheel": 4}),
+    *_kinds(_drum, "0.5 0.5 0.7 drum, barrel, tank, oil drum, rain barrel, keg, boiler, water heater, water tank"),
+    *_kinds(
+        _pot,
+        """
+        0.26 0.26 0.18 pot, cooking pot, stock pot, stockpot, saucepan, casserole, dutch oven, pressure cooker, soup pot
+        0.24 0.24 0.22 rice cooker, slow cooker, ice bucket, jar, cookie jar, sugar bowl, canister, tureen, urn
+        """,
+        always={"round lid": 1},
+        says={"lid": "round lid"},
+        details={"handle": 2, "ear": 2},
+        fine=0.3,
+    ),
+    *_kinds(
+        _kettle,
+        "0.18 0.18 0.2 kettle, tea kettle, teapot, water kettle, coffee pot, jug, pitcher, watering can, tankard",
+        always={"round lid": 1},
+        says={"lid": "round lid"},
+        details={"spout": 1, "handle": 1},
+        fine=0.3,
+    ),
+    *_kinds(
+        _column,
+        """
+        0.36 0.36 1.0 column, post, pedestal, stand, pole, floor stand, microphone stand, music stand, lamp post
+        0.4 0.4 1.7 coat rack, coat stand, hat stand, coat tree, hall tree, clothes stand, totem, signpost
+        """,
+    ),
+    *_kinds(
+        _column,
+        "0.24 0.2 0.2 monitor, computer monitor, display, tv, television, flat screen tv, computer screen",
+        always={"screen": 1},
+        details={"stand": 1, "foot": 1},
+        material="plastic",
+    ),
+    *_kinds(
+        _stool,
+        """
+        0.38 0.38 0.7 bar stool, stool, barstool, swivel stool, swivel bar stool, counter stool, pub stool
+        0.34 0.34 0.45 piano stool, work stool, drafting stool, lab stool, vanity stool, saddle stool
+        """,
+        always={"seat": 1},
+        details={"footrest": 1, "foot ring": 1, "post": 1, "base": 1, "foot rest": 1},
+    ),
+    *_kinds(
+        _turbine,
+        "0.1 0.1 1.2 wind turbine, windmill, wind generator, pinwheel, wind wheel",
+        always={"rotor": 1},
+        details={"tower": 1, "mast": 1, "nacelle": 1, "blade": 3},
+    ),
+    *_kinds(
+        _panel,
+        """
+        0.6 0.2 0.45 control panel, panel, board, switchboard, dashboard, instrument panel, pegboard, busy board
+        0.8 0.2 0.4 wall panel, coat hook rack, key rack, wall rack, hook rail, key holder, coat hook board
+        """,
+    ),
+    *_kinds(
+        _slab,
+        """
+        0.05 0.18 0.02 remote, remote control, tv remote, garage door opener, walkie talkie
+        0.08 0.15 0.015 calculator, phone, mobile phone, cell phone, telephone, smartphone, pager, pocket calculator
+        0.36 0.13 0.02 keyboard, computer keyboard, piano keyboard, synthesizer, label maker
+        0.16 0.1 0.03 game controller, gamepad, joystick controller, video game controller
+        0.4 0.3 0.06 mixing desk, mixer console, sound mixer, mixing console, dj controller, drum machine, effects pedal
+        """,
+        material="plastic",
+        usual={"button": 12},
+        fine=0.3,
+    ),
+    *_kinds(
+        _frame, "1.0 0.12 2.1 frame, portal, doorway, door frame, archway, gateway, serving hatch", material="wood"
+    ),
 )
 """All bodies; no word stands twice."""

@@ -37,7 +37,11 @@ _NEEDS = {
     "opening": "an opening to close",
     "mouth": "an open top",
     "height": "a body that stands high without it",
+    "round mouth": "a round body that is open at the top",
+    "post": "a post that ends there",
+    "legs": "a body of two legs",
 }
+_ENDS = ("round mouth", "legs")  # where nothing else goes
 _LOW = 0.2  # [m] below it nothing folds under a body
 _MOST_KINDS = 4  # of mechanisms on an object that is drawn
 _ANOTHER = 1_000_003  # the next seed where nothing that was drawn fits
@@ -87,6 +91,8 @@ class Composition:
     """How some of its mechanisms move, or how far they stand open."""
     copies: int = 1
     """How many, side by side."""
+    scale: float = 1.0
+    """Of lengths that are not asked for, to the usual ones."""
 
     @property
     def title(self) -> str:
@@ -134,7 +140,9 @@ def compose(
         if item.mechanism.arranged == "over" and name_of_side in lids:
             place = _on_lid(place, lids[name_of_side])
         item.mechanism.build(place)
-    parameters = {"seed": seed, "size": layout.size, **{f"{word}s": count for word, count in numbers.items()}}
+    details = {f"{word.replace(' ', '_')}s": count for word, count in composition.body.details.items()}
+    placed = {f"{word}s": count for word, count in numbers.items()}
+    parameters = {"seed": seed, "size": layout.size, **details, **placed}
     rng = np.random.default_rng(0)
     named = name or composition.title.replace(" ", "_")
     made = layout.workshop.finish(named, parameters, style="clean", clearance=clearance, rng=rng)
@@ -162,7 +170,7 @@ def _laid_out(composition: Composition, seed: int | None) -> _Layout:
     body = composition.body
     drawn = np.ones(3) if seed is None else np.random.default_rng(seed).uniform(0.85, 1.2, size=3)
     width, depth, height = (
-        float(usual * share) if asked is None else asked
+        float(usual * share * composition.scale) if asked is None else asked
         for usual, share, asked in zip(body.size, drawn, composition.size, strict=True)
     )
     size: Size = (width, depth, height)
@@ -178,7 +186,7 @@ def _laid_out(composition: Composition, seed: int | None) -> _Layout:
             placed = [
                 (side, item, area)
                 for side, wanted in _by_side(composition, sides).items()
-                for item, area in _arranged(side, sides[side], wanted)
+                for item, area in _arranged(side, sides[side], wanted, body.fine)
             ]
         except _TooSmallError as error:
             growth = [_GROWTH if k in error.axes and composition.size[k] is None else 1.0 for k in range(3)]
@@ -232,7 +240,12 @@ def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list
     """What goes on which side; wheels and other pairs are divided between left and right."""
     found: dict[str, list[Wanted]] = {side: [] for side in sides}
     body = composition.title
-    for wanted in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
+    for asked in sorted(composition.wanted, key=lambda item: item.mechanism.arranged == "grid"):
+        # The front doors of a van are on its sides.
+        in_front = asked.side == "front" and not any(
+            side == "front" and _fits(asked.mechanism, sides[side]) for side in sides
+        )
+        wanted = replace(asked, side="") if in_front and asked.mechanism.words[0] == "door" else asked
         kind, usual = wanted.mechanism, _usual_sides(wanted, sides, body)
         if kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left"):
             if wanted.count % 2:
@@ -283,6 +296,8 @@ def _refuse_crowded(side: str, items: Sequence[Wanted]) -> None:
 
 
 def _fits(kind: Mechanism, side: Side) -> bool:
+    if kind.needs in ("round mouth", "legs", "post") or side.end in _ENDS:
+        return kind.needs == side.end
     if kind.arranged == "axles":
         return side.axles is not None
     if kind.needs == "height":
@@ -303,9 +318,10 @@ def _freest(usual: Sequence[str], found: dict[str, list[Wanted]], kind: Mechanis
     return usual[0]
 
 
-def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wanted, Opening]]:
+def _arranged(name: str, side: Side, wanted: Sequence[Wanted], fine: float) -> list[tuple[Wanted, Opening]]:
     """Every single mechanism of a side with the rectangle that it takes; what fills the side comes first."""
     placed = []
+    least = {item.mechanism.words: tuple(fine * length for length in item.mechanism.least) for item in wanted}
     on_axles = [item.count for item in wanted if item.mechanism.arranged == "axles"]
     wheels = _axles(side.axles, sum(on_axles)) if side.axles is not None and on_axles else []
     bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid", "foot")])
@@ -314,7 +330,7 @@ def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wan
         if free.width <= 0.0 or free.height <= 0.0:
             raise _TooSmallError(_told(band[1][0].mechanism, wanted, name), {1, 2})
         for item, cell in _divided(band[1], free):
-            needed = item.mechanism.least
+            needed = least[item.mechanism.words]
             if cell.width < needed[0] or cell.height < needed[1]:
                 axes = {0 if name in ("front", "back", "top", "bottom") else 1} if cell.width < needed[0] else set()
                 if cell.height < needed[1]:
@@ -326,11 +342,11 @@ def _arranged(name: str, side: Side, wanted: Sequence[Wanted]) -> list[tuple[Wan
             placed += [(item, cell) for cell in _axles(side.axles, item.count)]
         elif item.mechanism.arranged == "corners":
             cells = _corners(side.area, item.count)
-            if cells[0].width < item.mechanism.least[0]:
+            if cells[0].width < least[item.mechanism.words][0]:
                 raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1})
             placed += [(item, cell) for cell in cells]
         elif item.mechanism.arranged in ("edge", "over", "alone", "apart"):
-            if side.area.width < item.mechanism.least[0] or side.area.height < item.mechanism.least[1]:
+            if side.area.width < least[item.mechanism.words][0] or side.area.height < least[item.mechanism.words][1]:
                 raise _TooSmallError(_told(item.mechanism, wanted, name), {0, 1 if name == "top" else 2})
             placed += [(item, side.area)] * item.count
     return placed

@@ -26,10 +26,13 @@ from kinematify.generate.procedural.parameter import phrases
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
+from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, ring, rod, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from manifold3d import Manifold
 
     from kinematify.robot.arrays import FloatArray
 
@@ -276,6 +279,100 @@ def _push_handle(place: Place) -> None:
     place.workshop.add(BODY, *place.workshop.as_handle(rod(0.014, *ends)))
 
 
+def _round_lid(place: Place) -> None:
+    """A disc with a knob, on a barrel hinge behind a round mouth."""
+    frame, gap, radius = place.workshop.turned(OUTWARD, place.middle), place.clearance, place.radius
+    thick, pin, tab = 0.05 * radius, 0.0035, 0.25 * radius
+    behind = radius + 1e-3
+    frame.add(BODY, box((-tab, 0.9 * radius, -6.0 * pin), (tab, behind, 0)) - _inside(radius))
+    top = gap + thick
+    leaf = box((-tab, 0.9 * radius, gap), (tab, behind, top + 2.0 * pin))
+    knob = ball(0.14 * radius, (0, 0, top + 0.12 * radius))
+    disc = cylinder(radius, (0, 0, gap), (0, 0, top))
+    frame.body(
+        place.name,
+        disc,
+        leaf,
+        *frame.as_handle(knob + cylinder(0.07 * radius, (0, 0, gap), (0, 0, top + 0.1 * radius))),
+    )
+    edge = BackEdge(y=behind, level=gap, below=5.0 * pin, above=thick + 2.0 * pin, clearance=min(gap, 0.3 * pin))
+    pivot = add_barrels(frame, (BODY, place.name), edge, (0.0,), length=1.8 * tab, radius=pin)
+    frame.turns(place.name, BODY, (-1, 0, 0), pivot, (0.0, 1.5), rest=place.fitting.rest)
+
+
+def _inside(radius: float) -> Manifold:
+    """Of a round vessel below its mouth."""
+    return cylinder(0.93 * radius, (0, 0, -radius), (0, 0, radius))
+
+
+def _seat(place: Place) -> None:
+    """A round seat on a shaft."""
+    x, _, z = place.middle
+    gap, radius = place.clearance, 0.18
+    seat = cylinder(radius, (x, -gap, z), (x, -gap - 0.06, z))
+    back = box((x - 0.03, -gap - 0.075, z + 0.5 * radius), (x + 0.03, -gap - 0.055, z + 0.9 * radius))
+    place.on_shaft(seat, back, shaft=0.5 * place.radius)
+
+
+def _desktop(place: Place) -> None:
+    """A board on two rods that slide in the legs below it."""
+    area, gap, workshop = place.area, place.clearance, place.workshop
+    middle, rod_half, deep = place.middle, 0.022, 0.85 * area.depth
+    board = box((area.left, -gap - 0.03, area.bottom), (area.right, -gap, area.top))
+    solids = [board]
+    for x in (-0.35 * (area.width + 2.0 * area.wall), 0.35 * (area.width + 2.0 * area.wall)):
+        for start, half, cut in ((-1.0, rod_half + gap, True), (-gap - 1e-3, rod_half, False)):
+            post = box((x - half, start, middle[2] - half), (x + half, deep + (gap if cut else 0.0), middle[2] + half))
+            if cut:
+                workshop.cut(BODY, post)
+            else:
+                solids.append(post)
+    workshop.body(place.name, *solids, material="wood")
+    workshop.slides(place.name, BODY, (0, -1, 0), middle, (0.0, 0.8 * deep), rest=place.fitting.rest)
+
+
+def _screen(place: Place) -> None:
+    """A flat screen on a fork, which tilts."""
+    width, frame = min(0.06, 1.6 * place.radius), place.workshop.turned(OUTWARD, place.middle)
+    panel = box((-0.3, -0.03, -0.02), (0.3, -0.01, 0.34)) + box((-0.02, -0.02, -0.02), (0.02, 0.01, 0.1))
+    stick(BODY, frame, place.name, width, place.clearance, long=2.0 * width, limits=(-0.3, 0.3), head=panel)
+
+
+def _flag(place: Place) -> None:
+    """A small plate on a stick that is turned up."""
+    width = min(0.03, 0.8 * place.radius)
+    frame = place.workshop.turned(OUTWARD, place.middle)
+    plate = box((-0.1 * width, -0.1 * width, -width), (0.1 * width, 2.0 * width, 0))
+    stick(BODY, frame, place.name, width, place.clearance, long=5.0 * width, limits=(0.0, 1.3), head=plate)
+
+
+def _latch(place: Place) -> None:
+    """A bar that is turned aside."""
+    x, _, z = place.middle
+    reach, gap = min(0.85 * place.radius, 0.04), place.clearance
+    bar = box((x - 0.25 * reach, -gap - 0.008, z - 0.3 * reach), (x + 0.25 * reach, -gap, z + reach))
+    place.on_shaft(bar, shaft=0.15 * reach, limits=(0.0, 0.5 * math.pi))
+
+
+def _slider(place: Place) -> None:
+    """A cap on a stem that is pushed along a slot."""
+    x, _, z = place.middle
+    gap, half = place.clearance, min(0.42 * place.area.height, 0.05)
+    stem, deep = 0.06 * half, min(0.02, place.area.wall if place.hollow else 0.6 * place.area.depth)
+    low, high = z - 0.8 * half, z + 0.8 * half
+    slot = box((x - stem - gap, -1.0, low - stem - gap), (x + stem + gap, deep, high + stem + gap))
+    place.workshop.cut(BODY, slot)
+    blade = box((x - stem, -gap - 2e-3, low - stem), (x + stem, 0.7 * deep, low + stem))
+    cap = box((x - 4.0 * stem, -gap - 0.012, low - 3.0 * stem), (x + 4.0 * stem, -gap - 1e-3, low + 3.0 * stem))
+    place.workshop.body(place.name, blade, cap)
+    place.workshop.slides(place.name, BODY, (0, 0, 1), place.middle, (0.0, high - low), rest=place.fitting.rest)
+
+
+def _compartment(place: Place) -> None:
+    """An open room, whose floor is a shelf."""
+    place.hollowed()
+
+
 def _angles(count: int) -> list[float]:
     return [2.0 * math.pi * k / count for k in range(count)]
 
@@ -304,8 +401,8 @@ class Mechanism:
     least: tuple[float, float] = (0.04, 0.04)
     """Width and height that one needs [m]."""
     needs: str = ""
-    """``room`` to run in, which must be cut behind it, or at least an ``opening`` that it closes; an open ``mouth``, or
-    ``height`` above the floor."""
+    """``room`` to run in, which must be cut behind it, or at least an ``opening`` that it closes; an open ``mouth``, a
+    ``round mouth``, ``height`` above the floor, a ``post`` that ends there, or ``legs``."""
     most: int = 60
     """On one body."""
     moves: bool = True
@@ -318,7 +415,7 @@ class Mechanism:
 _CONTROLS = ("front", "top", "right", "left", "back")
 MECHANISMS = (
     Mechanism(
-        words=("door",),
+        words=phrases("door, cab door"),
         sides=("front", "left", "right", "back"),
         build=_door,
         arranged="row",
@@ -328,7 +425,7 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=("drawer",),
+        words=phrases("drawer, pull-out drawer, pull out drawer, storage drawer"),
         sides=("front",),
         build=_drawer,
         arranged="stack",
@@ -337,7 +434,9 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=phrases("flap, tailgate, drop door, flap door, tilting flap"),
+        words=phrases(
+            "flap, tailgate, drop door, flap door, tilting flap, drop front, mail flap, pull down door, fold down door"
+        ),
         sides=("front", "back"),
         build=_flap,
         arranged="stack",
@@ -347,7 +446,7 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=phrases("lid, hatch, cover, scanner lid"),
+        words=phrases("lid, hatch, cover, scanner lid, lift up lid, hinged top, lift up top, flip top, flip up lid"),
         sides=("top",),
         build=_lid,
         arranged="row",
@@ -357,7 +456,7 @@ MECHANISMS = (
         has_grip=True,
     ),
     Mechanism(
-        words=phrases("sliding door, shutter, sliding panel"),
+        words=phrases("sliding door, shutter, sliding panel, sliding window"),
         sides=("front", "top"),
         build=_shutter,
         arranged="stack",
@@ -375,10 +474,39 @@ MECHANISMS = (
         least=(0.15, 0.04),
         needs="room",
     ),
-    Mechanism(words=phrases("knob, dial, rotary knob"), sides=_CONTROLS, build=_knob),
-    Mechanism(words=phrases("button, push button"), sides=_CONTROLS, build=_button),
+    Mechanism(words=("round lid",), sides=("top",), build=_round_lid, arranged="alone", needs="round mouth", most=1),
     Mechanism(
-        words=phrases("lever, toggle switch, switch, breaker, circuit breaker, joystick"), sides=_CONTROLS, build=_lever
+        words=phrases("open shelf, shelf, compartment, open compartment, cubby, niche"),
+        sides=("front",),
+        build=_compartment,
+        arranged="stack",
+        least=(0.12, 0.1),
+        needs="room",
+        moves=False,
+    ),
+    Mechanism(words=phrases("knob, dial, rotary knob, control knob"), sides=_CONTROLS, build=_knob),
+    Mechanism(words=phrases("button, push button, key"), sides=_CONTROLS, build=_button),
+    Mechanism(words=phrases("slider, fader, slide switch"), sides=_CONTROLS, build=_slider, least=(0.04, 0.08)),
+    Mechanism(
+        words=phrases("latch, catch, clasp, turn button, bolt"), sides=_CONTROLS, build=_latch, least=(0.05, 0.05)
+    ),
+    Mechanism(words=("flag",), sides=("right", "left", "top"), build=_flag, least=(0.06, 0.06)),
+    Mechanism(words=phrases("seat, swivel seat"), sides=("top",), build=_seat, arranged="alone", needs="post", most=1),
+    Mechanism(
+        words=phrases("desktop, tabletop, worktop, desk top"),
+        sides=("top",),
+        build=_desktop,
+        arranged="alone",
+        needs="legs",
+        most=1,
+    ),
+    Mechanism(words=phrases("screen"), sides=("top",), build=_screen, arranged="alone", needs="post", most=1),
+    Mechanism(
+        words=phrases(
+            "lever, toggle switch, switch, breaker, circuit breaker, joystick, power switch, main switch, toggle"
+        ),
+        sides=_CONTROLS,
+        build=_lever,
     ),
     Mechanism(
         words=phrases("crank, hand crank, winder"),
@@ -388,7 +516,7 @@ MECHANISMS = (
         weight=1.5,
     ),
     Mechanism(
-        words=phrases("hand wheel, handwheel, valve wheel"),
+        words=phrases("hand wheel, handwheel, valve wheel, valve, steering wheel, ship wheel, helm"),
         sides=("front", "right", "left", "top", "back"),
         build=_hand_wheel,
         least=(0.1, 0.1),
@@ -399,27 +527,33 @@ MECHANISMS = (
     ),
     Mechanism(words=("wheel",), sides=("left",), build=_wheel, arranged="axles"),
     Mechanism(
-        words=phrases("caster, castor, caster wheel, swivel wheel, castor wheel"),
+        words=phrases(
+            "caster, castor, caster wheel, swivel wheel, castor wheel, swivel caster, swivel castor, rolling caster"
+        ),
         sides=("bottom",),
         build=_caster,
         arranged="corners",
     ),
     Mechanism(
-        words=phrases("rotor, fan, propeller, impeller"),
+        words=phrases("rotor, fan, propeller, impeller, ventilator, cooling fan"),
         sides=("front", "top", "back", "left", "right"),
         build=_rotor,
         least=(0.12, 0.12),
         weight=2.0,
     ),
     Mechanism(
-        words=phrases("turntable, rotating plate, rotary table"),
+        words=phrases(
+            "turntable, rotating plate, rotary table, lazy susan, platter, carousel, rotating tray, rotating platform"
+        ),
         sides=("top", "front"),
         build=_turntable,
         least=(0.1, 0.1),
         weight=2.0,
     ),
     Mechanism(
-        words=phrases("telescope, telescopic mast, telescopic antenna, telescopic rod"),
+        words=phrases(
+            "telescope, telescopic mast, telescopic antenna, telescopic rod, antenna, aerial, telescopic pole, mast"
+        ),
         sides=("top", "front", "back"),
         build=_telescope,
     ),
@@ -466,7 +600,7 @@ MECHANISMS = (
     ),
     Mechanism(words=phrases("arm, folding arm"), sides=("top",), build=_arm, arranged="alone", most=1),
     Mechanism(
-        words=phrases("push handle, push bar"),
+        words=phrases("push handle, push bar, pushing handle"),
         sides=("back",),
         build=_push_handle,
         arranged="edge",

@@ -14,8 +14,9 @@ from kinematify.generate.composer.side import FACING
 from kinematify.generate.procedural.language.counts import MOST_COPIES
 from kinematify.generate.procedural.language.openness import OUT, share_at
 from kinematify.generate.procedural.language.parts import MOTIONS, PartRequirement
-from kinematify.generate.procedural.language.sizes import DIMENSIONS, angle_at, length_at
+from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, angle_at, length_at
 from kinematify.generate.procedural.language.words import (
+    ARTICLES,
     OPENNESS,
     PURPOSES,
     STOP_WORDS,
@@ -41,7 +42,18 @@ _OPENNESS = {("half", "open"): 0.5, ("open",): 1.0, ("closed",): 0.0}
 _AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
 _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _HANDLES = ("handle",)
+_GOES = (
+    ("goes", "up", "and", "down"), ("go", "up", "and", "down"), ("goes", "up"), ("moves", "up", "and", "down"),
+)  # fmt: skip
+"""What is said of a body of which something rises, longest first."""
+_RISING = ("desktop", "lifting platform", "telescope")
+_SHAPES = tuple({body.build: body.words[0] for body in reversed(BODIES)}.values())[::-1]
+"""One body of each shape, for messages."""
+_ENDS = ("front", "back", "rear")
+"""Sides that are said before a noun; a left door is the left one of two."""
+_LARGER = 1.3  # times as long in all directions is large
 _BARE = 2  # words of a length: number and unit
+_SCALES = 3.5  # times as long as usual a body may be
 _SHORTEST, _LONGEST = 0.05, 20.0  # [m]
 
 
@@ -58,6 +70,8 @@ class _Look:
     color: str | None = None
     motion: str = ""
     """Of `MOTIONS`."""
+    side: str = ""
+    """Of `FACING`."""
 
 
 def read_composition(sentence: str) -> Composition:
@@ -72,14 +86,17 @@ def read_composition(sentence: str) -> Composition:
     if reader.body is None:
         raise NoBodyError(
             f"The text {sentence[:80]!r} names no body that mechanisms can be placed on. There are "
-            f"{', '.join(body.words[0] for body in BODIES)}."
+            f"{', '.join(_SHAPES)}."
         )
     if reader.handles is not None and not any(item.mechanism.has_grip for item in reader.wanted):
         reader.left.append("handles")
+    wanted = (*reader.wanted, *_taken_for_granted(reader))
+    if reader.rises and not any(item.mechanism.words[0] in _RISING for item in wanted):
+        reader.left.append(reader.rises)
     if reader.left:
         raise InputError(
             f"Not understood: {', '.join(map(repr, reader.left))}. Nothing else is built in its place. Bodies are "
-            f"{', '.join(body.words[0] for body in BODIES)}; on them go "
+            f"{', '.join(_SHAPES)}; on them go "
             f"{', '.join(mechanism.words[0] for mechanism in MECHANISMS)}."
         )
     for mechanism in reader.excluded:
@@ -90,11 +107,14 @@ def read_composition(sentence: str) -> Composition:
         if reader.size[longest] is not None:
             raise InputError(f"The text gives the longest side of the {reader.body.words[0]} twice. Say it once.")
         reader.size[longest] = reader.bare
+    for metres, usual in zip(reader.size, reader.body.size, strict=True):
+        if metres is not None and metres > _SCALES * usual:
+            raise InputError(f"A {reader.body.words[0]} of {metres:g} m is too large; usual is {usual:g} m there.")
     width, depth, height = reader.size
     return Composition(
         body=reader.body,
         said=reader.said,
-        wanted=(*reader.wanted, *_taken_for_granted(reader)),
+        wanted=wanted,
         size=(width, depth, height),
         material=reader.of_body.material,
         color=reader.of_body.color,
@@ -102,6 +122,7 @@ def read_composition(sentence: str) -> Composition:
         rest=reader.rest,
         requirements=tuple(reader.requirements),
         copies=reader.copies,
+        scale=reader.scale,
     )
 
 
@@ -112,11 +133,22 @@ def _taken_for_granted(reader: _Reader) -> list[Wanted]:
         return []
     named = [*reader.excluded, *(item.mechanism for item in reader.wanted)]
     granted = {**body.always, **({} if reader.wanted else body.usual)}
+    called = {kind: word for word, kind in body.says.items()}
     return [
-        Wanted(mechanism=kind, count=granted[kind.words[0]])
+        Wanted(mechanism=kind, said=called.get(kind.words[0], ""), count=granted[kind.words[0]])
         for kind in MECHANISMS
         if kind.words[0] in granted and kind not in named
     ]
+
+
+def names_a_body(sentence: str) -> str:
+    """Return the name of the first body that a sentence names by several words that say what it is, else nothing."""
+    tokens = tokens_of(sentence, _vocabulary(), mend=False)
+    for k in range(len(tokens)):
+        named = _longest(tuple(token.text for token in tokens[k : k + 5]), _bodies())
+        if named is not None:
+            return " ".join(named[0]) if len([word for word in named[0] if word not in STOP_WORDS]) > 1 else ""
+    return ""
 
 
 def told(composition: Composition) -> str:
@@ -156,6 +188,9 @@ class _Reader:
         self.rest = 0.0
         self.requirements: list[PartRequirement] = []
         self.copies = 1
+        self.scale = 1.0
+        self.rises = ""
+        """Words that say that something of it goes up."""
         self.left: list[str] = []
         """Words that were not understood, as they were written."""
 
@@ -164,8 +199,8 @@ class _Reader:
         k = 0
         while k < len(self._tokens):
             steps = (
-                self._length, self._opened, self._mechanism, self._named_body, self._openness, self._look_of_body,
-                self._described, self._counted, self._purpose,
+                self._length, self._opened, self._detail, self._mechanism, self._named_body, self._openness,
+                self._look_of_body, self._described, self._counted, self._purpose, self._roughly, self._rises,
             )  # fmt: skip
             taken = next((words for step in steps if (words := step(k))), 0)
             if not taken and not self._says_nothing(self._tokens[k]):
@@ -210,7 +245,7 @@ class _Reader:
 
     def _mechanism(self, k: int) -> int:
         """`drawers on the left side`; `a turntable on a table`, whose body comes behind it."""
-        named = _longest(self._texts(k), _mechanisms())
+        named = _longest(self._texts(k), self._known())
         if named is None or (self.body is None and named[0] in _bodies() and not self._stands_on(k + len(named[0]))):
             return 0
         words, mechanism = named
@@ -231,6 +266,7 @@ class _Reader:
             self.excluded.append(mechanism)
             return len(words)
         side, taken = self._side(end)
+        side = side or look.side
         self.wanted.append(
             Wanted(
                 mechanism=mechanism,
@@ -247,6 +283,38 @@ class _Reader:
                 PartRequirement(nouns=(self.wanted[-1].stem,), words=said, moves=MOTIONS[look.motion])
             )
         return len(words) + taken
+
+    def _known(self) -> Mapping[tuple[str, ...], Mechanism]:
+        """Mechanisms by their words, as they are called on this body."""
+        says = self.body.says if self.body is not None else {}
+        own = {tuple(word.split()): _mechanisms()[tuple(kind.split())] for word, kind in says.items()}
+        return {**own, **_mechanisms(), **own}
+
+    def _rises(self, k: int) -> int:
+        """`that goes up and down`: something of it does."""
+        words = next((words for words in _GOES if self._texts(k)[: len(words)] == words), ())
+        if words and self._look == _Look():
+            self.rises = " ".join(words)
+            return len(words)
+        return 0
+
+    def _detail(self, k: int) -> int:
+        """`with two handles`, which this body has anyway."""
+        if self.body is None:
+            return 0
+        named = _longest(self._texts(k), {tuple(word.split()): n for word, n in self.body.details.items()})
+        if named is None or self._look not in (_Look(count=named[1]), *([_Look()] if named[1] == 1 else [])):
+            return 0
+        self._look = _Look()
+        return len(named[0])
+
+    def _roughly(self, k: int) -> int:
+        """`small`, of the whole."""
+        word = self._words.text(k)
+        if self.body is not None or word not in SIZE_WORDS:
+            return 0
+        self.scale *= _LARGER if SIZE_WORDS[word][0] else 1.0 / _LARGER
+        return 1
 
     def _opened(self, k: int) -> int:
         """`door opened 45 degrees`, `drawers half open`, right behind a mechanism."""
@@ -340,12 +408,19 @@ class _Reader:
         if texts[:1] and texts[0] in MOTIONS and not self._look.motion:
             self._look.motion = texts[0]
             return 1
+        if texts[:1] and texts[0] in _ENDS and self._has_noun_behind(k) and not self._look.side:
+            self._look.side = _SIDES[texts[0]]
+            return 1
         return 0
+
+    def _has_noun_behind(self, k: int) -> bool:
+        return any(_longest(self._texts(at), self._known()) for at in (k + 1, k + 2))
 
     def _counted(self, k: int) -> int:
         """`four`, `no`; a number that is not whole, or a second one, is not understood."""
         number = self._tokens[k].number
-        if number is None or number != int(number) or self._look.count is not None:
+        of_article = self._words.text(k - 1) in ARTICLES  # a pair, a dozen
+        if number is None or number != int(number) or (self._look.count is not None and not of_article):
             return 0
         self._look.count = int(number)
         return 1
@@ -363,7 +438,7 @@ class _Reader:
 
 
 def _unusual(words: tuple[str, ...], names: Sequence[str]) -> str:
-    said = next(name for name in names if tuple(name.replace("-", " ").split()) == words)
+    said = next((name for name in names if tuple(name.replace("-", " ").split()) == words), " ".join(words))
     return "" if said == names[0] else said
 
 
@@ -389,8 +464,16 @@ def _by_words(named: Iterable[tuple[str, _Kind]]) -> dict[tuple[str, ...], _Kind
 
 @cache
 def _vocabulary() -> frozenset[str]:
-    nouns = {word for words in (*_bodies(), *_mechanisms()) for word in words}
+    details = [tuple(word.split()) for body in BODIES for word in (*body.details, *body.says)]
+    nouns = {word for words in (*_bodies(), *_mechanisms(), *details) for word in words}
     sizes = {word for words in DIMENSIONS.values() for word in words}
     looks = {word for phrase in (*COLOR_WORDS, *_MATERIAL_WORDS) for word in phrase.split()}
     opens = {word for words in _OPENNESS for word in words}
-    return frozenset(nouns | sizes | looks | opens | {*MOTIONS, *OPENNESS, *_SIDES, *_SIDE_NOUNS, *_UNDER, *_MOVING})
+    return frozenset(
+        nouns
+        | sizes
+        | set(SIZE_WORDS)
+        | looks
+        | opens
+        | {*MOTIONS, *OPENNESS, *_SIDES, *_SIDE_NOUNS, *_UNDER, *_MOVING}
+    )

@@ -38,6 +38,8 @@ class Side:
     """Rooms may be cut behind it, as deep as the area says."""
     is_open: bool = False
     """There is nothing behind it but air: only what closes it goes there."""
+    end: str = ""
+    """What it is the end of, for what needs just that: a ``round mouth``, a ``post``, or ``legs``."""
     axles: Opening | None = None
     """Where wheels stand: their height is its bottom, they are spread between left and right."""
 
@@ -50,6 +52,7 @@ def side_of(
     hollow: bool = True,
     is_open: bool = False,
     axles: Opening | None = None,
+    end: str = "",
 ) -> Side:
     """Return a side that looks as its name says; `origin` is where its x and z are zero, on the surface."""
     turn = np.array(FACING[name], dtype=np.float64).T
@@ -59,6 +62,7 @@ def side_of(
         hollow=hollow and not is_open,
         is_open=is_open,
         axles=axles,
+        end=end,
     )
 
 

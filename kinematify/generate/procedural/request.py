@@ -11,12 +11,13 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.compose import compose
-from kinematify.generate.composer.sentence import NoBodyError, read_composition
-from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.composer.sentence import NoBodyError, names_a_body, read_composition
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import PartRequirement
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.generate.procedural.language.understand import NotUnderstoodError, understand
+from kinematify.generate.procedural.language.words import PLAIN_WORDS, without_purposes
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class Request:
     """Short phrases, for a sentence."""
     ignored: tuple[str, ...] = ()
     """Words of a sentence that were not understood."""
+    unused: tuple[str, ...] = ()
+    """Words of a sentence that ask for no shape and no motion."""
     requirements: tuple[PartRequirement, ...] = ()
     """What is asked of its parts, besides the values."""
     composition: Composition | None = None
@@ -75,7 +78,7 @@ class Request:
         """The object as its parts are asked for; where what a seed draws has no such parts, the next draw is taken."""
         for attempt in range(1 if seed is None else _DRAWS):
             blueprint = build(
-                FAMILIES[self.family], self.values, seed=None if seed is None else seed + attempt * _NEXT_DRAW
+                known_families()[self.family], self.values, seed=None if seed is None else seed + attempt * _NEXT_DRAW
             )
             if self.overall is not None:
                 blueprint = _scaled_to(blueprint, *self.overall)
@@ -99,9 +102,16 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
     Raises:
         InputError: It cannot be understood; see `understand`.
     """
+    sentence, purposes = without_purposes(sentence)
+    plain = tuple(dict.fromkeys(re.findall(rf"\b(?:{'|'.join(sorted(PLAIN_WORDS))})\b", sentence.lower())))
+    request = _read(sentence, lenient=lenient)
+    return replace(request, unused=(*plain, *purposes, *request.unused))
+
+
+def _read(sentence: str, *, lenient: bool) -> Request:
     holder, verb, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
     if held.strip():
-        holding, thing = from_text(holder, lenient=lenient), from_text(held, lenient=lenient)
+        holding, thing = _read(holder, lenient=lenient), _read(held, lenient=lenient)
         # What a seed draws may have hands that are one with the arms.
         wanted = PartRequirement(nouns=(_hand(holding.build()).name,), words="a hand")
         return replace(
@@ -111,8 +121,11 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
             ignored=(*holding.ignored, *thing.ignored),
             requirements=(*holding.requirements, wanted),
         )
+    body = names_a_body(sentence)
+    if body and not any(body in family.words for family in known_families().values()) and not lenient:
+        return _composed(sentence)  # a luggage trolley is no luggage
     try:
-        meant = understand(sentence, FAMILIES)
+        meant = understand(sentence, known_families())
     except NotUnderstoodError as error:
         try:
             return _composed(sentence)
@@ -121,7 +134,7 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
                 if isinstance(reason, NoBodyError):
                     raise error from None
                 raise InputError(f"{error} Nor can it be composed of mechanisms: {reason}") from error
-        meant = understand(sentence, FAMILIES, lenient=True)
+        meant = understand(sentence, known_families(), lenient=True)
     return Request(
         family=meant.family,
         values=meant.values,
@@ -160,7 +173,7 @@ def _scaled_to(blueprint: Blueprint, size: str, metres: float) -> Blueprint:
     factor = metres / there
     if not 1.0 / _SCALES <= factor <= _SCALES:
         raise InputError(
-            f"The {size} of a {FAMILIES[blueprint.family].title} cannot be {metres:g} m; it can be from "
+            f"The {size} of a {known_families()[blueprint.family].title} cannot be {metres:g} m; it can be from "
             f"{there / _SCALES:.2g} m to {there * _SCALES:.2g} m."
         )
     return blueprint.scaled(factor)
@@ -216,9 +229,10 @@ def find_family(name: str) -> Family:
         InputError: There is none; the message names the nearest.
     """
     wanted = name.strip().lower().replace(" ", "_").replace("-", "_")
-    words = {word.replace(" ", "_"): name for name, family in FAMILIES.items() for word in (name, *family.words)}
+    families = known_families()
+    words = {word.replace(" ", "_"): name for name, family in families.items() for word in (name, *family.words)}
     if wanted in words:
-        return FAMILIES[words[wanted]]
+        return families[words[wanted]]
     near = [words[match] for match in difflib.get_close_matches(wanted, words, n=3, cutoff=0.6)]
-    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"There are {', '.join(FAMILIES)}."
+    hint = f"Did you mean {' or '.join(dict.fromkeys(near))}?" if near else f"There are {', '.join(families)}."
     raise InputError(f"There is no category {name!r}. {hint}")

@@ -50,15 +50,35 @@ _STOP_TEXT = """
     a an the of with and to in on at by for from it its them their that which whose is are has have having i d ll
     we you would like want need please make me give build create generate some any this these those there be
     can could into my our each per every made very quite nice simple standard typical normal ordinary solid old new
-    modern gas electric kitchen living room office bedroom household home bathroom containing featuring including plus
-    also just
+    modern gas kitchen living room office bedroom household home bathroom containing featuring including plus
+    also just how about show maybe really very lot hello hi hey thanks thank looking one's let draw design get
 """
-STOP_WORDS = frozenset(_STOP_TEXT.split())
+_PLAIN_TEXT = """
+    sleek contemporary minimalist minimalistic vintage retro rustic antique classic classical elegant stylish fancy
+    cute cozy cosy beautiful pretty lovely cool sturdy robust strong durable solid heavy duty cheap affordable premium
+    luxury luxurious professional practical functional handy versatile ergonomic comfortable realistic detailed basic
+    regular usual common everyday generic scandinavian victorian farmhouse industrial traditional style styled design
+    designed look looking kind type sort brand brushed polished matte glossy shiny painted lacquered varnished worn
+    weathered dusty clean well built good great best high quality lightweight portable electric electrical electronic
+    manual home family professional commercial domestic sized size
+"""
+PLAIN_WORDS = frozenset(_PLAIN_TEXT.split())
+"""What something is like, where that asks for no shape and no motion; told as of no effect."""
+STOP_WORDS = frozenset(_STOP_TEXT.split()) | PLAIN_WORDS
 """Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
 _TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
-_WRITTEN = ((r"\bw/o\b", "without"), (r"\bw/", "with"), ("&", "and"))
+_WRITTEN = ((r"['’](?:m|re|ve|s)\b", ""), (r"\bw/o\b", "without"), (r"\bw/", "with"), ("&", "and"))
 """Signs that people write for words."""
+_PURPOSE = re.compile(
+    r"(?<!look)(?<!looking)(?<!search)(?<!searching)(?<!asking)(?<!wish)\s(?:for (?!sliding|opening|turning|moving)"
+    r"|to (?:keep|store|put|hold|carry|use|hang|sit|cook|play|work|make|sort|hide|collect|display|serve|read)\b"
+    r"|(?:that|which) (?:i|we|you|my|kids|people|one) (?:can|could|may|use|put|keep|want|need)\b"
+    r"|where (?:i|we|you|my)\b)"
+    r"[^,;.:]*?(?=\s*(?:$|[,;.:]|\b(?:with|and|that|which|having|whose|has|featuring|including|made|on|in)\b))",
+    re.IGNORECASE,
+)
+_MANNER = re.compile(r"\b(?:in )?(?:an? )?[\w.]+[ -](?:style|styled)\b|\bfree[ -]?standing\b", re.IGNORECASE)
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
 
 
@@ -85,6 +105,29 @@ class Token:
     def is_sign(self) -> bool:
         """True for punctuation."""
         return not self.text[0].isalnum() and self.number is None
+
+
+def without_purposes(sentence: str) -> tuple[str, tuple[str, ...]]:
+    """Leave out what something is for and like: `for my kitchen`, `to keep shoes in`, `retro-style`.
+
+    Returns:
+        What is left, and what was left out, which asks for no shape and no motion: there is no number in it.
+    """
+    found = [match for match in _PURPOSE.finditer(sentence) if not _asks(match[0]) and match.start() > 0]
+    found += [match for match in _MANNER.finditer(sentence) if not any(_overlap(match, other) for other in found)]
+    found.sort(key=lambda match: match.start())
+    for match in reversed(found):
+        sentence = f"{sentence[: match.start()]} {sentence[match.end() :]}"
+    return sentence, tuple(match[0].strip() for match in found)
+
+
+def _overlap(one: re.Match[str], other: re.Match[str]) -> bool:
+    return one.start() < other.end() and other.start() < one.end()
+
+
+def _asks(clause: str) -> bool:
+    words = clause.lower().split()
+    return any(word not in ARTICLES and (word in NUMBERS or any(map(str.isdigit, word))) for word in words)
 
 
 class Words:
