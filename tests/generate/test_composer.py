@@ -55,6 +55,13 @@ def ends_of(joint):
         ("a toolbox with two cantilever trays and a handle", {JointType.REVOLUTE: 7}),
         ("a scissor lift on four wheels", {JointType.REVOLUTE: 3, JointType.CONTINUOUS: 4}),
         ("a cabinet with a gripper, three hooks and two pedals", {JointType.PRISMATIC: 2, JointType.REVOLUTE: 5}),
+        ("a kettle with a lid", {JointType.REVOLUTE: 1}),
+        ("a van with two front doors and two back doors", {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 4}),
+        ("a standing desk that goes up and down", {JointType.PRISMATIC: 1}),
+        ("a bar stool", {JointType.CONTINUOUS: 1}),
+        ("a mailbox with a red flag and a latch", {JointType.REVOLUTE: 3}),
+        ("a remote control with six buttons and two sliders", {JointType.PRISMATIC: 8}),
+        ("an oven with a door and a drawer", {JointType.REVOLUTE: 1, JointType.PRISMATIC: 1}),
         ("a folding table", {JointType.REVOLUTE: 4}),
         ("a truck", {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 3}),
         ("a fridge of 180 cm with a sliding door on the right and three drawers", {JointType.PRISMATIC: 4}),
@@ -192,6 +199,8 @@ def test_sides_looks_and_openness_are_as_said():
         ("a drawer of a cart", "drawer"),
         ("a drum truck with four wheels", "truck"),
         ("a cart with two three drawers", "three"),
+        ("a cart that goes up", "goes up"),
+        ("a kettle 2 m high", "too large"),
     ],
 )
 def test_what_is_not_understood_is_named(sentence, words):
@@ -202,6 +211,7 @@ def test_what_is_not_understood_is_named(sentence, words):
 @pytest.mark.parametrize(
     ("sentence", "words"),
     [
+        ("a pot with three handles", "no place for a handle"),
         ("a cart with a push handle", "Nothing of this cart would move"),
         ("a cart with three wheels", "in pairs"),
         ("a cart with two wheels on the left", "both sides"),

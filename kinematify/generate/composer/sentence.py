@@ -288,7 +288,7 @@ class _Reader:
         """Mechanisms by their words, as they are called on this body."""
         says = self.body.says if self.body is not None else {}
         own = {tuple(word.split()): _mechanisms()[tuple(kind.split())] for word, kind in says.items()}
-        return {**own, **_mechanisms(), **own}
+        return {**own, **{words: kind for words, kind in _mechanisms().items() if words not in own}}
 
     def _rises(self, k: int) -> int:
         """`that goes up and down`: something of it does."""

@@ -1,0 +1,62 @@
+"""Objects that files describe: sentences find them, and their parts move freely."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from manifold3d import Manifold, Mesh64
+
+from kinematify.errors import InputError
+from kinematify.generate.described import known_families
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.materials import COLORS
+from kinematify.generate.procedural.request import from_text
+
+DESCRIBED = sorted(set(known_families()) - set(FAMILIES))
+
+
+def overlaps(blueprint):
+    """Pairs of parts that share more than a cubic millimetre."""
+    solids = {
+        part.name: Manifold(
+            Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64))
+        )
+        for part in blueprint.parts
+    }
+    return [(a, b) for a, b in combinations(solids, 2) if (solids[a] ^ solids[b]).volume() > 1e-9]
+
+
+@pytest.mark.parametrize("name", DESCRIBED)
+def test_parts_move_freely_to_both_ends(name):
+    blueprint = build(known_families()[name], {})
+    assert blueprint.joints
+    assert not overlaps(blueprint)
+    for joint in blueprint.joints:
+        for value in (joint.lower, joint.upper) if np.isfinite(joint.upper) else (1.0, 4.0):
+            assert not overlaps(blueprint.moved({joint.child: value})), (joint.child, value)
+
+
+def test_no_word_names_two_families():
+    words = [word for family in known_families().values() for word in family.words]
+    assert sorted(words) == sorted(set(words))
+
+
+def test_a_sentence_may_say_how_it_looks_and_what_it_has():
+    bicycle = from_text("a red bicycle with two wheels, 1.2 m high").build()
+    assert bicycle.parts[0].color == COLORS["red"]
+    assert np.ptp(bicycle.assembly.bounds[:, 2]) == pytest.approx(1.2)
+    assert from_text("a wheelbarrow with two handles").build().family == "wheelbarrow"
+    for sentence in ("a bicycle with three wheels", "a wheelbarrow with three handles", "a bicycle with a rudder"):
+        with pytest.raises(InputError):
+            from_text(sentence)
+
+
+def test_what_changes_nothing_is_told():
+    request = from_text("a sleek retro-style pocket knife for my grandfather")
+    assert request.family == "pocket_knife"
+    assert request.unused == ("sleek", "retro-style", "for my grandfather")
+    with pytest.raises(InputError, match="6 bottles"):
+        from_text("a cabinet for 6 bottles")
