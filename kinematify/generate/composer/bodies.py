@@ -555,7 +555,6 @@ BODIES = (
         0.45 0.3 0.2 bread box, bread bin, briefcase, instrument case, record case, camera case, cash box, file box
         """,
         material="plastic",
-        details={"handle": 2, "carrying handle": 2},
     ),
     *_kinds(
         _coffer,
@@ -563,7 +562,6 @@ BODIES = (
         0.7 0.5 0.9 grill, barbecue, bbq, barbecue grill, smoker, fire pit
         1.0 2.0 0.5 bed, storage bed, daybed, platform bed, captain bed
         """,
-        details={"mattress": 1},
     ),
     *_kinds(
         _coffer,
@@ -578,7 +576,7 @@ BODIES = (
         """,
         always={"wheel": 4, "push handle": 1},
         says={"handlebar": "push handle", "handle": "push handle"},
-        details={"basket": 1, "seat": 1},
+        details={"basket": 1},
         material="metal",
     ),
     *_kinds(
