@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
+_PATIENCE = 180_000
+"""For a page on a machine without a graphics card that other tests share [ms]."""
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -35,6 +37,7 @@ def opened(address: str, *, dark: bool = False, width: int = 1200) -> Iterator[t
     with playwright.sync_playwright() as engine:
         browser = engine.chromium.launch(executable_path=path, args=flags)
         page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme="dark" if dark else "light")
+        page.set_default_timeout(_PATIENCE)
         told: list[str] = []
         page.on("console", lambda message: told.append(f"{message.type}: {message.text}"))
         page.on("pageerror", lambda error: told.append(f"error: {error}"))

@@ -268,10 +268,10 @@ class ModelViewer:
             kept = write()
             shown = self._reopen()
         except KinematifyError as error:
+            self._keep.disabled = False
             self._tell("Nothing was changed", str(error))
             return None
         finally:
-            self._keep.disabled = False
             for item in waiting:
                 item.remove()
         self._open(shown, (), _doubts(shown) if kept is None else _kept_words(kept))

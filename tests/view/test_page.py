@@ -49,7 +49,7 @@ def served(folder: Path, port: int) -> Iterator[Window]:
 
 def press(page: Page, words: str) -> None:
     """Press a button; frames are so rare without a graphics card that plain clicks wait for ever."""
-    page.locator("button", has_text=words).first.evaluate("button => button.click()", timeout=PATIENCE)
+    page.locator("button", has_text=words).first.evaluate("button => button.click()")
 
 
 def test_a_candidate_is_chosen_kept_and_found_in_the_file(folder: Path) -> None:
