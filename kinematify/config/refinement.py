@@ -28,15 +28,14 @@ class RefineConfig(StageConfig):
     seconds_least: float
     """The same, at least [s]."""
     margin: float
-    """Candidates this far below the best are near-best and are simulated [log odds]."""
+    """Candidates this far below the best are near-best and are simulated; where the chosen joint is farther below, its
+    shape alone speaks against it [log odds]."""
     near_best: int
     """So many of them at most."""
     lead: float
     """A candidate replaces the chosen one if it leads by more [log odds]."""
     lead_elsewhere: float
     """The same for a candidate of another type or direction [log odds]."""
-    lead_by_shape: float
-    """The same for a candidate that fails no less than the chosen one, so that only the shape speaks for it."""
     least_travel: float
     """A range that is blocked may not be cut below this share of what the inference saw free."""
     least_kept: float

@@ -93,7 +93,7 @@ class Chooser:
             f"{child}: what failed speaks against its joint, but a hint asked for it; without the hint others are tried"
             for child in sorted(blamed & hinted)
         ]
-        doubted = [child for child in odds if child in blamed or odds[child] > self.config.lead_by_shape]
+        doubted = [child for child in odds if child in blamed or odds[child] > self.config.margin]
         doubted = [child for child in doubted if child not in hinted]
         for child in sorted(doubted, key=lambda child: (-odds[child], child)):
             if child in blamed:
@@ -187,7 +187,7 @@ class Chooser:
     def _lead_of(self, trial: Trial, first: Trial) -> float:
         """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it fails no less."""
         if trial.against >= first.against:
-            return self.config.lead_by_shape
+            return self.config.margin
         joint, old = trial.joint, first.joint
         alike = abs(float(joint.axis @ old.axis)) > _SAME_WAY and joint.kind.turns == old.kind.turns
         return self.config.lead if alike else self.config.lead_elsewhere
