@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray
 
 
-_STOPPED = 1.0  # log odds beyond which what meets something on its way, as a tyre its mudguard, goes round
+_FREE = -0.5  # log odds beyond which what meets nothing goes round: both kinds are told about equally often
+_STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
 
 
 def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
@@ -39,7 +40,7 @@ def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Flo
     turn = Hypotheses(kinds=np.array([TURN]), axes=axis[None], pivots=pivot[None], sources=("chosen",))
     scorer = shipped_turning()
     odds = scorer.sums(turning_columns(measure(scene, turn), 0, scorer.measurements)[None])[0] / scorer.temperature
-    return bool(odds > (0.0 if free.min() >= np.pi else _STOPPED))
+    return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
 
 
 def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
