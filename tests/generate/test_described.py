@@ -14,6 +14,7 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.materials import COLORS
 from kinematify.generate.procedural.request import from_text
+from kinematify.robot.joint_type import JointType
 
 DESCRIBED = sorted(set(known_families()) - set(FAMILIES))
 
@@ -60,3 +61,16 @@ def test_what_changes_nothing_is_told():
     assert request.unused == ("sleek", "retro-style", "for my grandfather")
     with pytest.raises(InputError, match="6 bottles"):
         from_text("a cabinet for 6 bottles")
+
+
+@pytest.mark.parametrize("sentence", ["a cabinet for a sliding drawer", "a cabinet for two drawers"])
+def test_a_purpose_that_names_a_mechanism_is_asked_for(sentence: str) -> None:
+    request = from_text(sentence)
+    assert request.unused == ()
+    joints = request.build(seed=0).joints
+    assert any(joint.kind is JointType.PRISMATIC for joint in joints)
+
+
+def test_a_purpose_that_asks_for_a_lid_is_not_dropped() -> None:
+    with pytest.raises(InputError, match="hold"):
+        from_text("a box to hold a hinged lid")

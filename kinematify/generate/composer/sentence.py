@@ -463,6 +463,12 @@ def _by_words(named: Iterable[tuple[str, _Kind]]) -> dict[tuple[str, ...], _Kind
 
 
 @cache
+def nouns_of_mechanisms() -> frozenset[str]:
+    """Nouns, singular, that ask for a mechanism: of a hand wheel the wheel."""
+    return frozenset(words[-1] for words in _mechanisms())
+
+
+@cache
 def _vocabulary() -> frozenset[str]:
     details = [tuple(word.split()) for body in BODIES for word in (*body.details, *body.says)]
     nouns = {word for words in (*_bodies(), *_mechanisms(), *details) for word in words}

@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.compose import compose
-from kinematify.generate.composer.sentence import NoBodyError, names_a_body, read_composition
+from kinematify.generate.composer.sentence import NoBodyError, names_a_body, nouns_of_mechanisms, read_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import PartRequirement
@@ -102,7 +102,7 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
     Raises:
         InputError: It cannot be understood; see `understand`.
     """
-    sentence, purposes = without_purposes(sentence)
+    sentence, purposes = without_purposes(sentence, nouns_of_mechanisms())
     plain = tuple(dict.fromkeys(re.findall(rf"\b(?:{'|'.join(sorted(PLAIN_WORDS))})\b", sentence.lower())))
     request = _read(sentence, lenient=lenient)
     return replace(request, unused=(*plain, *purposes, *request.unused))

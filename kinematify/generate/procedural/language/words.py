@@ -107,13 +107,17 @@ class Token:
         return not self.text[0].isalnum() and self.number is None
 
 
-def without_purposes(sentence: str) -> tuple[str, tuple[str, ...]]:
+def without_purposes(sentence: str, asking: frozenset[str]) -> tuple[str, tuple[str, ...]]:
     """Leave out what something is for and like: `for my kitchen`, `to keep shoes in`, `retro-style`.
 
+    Args:
+        sentence: What somebody asks for.
+        asking: Nouns, singular, that ask for something to be built: `for a sliding drawer` stays.
+
     Returns:
-        What is left, and what was left out, which asks for no shape and no motion: there is no number in it.
+        What is left, and what was left out, which asks for no shape and no motion: it has no number and none of these.
     """
-    found = [match for match in _PURPOSE.finditer(sentence) if not _asks(match[0]) and match.start() > 0]
+    found = [match for match in _PURPOSE.finditer(sentence) if not _asks(match[0], asking) and match.start() > 0]
     found += [match for match in _MANNER.finditer(sentence) if not any(_overlap(match, other) for other in found)]
     found.sort(key=lambda match: match.start())
     for match in reversed(found):
@@ -125,9 +129,9 @@ def _overlap(one: re.Match[str], other: re.Match[str]) -> bool:
     return one.start() < other.end() and other.start() < one.end()
 
 
-def _asks(clause: str) -> bool:
-    words = clause.lower().split()
-    return any(word not in ARTICLES and (word in NUMBERS or any(map(str.isdigit, word))) for word in words)
+def _asks(clause: str, asking: frozenset[str]) -> bool:
+    words = [word for word in clause.lower().split() if word not in ARTICLES]
+    return any(word in NUMBERS or singular(word, asking) in asking or any(map(str.isdigit, word)) for word in words)
 
 
 class Words:
