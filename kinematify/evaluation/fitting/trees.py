@@ -102,17 +102,8 @@ def fit_rigidity(examples: Sequence[Example], *, seeds: Sequence[int], provenanc
     fixed = np.array([is_fixed(example) for example in examples])
     weights = _weights(examples)
     weights[fixed] *= _FIXED_SHARE * weights[~fixed].sum() / max(float(weights[fixed].sum()), 1e-12)
-    lightgbm = _lightgbm()
-    boosters = [
-        lightgbm.train(
-            {**_PARAMETERS, **_RIGIDITY, "objective": "binary", "seed": seed},
-            lightgbm.Dataset(columns, fixed, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
-            _RIGIDITY_ROUNDS,
-        )
-        for seed in seeds
-    ]
-    base = np.zeros(3)
-    return Scorer(measurements=names, base=base, temperature=1.0, provenance=dict(provenance), **_arrays(boosters))
+    boosters = _boost_logistic(columns, fixed, weights, _RIGIDITY, seeds=seeds, rounds=_RIGIDITY_ROUNDS)
+    return _trees_alone(names, boosters, provenance)
 
 
 def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
@@ -125,18 +116,8 @@ def fit_opening(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     columns = np.concatenate([side_columns(example.sides, names) for example in examples])
     opens = np.tile([True, False], len(examples))
     weights = np.repeat(_weights(examples), 2)
-    lightgbm = _lightgbm()
-    boosters = [
-        lightgbm.train(
-            {**_PARAMETERS, **_OPENING, "objective": "binary", "seed": seed},
-            lightgbm.Dataset(columns, opens, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
-            _OPENING_ROUNDS,
-        )
-        for seed in seeds
-    ]
-    return Scorer(
-        measurements=names, base=np.zeros(3), temperature=1.0, provenance=dict(provenance), **_arrays(boosters)
-    )
+    boosters = _boost_logistic(columns, opens, weights, _OPENING, seeds=seeds, rounds=_OPENING_ROUNDS)
+    return _trees_alone(names, boosters, provenance)
 
 
 def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance: Mapping[str, Any]) -> Scorer:
@@ -149,18 +130,8 @@ def fit_turning(examples: Sequence[Example], *, seeds: Sequence[int], provenance
     columns = turns_of(examples, names)
     rounds = np.array([example.goes_round for example in examples], dtype=np.float64)
     weights = _weights(examples)
-    lightgbm = _lightgbm()
-    boosters = [
-        lightgbm.train(
-            {**_PARAMETERS, **_TURNING, "objective": "binary", "seed": seed},
-            lightgbm.Dataset(columns, rounds, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
-            _TURNING_ROUNDS,
-        )
-        for seed in seeds
-    ]
-    return Scorer(
-        measurements=names, base=np.zeros(3), temperature=1.0, provenance=dict(provenance), **_arrays(boosters)
-    )
+    boosters = _boost_logistic(columns, rounds, weights, _TURNING, seeds=seeds, rounds=_TURNING_ROUNDS)
+    return _trees_alone(names, boosters, provenance)
 
 
 def turning_names(examples: Sequence[Example]) -> tuple[str, ...]:
@@ -290,6 +261,34 @@ def _boost(
         columns, label=target, init_score=begun, params={"max_bin": _PARAMETERS["max_bin"], "verbosity": -1}
     )
     return lightgbm.train({**_PARAMETERS, "objective": objective, "seed": seed}, data, _ROUNDS)
+
+
+def _boost_logistic(
+    columns: NDArray[Any],
+    answers: NDArray[Any],
+    weights: FloatArray,
+    options: Mapping[str, Any],
+    *,
+    seeds: Sequence[int],
+    rounds: int,
+) -> list[Any]:
+    """Trees of every seed that say yes or no of each row of columns; `options` stand before `_PARAMETERS`."""
+    lightgbm = _lightgbm()
+    return [
+        lightgbm.train(
+            {**_PARAMETERS, **options, "objective": "binary", "seed": seed},
+            lightgbm.Dataset(columns, answers, weight=weights, params={"max_bin": _PARAMETERS["max_bin"]}),
+            rounds,
+        )
+        for seed in seeds
+    ]
+
+
+def _trees_alone(names: tuple[str, ...], boosters: Sequence[Any], provenance: Mapping[str, Any]) -> Scorer:
+    """A scorer that is the average of the boosters."""
+    return Scorer(
+        measurements=names, base=np.zeros(3), temperature=1.0, provenance=dict(provenance), **_arrays(boosters)
+    )
 
 
 def _lightgbm() -> Any:
