@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
+from kinematify.model.output import check_output
 from kinematify.pipeline import infer
 from kinematify.refinement.folder import as_left, open_model_folder, read_record, write_refined
 from kinematify.refinement.hints import AXES, Hint, with_hints
@@ -52,6 +53,7 @@ class ModelFolder:
             InputError: The folder holds no model of this version, or it was changed by hand.
             OutputError: The folder cannot be written; it is as it was.
         """
+        check_output(self.folder, overwrite=True)
         if not self._steps:
             assembly, config = open_model_folder(self.folder)
             record = read_record(self.folder)

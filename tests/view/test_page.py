@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,18 +13,11 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from tests.browser import opened
 from tests.objects import BUILDERS
+from tests.view.pages import PATIENCE, downloaded, mistakes, press, served
 from tools.draw_view import keep_candidate
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
-
-    from playwright.sync_api import Page
-
-    from kinematify.view.window import Window
-
-PATIENCE = 180_000
-"""Without a graphics card [ms]."""
 
 
 @pytest.fixture
@@ -33,23 +25,6 @@ def folder(tmp_path: Path) -> Path:
     pytest.importorskip("viser", reason="viser is not installed")
     write_inference(infer(BUILDERS["edge_door"]().assembly), tmp_path / "model", preview=False)
     return tmp_path / "model"
-
-
-@contextmanager
-def served(folder: Path, port: int) -> Iterator[Window]:
-    from kinematify.view.window import Window  # needs viser
-
-    window = Window(folder / "model.urdf", port=port)
-    window.run_aside()
-    try:
-        yield window
-    finally:
-        window.close()
-
-
-def press(page: Page, words: str) -> None:
-    """Press a button; frames are so rare without a graphics card that plain clicks wait for ever."""
-    page.locator("button", has_text=words).first.evaluate("button => button.click()")
 
 
 def test_a_candidate_is_chosen_kept_and_found_in_the_file(folder: Path) -> None:
@@ -60,7 +35,7 @@ def test_a_candidate_is_chosen_kept_and_found_in_the_file(folder: Path) -> None:
         said = keep_candidate(page, joint.name, "fixed")
         assert f"--hint {joint.child}=fixed" in said
         assert page.evaluate("document.documentElement.scrollWidth") <= 400, "nothing hangs over the side"
-        assert not [line for line in told if line.startswith("error")]
+        assert not mistakes(told)
     assert read_robot(folder / "model.urdf").joints[0].kind is JointType.FIXED
 
 
@@ -88,23 +63,23 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
             assert np.allclose(found.axis, joint.axis, atol=1e-5)
             press(second, "Take the last choice back")
             page.get_by_text("The same from the command line").wait_for(state="detached", timeout=PATIENCE)
-            assert not [line for line in told if line.startswith("error")]
+            assert not mistakes(told)
     (again,) = read_robot(folder / "model.urdf").joints
     assert (again.lower, again.upper) == (joint.lower, joint.upper)
 
 
-def test_a_film_of_the_joint_is_downloaded(folder: Path, tmp_path: Path) -> None:
+def test_a_film_of_the_joint_and_a_picture_are_downloaded(folder: Path, tmp_path: Path) -> None:
     with served(folder, 18160) as window, opened(window.url) as (page, _):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
-        page.get_by_role("tab", name="View").focus()
-        page.keyboard.press("Enter")
-        press(page, "Film (GIF)")
-        page.locator("button", has_text=".gif").first.wait_for(state="attached", timeout=PATIENCE)
-        with page.expect_download(timeout=PATIENCE) as download:
-            press(page, ".gif")
-        download.value.save_as(tmp_path / "film.gif")
+        downloaded(page, "Film (GIF)", tmp_path / "film.gif")
+        downloaded(page, "Picture (PNG)", tmp_path / "picture.png")
     with Image.open(tmp_path / "film.gif") as film:
         assert film.n_frames > 10
         shut = np.asarray(film.convert("RGB"), dtype=int)
         film.seek(film.n_frames // 2)
         assert np.abs(np.asarray(film.convert("RGB"), dtype=int) - shut).max() > 50
+    with Image.open(tmp_path / "picture.png") as picture:
+        assert picture.size == (1600, 1200)
+        pixels = np.asarray(picture.convert("RGB"), dtype=int)
+    middle, corner = pixels[500:700, 700:900].reshape(-1, 3), pixels[:100, :100].reshape(-1, 3)
+    assert np.abs(np.median(middle, axis=0) - np.median(corner, axis=0)).max() > 50, "the door before the sky"

@@ -1,0 +1,55 @@
+"""A model folder on the viewer's page, and what tests do there."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from playwright.sync_api import Page
+
+    from kinematify.view.window import Window
+
+PATIENCE = 180_000
+"""Without a graphics card [ms]."""
+
+
+@contextmanager
+def served(folder: Path, port: int) -> Iterator[Window]:
+    """The page of a model folder."""
+    from kinematify.view.window import Window  # needs viser
+
+    window = Window(folder / "model.urdf", port=port)
+    window.run_aside()
+    try:
+        yield window
+    finally:
+        window.close()
+
+
+def press(page: Page, words: str) -> None:
+    """Press a button; frames are so rare without a graphics card that plain clicks wait for ever."""
+    page.locator("button", has_text=words).first.evaluate("button => button.click()")
+
+
+def mistakes(told: list[str]) -> list[str]:
+    """Errors of the page's scripts.
+
+    Without those of a slow page, where viser takes updates of a panel and the new panel together and says so.
+    """
+    return [line for line in told if line.startswith("error") and "non-existent component" not in line]
+
+
+def downloaded(page: Page, button: str, out: Path) -> Path:
+    """Press a button of the tab "View" that makes a file, and save that."""
+    page.get_by_role("tab", name="View").focus()
+    page.keyboard.press("Enter")
+    press(page, button)
+    page.locator("button", has_text=out.suffix).first.wait_for(state="attached", timeout=PATIENCE)
+    with page.expect_download(timeout=PATIENCE) as download:
+        press(page, out.suffix)
+    download.value.save_as(out)
+    return out
