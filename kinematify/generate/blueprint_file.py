@@ -40,7 +40,7 @@ from kinematify.assembly.part import Part
 from kinematify.errors import InputError
 from kinematify.generate.blueprint import Blueprint, BlueprintJoint, BlueprintLoop
 from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_material, surface_of
-from kinematify.generate.procedural.solids import SEGMENTS, union
+from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
 from kinematify.robot.transforms import rotation_from_rpy
@@ -57,6 +57,8 @@ LARGEST = 1000.0
 """Of any length or coordinate [m]."""
 LARGEST_FILE = 2_000_000
 """[bytes]."""
+MIRRORS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+"""Normals of planes that things are mirrored across, by axis."""
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 _SHOWN = 5  # problems of a file that are told at once
 
@@ -81,10 +83,19 @@ class _Placed(_Described):
     """Of its middle [m]."""
     rpy: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
     """Turns about the fixed x, y and z axes, in this order [rad], as in URDF."""
+    mirrored: tuple[Literal["x", "y", "z"], ...] = ()
+    """It stands on the other side, too: across the plane through the world's origin that this axis is normal to."""
 
     def solid(self) -> Manifold:
         """The primitive where it stands."""
-        return self.made().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
+        solid = self.upright().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
+        for axis in self.mirrored:
+            solid += solid.mirror(MIRRORS[axis])
+        return solid
+
+    def upright(self) -> Manifold:
+        """The primitive about the origin along its axis, if it has one."""
+        return self.made()
 
     @abstractmethod
     def made(self) -> Manifold:
@@ -99,10 +110,9 @@ class _Round(_Placed):
     sides: int = Field(SEGMENTS, ge=3, le=256)
     """Of the polygon that stands for a circle."""
 
-    def solid(self) -> Manifold:
-        """The primitive where it stands."""
-        upright = {"x": (0.0, 90.0, 0.0), "y": (-90.0, 0.0, 0.0), "z": (0.0, 0.0, 0.0)}[self.axis]
-        return self.made().rotate(upright).transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
+    def upright(self) -> Manifold:
+        """See `_Placed`."""
+        return self.made().rotate({"x": (0.0, 90.0, 0.0), "y": (-90.0, 0.0, 0.0), "z": (0.0, 0.0, 0.0)}[self.axis])
 
 
 class BoxShape(_Placed):
@@ -166,6 +176,19 @@ class CapsuleShape(_Round):
         """See `_Placed`."""
         ball = Manifold.sphere(self.radius, self.sides)
         return Manifold.batch_hull([ball.translate((0, 0, sign * 0.5 * self.length)) for sign in (-1, 1)])
+
+
+class RodShape(_Placed):
+    """A cylinder with round ends, from one point to another."""
+
+    kind: Literal["rod"]
+    radius: Length
+    ends: tuple[Vector, Vector]
+    """Middles of the round ends [m]."""
+
+    def made(self) -> Manifold:
+        """See `_Placed`."""
+        return hull(*(ball(self.radius, end) for end in self.ends))
 
 
 class SphereShape(_Placed):
@@ -269,6 +292,7 @@ Shape = Annotated[
     | RoundedBoxShape
     | CylinderShape
     | CapsuleShape
+    | RodShape
     | SphereShape
     | ConeShape
     | TubeShape

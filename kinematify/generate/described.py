@@ -2,26 +2,56 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 import yaml
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field
 
-from kinematify.generate.blueprint_file import BlueprintDescription, parents_first
+from kinematify.generate.blueprint_file import MIRRORS, BlueprintDescription, Name, Vector, parents_first
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.parameter import counted
-from kinematify.robot.joint_type import JointType
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.generate.blueprint import BlueprintJoint
     from kinematify.generate.procedural.family import Values
     from kinematify.generate.procedural.workshop import Workshop
+    from kinematify.robot.arrays import FloatArray
 
 _FOLDER = Path(__file__).with_name("objects")
+
+
+class CopyDescription(BaseModel):
+    """More of a part elsewhere, with its joint and all that it carries; ``wheel_1`` is followed by ``wheel_2``."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    like: Name
+    moved: tuple[Vector, ...] = ()
+    """One more for each [m]."""
+    mirrored: Literal["x", "y", "z"] | None = None
+    """One more across the plane through the world's origin that this axis is normal to."""
+    around: int = Field(1, ge=1, le=60)
+    """So many in all, evenly about the world's z axis."""
+
+    def transforms(self) -> list[FloatArray]:
+        """Where the copies are, seen from the first, each of shape (3, 4)."""
+        found = [np.column_stack([np.eye(3), step]) for step in self.moved]
+        if self.mirrored:
+            normal = np.array(MIRRORS[self.mirrored])
+            found.append(np.column_stack([np.eye(3) - 2.0 * np.outer(normal, normal), np.zeros(3)]))
+        for k in range(1, self.around):
+            turn = rotation_about(np.array([0.0, 0.0, 1.0]), 2.0 * math.pi * k / self.around)
+            found.append(np.column_stack([turn, np.zeros(3)]))
+        return found
 
 
 class ObjectDescription(BlueprintDescription):
@@ -35,6 +65,8 @@ class ObjectDescription(BlueprintDescription):
     """How people call its parts, besides their names."""
     details: dict[str, int] = Field({})
     """Word for what belongs to a part -> how many of it there are."""
+    copies: tuple[CopyDescription, ...] = ()
+    """In this order; a later one may take up what an earlier one made."""
 
     def family(self) -> Family:
         """The object as a family that leaves nothing to choose but what every family does."""
@@ -52,19 +84,52 @@ class ObjectDescription(BlueprintDescription):
         )
 
     def _build(self, values: Values, workshop: Workshop) -> None:
-        for part in self.parts:
-            base = part is self.parts[0]
-            color = part.color if isinstance(part.color, str) else None
-            workshop.body(part.name, part.solid(), material=None if base else part.material, color=color)
-        for joint in parents_first([item.joint() for item in self.joints]):
-            rest = values.number("open")
-            if joint.kind.turns:
-                limits = None if joint.kind is JointType.CONTINUOUS else (joint.lower, joint.upper)
-                workshop.turns(joint.child, joint.parent, joint.axis, joint.pivot, limits, rest=rest)
-            else:
-                workshop.slides(
-                    joint.child, joint.parent, joint.axis, joint.pivot, (joint.lower, joint.upper), rest=rest
-                )
+        looks = {part.name: part for part in self.parts}
+        solids = {part.name: part.solid() for part in self.parts}
+        joints = {joint.child: joint.joint() for joint in self.joints}
+        for copy in self.copies:
+            for transform in copy.transforms():
+                names: dict[str, str] = {}
+                for name in _carried(copy.like, joints):
+                    own = name.startswith(copy.like) and copy.like in names
+                    names[name] = name.replace(copy.like, names[copy.like], 1) if own else _next_name(name, solids)
+                    looks[names[name]], solids[names[name]] = looks[name], solids[name].transform(transform)
+                    joints[names[name]] = _joint_elsewhere(joints[name], names, transform)
+        base = self.parts[0].name
+        for name, solid in solids.items():
+            look = looks[name]
+            color = None if name == base and values.choice("color") or not isinstance(look.color, str) else look.color
+            workshop.body(name, solid, material=None if name == base else look.material, color=color)
+        for joint in parents_first(list(joints.values())):
+            workshop.hang(joint, values.number("open"))
+
+
+def _carried(name: str, joints: Mapping[str, BlueprintJoint]) -> list[str]:
+    """A part and all that stands on it, parents first."""
+    found = [name]
+    for part in found:  # grows while it is walked
+        found += [joint.child for joint in joints.values() if joint.parent == part]
+    return found
+
+
+def _next_name(name: str, taken: Mapping[str, object]) -> str:
+    stem = name.rstrip("0123456789_")
+    return next(found for k in range(2, len(taken) + 3) if (found := f"{stem}_{k}") not in taken)
+
+
+def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform: FloatArray) -> BlueprintJoint:
+    """A joint of a copy; seen in a mirror, a turn goes round the other way."""
+    turn = transform[:, :3]
+    sense = np.linalg.det(turn) if joint.kind.turns else 1.0
+    follows = joint.mimic and replace(joint.mimic, joint=names.get(joint.mimic.joint, joint.mimic.joint))
+    return replace(
+        joint,
+        parent=names.get(joint.parent, joint.parent),
+        child=names[joint.child],
+        axis=sense * turn @ joint.axis,
+        pivot=transform @ np.append(joint.pivot, 1.0),
+        mimic=follows,
+    )
 
 
 @cache

@@ -63,6 +63,8 @@ def test_the_example_is_built_as_it_says():
         ({"kind": "cylinder", "radius": 1, "length": 3, "axis": "x", "sides": 256}, (3, 2, 2), 3 * math.pi),
         ({"kind": "cylinder", "radius": 1, "length": 3, "axis": "y", "sides": 256}, (2, 3, 2), 3 * math.pi),
         ({"kind": "capsule", "radius": 1, "length": 3}, (2, 2, 5), None),
+        ({"kind": "rod", "radius": 1, "ends": [[-1, 0, 0], [2, 0, 0]]}, (5, 2, 2), None),
+        ({"kind": "box", "size": [1, 1, 1], "xyz": [2, 3, 0], "mirrored": ["x", "y"]}, (5, 7, 1), 4.0),
         ({"kind": "sphere", "radius": 1}, (2, 2, 2), None),
         ({"kind": "cone", "radius": 1, "length": 3, "sides": 256}, (2, 2, 3), math.pi),
         ({"kind": "tube", "radius": 1, "inner_radius": 0.5, "length": 2, "sides": 256}, (2, 2, 2), 1.5 * math.pi),

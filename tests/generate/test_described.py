@@ -9,7 +9,7 @@ import pytest
 from manifold3d import Manifold, Mesh64
 
 from kinematify.errors import InputError
-from kinematify.generate.described import known_families
+from kinematify.generate.described import ObjectDescription, known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.materials import COLORS
@@ -74,3 +74,35 @@ def test_a_purpose_that_names_a_mechanism_is_asked_for(sentence: str) -> None:
 def test_a_purpose_that_asks_for_a_lid_is_not_dropped() -> None:
     with pytest.raises(InputError, match="hold"):
         from_text("a box to hold a hinged lid")
+
+
+def test_copies_take_along_what_they_carry() -> None:
+    caster = {"name": "caster_1", "shapes": [{"kind": "box", "size": [0.02, 0.02, 0.1], "xyz": [0.2, 0.1, 0.1]}]}
+    wheel = {"name": "caster_1_wheel", "shapes": [{"kind": "sphere", "radius": 0.03, "xyz": [0.2, 0.15, 0.04]}]}
+    turn = {"type": "revolute", "lower": -0.1, "upper": 1.0}
+    described = ObjectDescription.model_validate(
+        {
+            "name": "cart",
+            "title": "cart",
+            "words": ["cart"],
+            "parts": [{"name": "board", "shapes": [{"kind": "box", "size": [1, 1, 0.1]}]}, caster, wheel],
+            "joints": [
+                {**turn, "parent": "board", "child": "caster_1", "axis": [0, 0, 1], "pivot": [0.2, 0.1, 0]},
+                {**turn, "parent": "caster_1", "child": "caster_1_wheel", "axis": [1, 0, 0], "pivot": [0.2, 0.15, 0]},
+            ],
+            "copies": [{"like": "caster_1", "mirrored": "x"}, {"like": "caster_1", "around": 2}],
+        }
+    )
+    made = build(described.family(), {})
+    above = made.joint_above
+    assert set(above) == {f"caster_{k}{part}" for k in (1, 2, 3) for part in ("", "_wheel")}
+    assert above["caster_2_wheel"].parent == "caster_2"
+    assert np.allclose(above["caster_2"].axis, [0, 0, -1]), "it swings the other way"
+    assert np.allclose(above["caster_2_wheel"].axis, [1, 0, 0]), "it rolls the same way"
+    assert np.allclose(above["caster_2"].pivot, [-0.2, 0.1, 0])
+    assert np.allclose(above["caster_3"].pivot, [-0.2, -0.1, 0])
+    assert np.allclose(made.parts[-1].bounds.mean(axis=0), [-0.2, -0.15, 0.04])
+
+
+def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
+    assert from_text("a blue tractor").build().parts[0].color == COLORS["blue"]

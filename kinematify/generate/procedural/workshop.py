@@ -146,7 +146,7 @@ class Workshop:
         """
         kind = JointType.CONTINUOUS if limits is None else JointType.REVOLUTE
         lower, upper = limits or (-math.inf, math.inf)
-        self._join(
+        self.hang(
             BlueprintJoint(
                 parent=parent,
                 child=child,
@@ -171,7 +171,7 @@ class Workshop:
         rest: float = 0.0,
     ) -> None:
         """Hang a body on another one by a slide; arguments as for `turns`, limits in metres."""
-        self._join(
+        self.hang(
             BlueprintJoint(
                 parent=parent,
                 child=child,
@@ -198,7 +198,8 @@ class Workshop:
     def _direction(self, axis: Point) -> FloatArray:
         return np.asarray(axis if self._frame is None else self._frame[:, :3] @ axis)
 
-    def _join(self, joint: BlueprintJoint, rest: float) -> None:
+    def hang(self, joint: BlueprintJoint, rest: float = 0.0) -> None:
+        """Hang a body on another one as a joint in the world frame says; `rest` as for `turns`."""
         self._joints.append(joint)
         if math.isfinite(joint.upper) and joint.mimic is None:
             self._rest[joint.child] = rest * joint.upper
