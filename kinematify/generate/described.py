@@ -98,8 +98,10 @@ class ObjectDescription(BlueprintDescription):
         base = self.parts[0].name
         for name, solid in solids.items():
             look = looks[name]
-            color = None if name == base and values.choice("color") or not isinstance(look.color, str) else look.color
-            workshop.body(name, solid, material=None if name == base else look.material, color=color)
+            own = isinstance(look.color, str) and not (name == base and values.choice("color"))
+            workshop.body(
+                name, solid, material=None if name == base else look.material, color=str(look.color) if own else None
+            )
         for joint in parents_first(list(joints.values())):
             workshop.hang(joint, values.number("open"))
 
