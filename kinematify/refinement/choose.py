@@ -16,7 +16,7 @@ import numpy as np
 from kinematify.refinement.candidates import is_same
 from kinematify.refinement.hints import HINTED
 from kinematify.refinement.history import PlanChange
-from kinematify.refinement.tiers import TIERS, dear_verdict
+from kinematify.refinement.tiers import TIERS
 from kinematify.refinement.words import described, ranged
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.failure_rates import GEOMETRY, tier_of
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kinematify.config import RefineConfig
-    from kinematify.config.validation import ValidationSettings
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.refinement.candidates import CandidateJoints
     from kinematify.refinement.plan import Plan
     from kinematify.refinement.simulate import Simulator
+    from kinematify.refinement.tiers import DearTiers
     from kinematify.validation.feedback import Feedback, RangeSignal
 
 
@@ -63,7 +63,7 @@ class Chooser:
 
     candidates: CandidateJoints
     simulator: Simulator
-    settings: ValidationSettings
+    dear: DearTiers
     config: RefineConfig
     in_time: Callable[[], bool]
     simulated: int = 0
@@ -153,7 +153,7 @@ class Chooser:
         child = plan.assembly.names[joint.child]
         verdict = self.simulator.judge_joint(tried.model, tried.joint_of[child])
         if tier != GEOMETRY:
-            verdict = dear_verdict(tried, verdict, tier=tier, settings=self.settings)
+            verdict = self.dear.deepened(verdict, tried, tier)
         feedback = feedback_from(
             verdict.findings,
             verdict.joints,

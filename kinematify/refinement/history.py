@@ -30,18 +30,18 @@ class Round:
     """``geometry``, ``engines`` or ``task``: how far it was simulated."""
     changes: tuple[PlanChange, ...]
     """What was chosen anew before it was simulated."""
-    errors: int
-    """About motion or the task, by all that it was simulated by."""
-    warnings: int
     motion_errors: int
     """By the exact geometry alone, which every tier has."""
-    failed: tuple[str, ...]
+    errors: int = 0
+    """About motion or the task, by all that it was simulated by."""
+    warnings: int = 0
+    failed: tuple[str, ...] = ()
     """``CHECK joint`` of every error and warning about motion."""
-    blamed: tuple[str, ...]
+    blamed: tuple[str, ...] = ()
     """What the feedback blames, one phrase each."""
-    score: float
+    score: float = 0.0
     """Sum of the scores of the chosen candidates below the best ones, and of all log odds against them; 0 at best."""
-    seconds: float
+    seconds: float = 0.0
     refused: tuple[str, ...] = ()
     """Changes that would have hidden a failure rather than mended it, with the reason."""
 

@@ -1,7 +1,8 @@
 """The loop: simulate, feed back, choose again, and keep the best round (design section 5).
 
 It ends when nothing is left to act on, when a plan repeats, when the rounds or the time are used up. Each round is a
-plan of its own; the one with the fewest errors, then with the right parts and contacts, then with the fewest warnings,
+plan of its own, simulated in the cheap tier first, and in a dearer one where nothing is left to choose by that. The one
+with the fewest errors, then with the right parts and contacts, then with the fewest warnings,
 then with the most evidence is kept. The inference wins every tie, so that refining never makes a model worse by its
 own standards.
 """
@@ -22,7 +23,7 @@ from kinematify.refinement.history import History, PlanChange, Round
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.split import infer_joined
-from kinematify.refinement.tiers import TIERS, dear_verdict
+from kinematify.refinement.tiers import TIERS, DearTiers
 from kinematify.refinement.topology import EdgeMemory, SearchedContacts, replanned, search_again
 from kinematify.refinement.twins import TWINS, vote
 from kinematify.simulation.engines import DEFAULT_ENGINES, require_engine
@@ -101,6 +102,7 @@ def refine(
     )
     try:
         loop.run()
+        loop.settle()
     except KeyboardInterrupt:
         loop.ended = "it was interrupted"
         return replace(loop.result(), interrupted=True)
@@ -148,6 +150,7 @@ class _Loop:
         self.config, self.base, self.rounds = request.given.config.refine, request.base, request.rounds
         self.started = time.perf_counter()
         self.memory = EdgeMemory()
+        self.dear = DearTiers(settings=request.settings)
         self.done: list[_Done] = []
         self.candidates: dict[SearchedContacts, CandidateJoints] = {}
         self.ended = "all rounds were used"
@@ -174,6 +177,9 @@ class _Loop:
             if number == self.rounds:
                 return
             plan, contacts, changes, refused = self._choose(done)
+            while not changes and done.round.tier != self.tier and self.in_time():
+                done = self._deepened(number)
+                plan, contacts, changes, refused = self._choose(done)
             if not changes:
                 self.done[-1] = replace(done, round=replace(done.round, refused=(*done.round.refused, *refused)))
                 self.ended = "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
@@ -185,12 +191,22 @@ class _Loop:
                 self.ended = "the time was used up"
                 return
 
+    def settle(self) -> None:
+        """Simulate the best round as far as was asked: a dear tier adds failures only, so that others may be better."""
+        while self.in_time() and (best := self._best()).round.tier != self.tier:
+            self._deepened(best.round.number)
+
+    def _best(self) -> _Done:
+        return min(self.done, key=lambda done: done.rank(self.mended))
+
     def result(self) -> Refinement:
-        """The best round as an inference."""
+        """The best round as an inference; of those that were simulated farthest, where the time did not last."""
         if not self.done:
             history = self._history(0)
             return Refinement(inference=replace(self.given, refinement=self._record(history)), history=history)
-        best = min(self.done, key=lambda done: done.rank(self.mended))
+        farthest = max((done.round.tier for done in self.done), key=TIERS.index)
+        finalists = [done for done in self.done if done.round.tier == farthest]
+        best = min(finalists, key=lambda done: done.rank(self.mended))
         history = self._history(best.round.number)
         inference = self.given
         if best.round.number > 0:
@@ -210,13 +226,33 @@ class _Loop:
     def _simulate(
         self, number: int, plan: Plan, contacts: SearchedContacts, changes: list[PlanChange], refused: list[str]
     ) -> _Done:
-        """One round: the plan by geometry, and by the dear tiers where they were asked for."""
+        """One round: the plan by geometry."""
         self.request.progress(f"round {number}: simulating", number / (self.rounds + 1))
         start = time.perf_counter()
         verdict = self.simulator.judge(plan.model)
-        motion_errors = _severities(verdict)[0]
-        if self.tier != GEOMETRY:
-            verdict = dear_verdict(plan, verdict, tier=self.tier, settings=self.request.settings)
+        told = Round(
+            number=number,
+            tier=GEOMETRY,
+            changes=tuple(changes),
+            motion_errors=_severities(verdict)[0],
+            seconds=time.perf_counter() - start,
+            refused=tuple(refused),
+        )
+        return self._judged(plan, contacts, verdict, told)
+
+    def _deepened(self, number: int) -> _Done:
+        """A round in the next dearer tier."""
+        done = self.done[number]
+        tier = TIERS[TIERS.index(done.round.tier) + 1]
+        self.request.progress(f"round {number}: simulating by {tier}", number / (self.rounds + 1))
+        start = time.perf_counter()
+        verdict = self.dear.deepened(self.simulator.judge(done.plan.model), done.plan, tier)
+        told = replace(done.round, tier=tier, seconds=done.round.seconds + time.perf_counter() - start)
+        self.done[number] = self._judged(done.plan, done.contacts, verdict, told)
+        return self.done[number]
+
+    def _judged(self, plan: Plan, contacts: SearchedContacts, verdict: MotionVerdict, told: Round) -> _Done:
+        """A round with what its verdict means."""
         feedback = feedback_from(
             verdict.findings,
             verdict.joints,
@@ -226,32 +262,22 @@ class _Loop:
         )
         self.memory.add(plan.assembly, feedback.edges)
         errors, warnings = _severities(verdict)
-        return _Done(
-            plan=plan,
-            contacts=contacts,
-            verdict=verdict,
-            feedback=feedback,
-            round=Round(
-                number=number,
-                tier=self.tier,
-                changes=tuple(changes),
-                errors=errors,
-                warnings=warnings,
-                motion_errors=motion_errors,
-                failed=tuple(_failed(verdict)),
-                blamed=tuple(_blamed(feedback)),
-                score=self._score(plan, contacts, feedback),
-                seconds=time.perf_counter() - start,
-                refused=tuple(refused),
-            ),
+        judged = replace(
+            told,
+            errors=errors,
+            warnings=warnings,
+            failed=tuple(_failed(verdict)),
+            blamed=tuple(_blamed(feedback)),
+            score=self._score(plan, contacts, feedback),
         )
+        return _Done(plan=plan, contacts=contacts, verdict=verdict, feedback=feedback, round=judged)
 
     def _choose(self, done: _Done) -> tuple[Plan, SearchedContacts, list[PlanChange], list[str]]:
         """The next plan: first what the parts are and what they hang on, then how they move."""
         self.request.progress(
             f"round {done.round.number}: choosing again", (done.round.number + 0.5) / (self.rounds + 1)
         )
-        if done.round.number == 0:
+        if done.round.number == 0 and done.round.tier == GEOMETRY:
             rebuilt_plan = self._rebuilt(done)
             if rebuilt_plan is not None:
                 self.mended = 1
@@ -264,7 +290,7 @@ class _Loop:
         chooser = Chooser(
             candidates=candidates,
             simulator=self.simulator,
-            settings=self.request.settings,
+            dear=self.dear,
             config=self.config,
             in_time=self.in_time,
         )

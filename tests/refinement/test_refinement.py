@@ -517,11 +517,20 @@ def test_a_fixed_piece_is_one_part_again_when_scored() -> None:
     assert (dict(unchanged.parents), mended) == (dict(loose.parents), 0)
 
 
-def test_what_fails_in_an_engine_is_tried_there_again() -> None:
+def test_what_fails_by_geometry_is_mended_before_an_engine_runs() -> None:
+    blocked = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    history = refine(blocked, tier="engines", rounds=1).history
+    assert [(item.tier, item.errors > 0) for item in history.rounds] == [("geometry", True), ("engines", False)]
+    assert history.kept == 1
+
+
+def test_what_only_fails_in_an_engine_is_tried_there_again() -> None:
     right = joint_above(inferred("drawer"), "drawer")
     blocked = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
-    refinement = refine(blocked, tier="engines", rounds=1)
+    blind = SETTINGS.model_copy(update={"geometry": SETTINGS.geometry.model_copy(update={"tolerance": 1.0})})
+    refinement = refine(blocked, tier="engines", rounds=1, settings=blind)
     first = refinement.history.rounds[0]
+    assert first.motion_errors == 0
     assert any(failed.startswith(("KV4", "KV5", "KV8")) for failed in first.failed)
     found = joint_above(refinement.inference, "drawer")
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)

@@ -30,7 +30,7 @@ from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
-from kinematify.refinement.tiers import TIERS, dear_verdict
+from kinematify.refinement.tiers import TIERS, DearTiers
 from kinematify.validation import failure_rates
 from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
 from kinematify.validation.feedback import only_collision_meets
@@ -135,7 +135,7 @@ def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
     settings = load_settings()
     verdict = Simulator(plan.model, settings.geometry).judge(plan.model)
     if tier != GEOMETRY:
-        verdict = dear_verdict(plan, verdict, tier=tier, settings=settings)
+        verdict = DearTiers(settings=settings).deepened(verdict, plan, tier)
     carrier = {joint.child: joint.name for joint in plan.model.joints}
     failed: dict[str, dict[str, Severity]] = {name: {} for name in carrier.values()}
     for finding in verdict.findings:

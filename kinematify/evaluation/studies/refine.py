@@ -38,7 +38,7 @@ from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
-from kinematify.refinement.tiers import TIERS
+from kinematify.refinement.tiers import TIERS, DearTiers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,7 +131,7 @@ def mistakes(mechanism: Mechanism, tier: str) -> list[Record]:
     chooser = Chooser(
         candidates=CandidateJoints(answer.assembly, answer.graph, answer.bearings, answer.config),
         simulator=Simulator(plan.model, settings.geometry),
-        settings=settings,
+        dear=DearTiers(settings=settings),
         config=answer.config.refine,
         in_time=lambda: True,
     )
