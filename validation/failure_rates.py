@@ -1,7 +1,8 @@
 """What a failure weighs: how often it occurs where a joint is wrong, against how often where it is right.
 
 The counts in ``failure_rates.json`` are of wrong joints planted in true mechanisms; `kinematify bench failures` makes
-them. A weight is the logarithm of the ratio of the two rates, the unit in which the choice of joints adds up evidence.
+them. A weight is a lower confidence bound of the logarithm of the ratio of the two rates, the unit in which the choice
+of joints adds up evidence: what was seen on few joints proves little.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ if TYPE_CHECKING:
 
     from kinematify.validation.finding import Severity
 
-RIGHT, LINE, TYPE, PARENT = "right", "line", "type", "parent"
-CLASSES = (RIGHT, LINE, TYPE, PARENT)
-"""What a joint was: right, or wrong in its line (axis or place), its type or its parent."""
+RIGHT, LINE, TYPE, PARENT, RANGE = "right", "line", "type", "parent", "range"
+CLASSES = (RIGHT, LINE, TYPE, PARENT, RANGE)
+"""What a joint was: right, or wrong in its line (axis or place), its type, its parent, or its range or sign."""
 GEOMETRY, ENGINES, TASK = "geometry", "engines", "task"
 RATES_FILE = "failure_rates.json"
-_DRAWN = 5.0  # joints of the common rate that are added to those of every class
+_SURE = 1.645  # standard errors: the true ratio is larger in 95 of 100 cases
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,15 +45,18 @@ class FailureRates:
         Args:
             check: Its id.
             severity: Of its finding: a warning is more frequent on right joints than an error.
-            wrong: `LINE`, `TYPE` or `PARENT`.
+            wrong: `LINE`, `TYPE`, `PARENT` or `RANGE`.
         """
-        return max(math.log(self._rate(check, severity, wrong) / self._rate(check, severity, RIGHT)), 0.0)
-
-    def _rate(self, check: str, severity: Severity, what: str) -> float:
-        """Rate of failures; few joints are drawn towards the rate of all, so that chance says nothing."""
         seen, failed = self.joints.get(tier_of(check), {}), self.failures.get(check, {}).get(severity, {})
-        common = (sum(failed.values()) + 0.5) / (sum(seen.values()) + 1.0)
-        return (failed.get(what, 0) + _DRAWN * common) / (seen.get(what, 0) + _DRAWN)
+        if not (seen.get(wrong) and seen.get(RIGHT)):
+            return 0.0
+        # The usual interval of a ratio of two rates (Katz and others 1978), with half a failure added for none.
+        ratio, variance = 0.0, 0.0
+        for what, sign in ((wrong, 1.0), (RIGHT, -1.0)):
+            count, joints = failed.get(what, 0) + 0.5, seen.get(what, 0) + 0.5
+            ratio += sign * math.log(count / joints)
+            variance += max(1.0 / count - 1.0 / joints, 0.0)
+        return max(ratio - _SURE * math.sqrt(variance), 0.0)
 
 
 def tier_of(check: str) -> str:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.check import ENGINE_FAMILIES, FeedbackRow
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.failure_rates import LINE, PARENT, TYPE, shipped_rates
+from kinematify.validation.failure_rates import LINE, PARENT, RANGE, TYPE, shipped_rates
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
@@ -53,6 +53,8 @@ class LineSignal:
     reason: str
     at: float | None
     """Value of the joint at which it failed [rad or m], if one is known."""
+    error: bool
+    """The check found an error, not only a warning."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +69,8 @@ class TypeSignal:
     reason: str
     at: float | None
     """Value of the joint at which it failed [rad or m], if one is known."""
+    error: bool
+    """The check found an error, not only a warning."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,6 +83,8 @@ class RangeSignal:
     upper: float | None
     lost: bool
     """Beyond the end the part has left its parent; otherwise it is blocked there."""
+    weight: float
+    """Log odds against the range as it is, positive."""
     check: str
     reason: str
 
@@ -125,6 +131,10 @@ class Feedback:
         Of each check its worst finding counts, once; what two engines find of a joint is one failure.
         """
         return max(_worst_of_each(self.lines, child), _worst_of_each(self.types, child))
+
+    def has_error(self, child: str) -> bool:
+        """Whether an error, not only warnings, speaks against the joint of a part."""
+        return any(item.error for item in (*self.lines, *self.types) if item.child == child)
 
     def failed_at(self, child: str) -> frozenset[float]:
         """Values of the joint of a part at which it failed for its line or its type [rad or m]."""
@@ -220,8 +230,16 @@ class _Case:
         """Add a signal against the line of a joint, if the failure is more frequent where it is wrong."""
         weight = self.rates.weight(finding.check, finding.severity, LINE)
         if weight > 0.0:
-            at = _value_of(finding, joint)
-            self.lines.append(LineSignal(child=joint.child, weight=weight, check=finding.check, reason=reason, at=at))
+            self.lines.append(
+                LineSignal(
+                    child=joint.child,
+                    weight=weight,
+                    check=finding.check,
+                    reason=reason,
+                    at=_value_of(finding, joint),
+                    error=finding.severity is Severity.ERROR,
+                )
+            )
 
     def against_type(self, finding: Finding, joint: Joint, reason: str) -> None:
         """Add a signal against the type of a joint, if the failure is more frequent where it is wrong."""
@@ -235,6 +253,7 @@ class _Case:
                     check=finding.check,
                     reason=reason,
                     at=_value_of(finding, joint),
+                    error=finding.severity is Severity.ERROR,
                 )
             )
 
@@ -268,18 +287,21 @@ class _Case:
         *,
         lost: bool = False,
     ) -> None:
-        """Add a signal about where the range of a joint ends."""
-        lower, upper = ends
-        self.ranges.append(
-            RangeSignal(
-                child=joint.child,
-                lower=lower,
-                upper=upper,
-                lost=lost,
-                check=finding.check,
-                reason=reason,
+        """Add a signal about where the range of a joint ends, if the failure is more frequent where it is wrong."""
+        weight = self.rates.weight(finding.check, finding.severity, RANGE)
+        if weight > 0.0:
+            lower, upper = ends
+            self.ranges.append(
+                RangeSignal(
+                    child=joint.child,
+                    lower=lower,
+                    upper=upper,
+                    lost=lost,
+                    weight=weight,
+                    check=finding.check,
+                    reason=reason,
+                )
             )
-        )
 
     def leave(self, finding: Finding, reason: str, blame: Blame | None = None) -> None:
         """Note that the search does nothing about a finding, and why."""

@@ -39,6 +39,8 @@ _PIVOT_SHARE = 0.2
 NOTHING = "nothing"
 AXIS, PIVOT, TYPE, SIGN, PARENT, SECOND = "axis by 90 deg", "pivot", "type", "sign", "parent", "second best"
 FAULTS = (AXIS, PIVOT, TYPE, SIGN, PARENT, SECOND)
+RANGE = "range"
+"""A range that reaches twice as far: a fault that is counted, and no wrong joint."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,7 +80,7 @@ class Planted:
     """A mechanism with one wrong joint."""
 
     fault: str
-    """Of `FAULTS`."""
+    """Of `FAULTS`, or `RANGE`."""
     part: str
     """Whose joint is wrong."""
     inference: Inference
@@ -139,15 +141,15 @@ def planted_faults(
     Args:
         mechanism: A true one.
         seed: Draws the joints.
-        faults: Some of `FAULTS`.
+        faults: Some of `FAULTS`, and `RANGE`.
         level: The wrong joint scores as the best candidate does, so that only simulation tells them apart. Otherwise it
             scores what inference gives it. The second best has the score of the best in either case.
     """
     for fault in faults:
-        random = np.random.default_rng([seed, FAULTS.index(fault)])
+        random = np.random.default_rng([seed, (*FAULTS, RANGE).index(fault)])
         for index in random.permutation(len(mechanism.inference.joints)):
             found = _planted(mechanism, int(index), fault, random, level=level)
-            if found is not None and found.part in mechanism.wrong(found.inference):
+            if found is not None and (fault == RANGE or found.part in mechanism.wrong(found.inference)):
                 yield found
                 break
 
@@ -169,6 +171,9 @@ def _planted(
         wrong = _other_type(joint, part.centroid, 0.5 * part.diagonal)
     elif fault == SIGN:
         wrong = replace(joint, axis=-joint.axis) if opening_sign(joint.lower, joint.upper) else None
+    elif fault == RANGE:
+        ends = joint.kind is not JointType.FIXED and np.isfinite(joint.upper - joint.lower)
+        wrong = replace(joint, lower=2.0 * joint.lower, upper=2.0 * joint.upper) if ends else None
     elif fault == PARENT:
         tree, wrong = _other_parent(inference, joint, random)
     else:

@@ -76,6 +76,7 @@ class Chooser:
         """Take decisions about joints again, one part after the other, those that most speaks against first.
 
         Doubted are the joints that failures blame, and those that score far less than a candidate by their shape alone.
+        A warning by itself moves no joint that nothing scores above, for true joints warn too.
 
         Args:
             plan: What was simulated.
@@ -84,16 +85,15 @@ class Chooser:
         changes: list[PlanChange] = []
         names = plan.assembly.names
         blamed = {item.child for item in feedback.lines} | {item.child for item in feedback.types}
-        odds = {
-            names[joint.child]: feedback.against(names[joint.child]) - self.candidates.score(plan.tree, joint)
-            for joint in plan.joints
-        }
+        scores = {names[joint.child]: self.candidates.score(plan.tree, joint) for joint in plan.joints}
+        odds = {child: feedback.against(child) - score for child, score in scores.items()}
+        unsure = {child for child in blamed if feedback.has_error(child) or scores[child] < 0.0}
         hinted = {names[joint.child] for joint in plan.joints if HINTED in joint.evidence}
         self.refused += [
             f"{child}: what failed speaks against its joint, but a hint asked for it; without the hint others are tried"
             for child in sorted(blamed & hinted)
         ]
-        doubted = [child for child in odds if child in blamed or odds[child] > self.config.margin]
+        doubted = [child for child in odds if child in unsure or -scores[child] > self.config.margin]
         doubted = [child for child in doubted if child not in hinted]
         for child in sorted(doubted, key=lambda child: (-odds[child], child)):
             if child in blamed:
@@ -185,8 +185,8 @@ class Chooser:
         return plan.with_joint(best.joint), change
 
     def _lead_of(self, trial: Trial, first: Trial) -> float:
-        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it fails no less."""
-        if trial.against >= first.against:
+        """What a candidate has to lead the chosen one by: more if it moves otherwise, most if it mends no failure."""
+        if first.against == 0.0 or trial.against > 0.0:
             return self.config.margin
         joint, old = trial.joint, first.joint
         alike = abs(float(joint.axis @ old.axis)) > _SAME_WAY and joint.kind.turns == old.kind.turns

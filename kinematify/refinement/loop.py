@@ -335,7 +335,7 @@ class _Loop:
         graph, bearings = rebuilt(assembly, surfaces, audit, self.given.bearings, config)
         contacts = SearchedContacts(graph=graph, bearings=bearings)
         trees = search_again(assembly, contacts, self.memory, self.given.trees, config, base=self.base)
-        plan, changes = replanned(done.plan, contacts, trees[0], keep=False)
+        plan, changes = replanned(done.plan, done.contacts, contacts, trees[0])
         why = f"{len(audit.missing)} contacts were missing and {len(audit.spurious)} are none"
         told = PlanChange(
             part=assembly.names[trees[0].root], what="contacts", before=f"{len(self.given.graph.edges)}",
@@ -353,7 +353,7 @@ class _Loop:
         )
         if trees[0].parents == done.plan.tree.parents:
             return done.plan, []
-        plan, changes = replanned(done.plan, done.contacts, trees[0], keep=True)
+        plan, changes = replanned(done.plan, done.contacts, done.contacts, trees[0])
         before, after = (self.simulator.judge(tried.model) for tried in (done.plan, plan))
         return (plan, changes) if _severities(after) < _severities(before) else (done.plan, [])
 

@@ -9,7 +9,7 @@ from kinematify.pipeline.infer import infer
 from kinematify.pipeline.pieces import joints_of_pieces, tree_of_pieces
 from kinematify.refinement.history import PlanChange
 from kinematify.refinement.plan import Plan
-from kinematify.refinement.topology import SearchedContacts
+from kinematify.refinement.topology import SearchedContacts, with_kept
 
 if TYPE_CHECKING:
     from kinematify.contact.graph import Pair
@@ -37,7 +37,7 @@ def infer_joined(
     whole = infer(joined(assembly, groups), config=plan.config, base=named)
     tree = tree_of_pieces(whole.trees[0], groups, mains)
     joints = joints_of_pieces(assembly, tree, whole.joints, groups, mains)
-    new = Plan(assembly=assembly, config=plan.config, tree=tree, joints=joints)
+    new = Plan(assembly=assembly, config=plan.config, tree=tree, joints=with_kept(plan, contacts, joints))
     changes = [
         PlanChange(
             part=assembly.names[piece],

@@ -17,7 +17,7 @@ from kinematify.refinement.plan import Plan
 from kinematify.topology.reward import SimulatedEdges
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
@@ -75,26 +75,18 @@ def search_again(
 
 
 def replanned(
-    plan: Plan, contacts: SearchedContacts, tree: KinematicTree, *, keep: bool
+    plan: Plan, before: SearchedContacts, contacts: SearchedContacts, tree: KinematicTree
 ) -> tuple[Plan, list[PlanChange]]:
     """The plan on another tree, with the joints that the inference would choose there.
 
     Args:
         plan: On the tree before.
+        before: The contacts that it was found on.
         contacts: That the new tree was found on.
         tree: The new one.
-        keep: The contacts have not changed: joints of edges that stay are kept where the inference would choose the
-            same on either tree.
     """
     chosen = choose_joints(plan.assembly, contacts.graph, tree, contacts.bearings, plan.config)
-    kept: dict[Edge, JointEstimate] = {}
-    if keep:
-        before = choose_joints(plan.assembly, contacts.graph, plan.tree, contacts.bearings, plan.config)
-        then = {(joint.parent, joint.child): joint for joint in before}
-        now = {(joint.parent, joint.child): joint for joint in chosen}
-        known = {(joint.parent, joint.child): joint for joint in plan.joints}
-        kept = {edge: known[edge] for edge in now.keys() & then.keys() if _alike(now[edge], then[edge])}
-    joints = tuple(kept.get((joint.parent, joint.child), joint) for joint in chosen)
+    joints = with_kept(plan, before, chosen)
     names = plan.assembly.names
     new = Plan(assembly=plan.assembly, config=plan.config, tree=tree, joints=joints)
     changes = [
@@ -109,6 +101,24 @@ def replanned(
         if before != after
     ]
     return new, changes
+
+
+def with_kept(plan: Plan, contacts: SearchedContacts, chosen: Sequence[JointEstimate]) -> tuple[JointEstimate, ...]:
+    """Joints of another tree; those of a plan stay on edges where the inference would choose on it what is chosen now.
+
+    Args:
+        plan: On the tree before.
+        contacts: That it was found on.
+        chosen: What the inference chooses on the new tree.
+    """
+    before = choose_joints(plan.assembly, contacts.graph, plan.tree, contacts.bearings, plan.config)
+    then = {(joint.parent, joint.child): joint for joint in before}
+    known = {(joint.parent, joint.child): joint for joint in plan.joints}
+    edges = [(joint.parent, joint.child) for joint in chosen]
+    return tuple(
+        known[edge] if edge in then and _alike(joint, then[edge]) else joint
+        for edge, joint in zip(edges, chosen, strict=True)
+    )
 
 
 def _alike(one: JointEstimate, other: JointEstimate) -> bool:

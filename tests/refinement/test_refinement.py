@@ -16,7 +16,7 @@ from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
-from kinematify.config.validation import load_settings
+from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
@@ -108,6 +108,15 @@ def test_a_joint_that_nothing_speaks_against_but_the_shape_is_measured_and_repla
     assert abs(float(found.axis @ right.axis)) == pytest.approx(1.0, abs=1e-3)
 
 
+def test_a_warning_by_itself_moves_no_joint_that_nothing_scores_above() -> None:
+    """The drawer is stopped after a hair to both sides, which is an error; told as a warning, it stays as it is."""
+    level = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=0.0)
+    for settings, moved in ((SETTINGS, True), (with_wrong_depth(10.0), False)):
+        refinement = refine(level, seconds=60.0, settings=settings)
+        assert "KV310 drawer_joint" in refinement.history.rounds[0].failed
+        assert bool(refinement.history.changed) is moved
+
+
 def test_a_hint_is_kept_against_failures_and_both_are_told() -> None:
     start = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
     told = with_hints(start, parse_hints(["drawer:axis=x"], start.assembly.names))
@@ -164,11 +173,18 @@ def test_evidence_of_shape_can_outweigh_the_simulation(short: float) -> None:
 
 
 def test_a_range_beyond_the_free_travel_ends_there_and_not_far_below() -> None:
+    """Where the door goes into its wall so deep that it is an error; a scratch by which right joints warn too stays."""
     right = joint_above(inferred("edge_door"), "door")
     wide = with_joint(inferred("edge_door"), "door", upper=4.5)
-    found = joint_above(refine(wide, seconds=60.0).inference, "door")
+    found = joint_above(refine(wide, seconds=60.0, settings=with_wrong_depth(0.0)).inference, "door")
     assert right.upper <= found.upper < 4.5
     assert found.upper > 2.25
+    assert joint_above(refine(wide, seconds=60.0, settings=with_wrong_depth(10.0)).inference, "door").upper == 4.5
+
+
+def with_wrong_depth(depth: float) -> ValidationSettings:
+    """The settings of the validation with another depth from which on an overlap is an error."""
+    return SETTINGS.model_copy(update={"geometry": SETTINGS.geometry.model_copy(update={"wrong": depth})})
 
 
 def test_no_range_is_cut_below_half_to_hide_a_failure() -> None:

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 CONFIG = load_config().refine.feedback
 RATES = FailureRates(
-    joints={tier: {"right": 100, "line": 10, "type": 10, "parent": 10} for tier in ("geometry", "engines", "task")},
+    joints={tier: {"right": 1000} | dict.fromkeys(CLASSES[1:], 100) for tier in ("geometry", "engines", "task")},
     failures={
         check: {
-            "error": {"right": 5, "line": 6, "type": 4, "parent": 3},
-            "warning": {"right": 10, "line": 6, "type": 4, "parent": 3},
+            "error": {"right": 50, "line": 60, "type": 40, "parent": 30, "range": 30},
+            "warning": {"right": 100, "line": 60, "type": 40, "parent": 30, "range": 30},
         }
         for check in CHECKS
     },
@@ -220,20 +220,26 @@ def test_what_its_carrier_moves_into_another_body_blames_that_carrier(tmp_path: 
     assert (signal.parent, signal.child, signal.better) == ("door", "drawer", "cabinet")
 
 
-def test_a_failure_weighs_the_ratio_of_its_rates_and_chance_weighs_nothing() -> None:
-    rare = FailureRates(
-        joints={"geometry": {"right": 300, "line": 300, "parent": 2}},
-        failures={
-            "KV310": {"error": {"right": 3, "line": 240}, "warning": {"right": 12, "line": 24}},
-            "KV312": {"error": {"right": 30, "line": 30}},
-        },
-        provenance={},
-    )
-    assert rare.weight("KV310", Severity.ERROR, LINE) == pytest.approx(np.log(240 / 3), rel=0.15)
-    assert rare.weight("KV310", Severity.WARNING, LINE) == pytest.approx(np.log(24 / 12), rel=0.15)
-    assert rare.weight("KV312", Severity.ERROR, LINE) == pytest.approx(0.0, abs=1e-9)
-    assert rare.weight("KV320", Severity.ERROR, LINE) == pytest.approx(0.0, abs=1e-2), "never seen on any joint"
-    assert rare.weight("KV312", Severity.ERROR, PARENT) < 0.5, "two joints say little"
+def test_a_failure_weighs_what_is_sure_of_the_ratio_of_its_rates_and_chance_weighs_nothing() -> None:
+    def rates(times: int) -> FailureRates:
+        return FailureRates(
+            joints={"geometry": {"right": 30 * times, "line": 30 * times, "parent": 2}},
+            failures={
+                "KV310": {"error": {"right": times, "line": 24 * times}, "warning": {"right": 3 * times, "line": 6}},
+                "KV312": {"error": {"right": 3 * times, "line": 3 * times}},
+                "KV321": {"error": {"line": 2}},
+            },
+            provenance={},
+        )
+
+    few, many = rates(1), rates(1000)
+    assert many.weight("KV310", Severity.ERROR, LINE) == pytest.approx(np.log(24), abs=0.1)
+    assert 0.5 < few.weight("KV310", Severity.ERROR, LINE) < np.log(24) - 1.0, "one in thirty may be chance"
+    assert many.weight("KV310", Severity.WARNING, LINE) == 0.0, "right joints warn as often"
+    assert many.weight("KV312", Severity.ERROR, LINE) == 0.0
+    assert few.weight("KV321", Severity.ERROR, LINE) == 0.0, "seen twice, it proves nothing"
+    assert few.weight("KV320", Severity.ERROR, LINE) == 0.0, "never seen on any joint"
+    assert few.weight("KV312", Severity.ERROR, PARENT) == 0.0, "two joints say little"
 
 
 def test_the_shipped_rates_are_of_known_checks_and_no_failure_is_counted_twice() -> None:

@@ -2,10 +2,10 @@
 
 Wrong joints are planted in true mechanisms as `kinematify bench refine` does, and nothing is refined. *Line*: an axis
 turned by 90 deg, a moved pivot, or the second-best hypothesis where it is of the right type; *type*, *parent*: the
-other type, another parent. A joint failed a check that found an error about it, or a warning and no error; the two are
-counted apart, and what only collision geometry is to blame for is not counted. The logarithm of the ratio of a rate to
-that on right joints is what the failure weighs in `kinematify refine`; `--write FILE` writes the counts as
-`validation/failure_rates.json` has them.
+other type, another parent; *range*: the other sign, or a range that reaches twice as far. A joint failed a check that
+found an error about it, or a warning and no error; the two are counted apart, and what only collision geometry is to
+blame for is not counted. What a failure weighs in `kinematify refine` is a lower bound (95 %) of the logarithm of the
+ratio of a rate to that on right joints; `--write FILE` writes the counts as `validation/failure_rates.json` has them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,18 @@ from kinematify.config.validation import load_settings
 from kinematify.errors import OutputError
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.job import erased_item
-from kinematify.evaluation.planted import AXIS, NOTHING, PARENT, PIVOT, SECOND, TYPE, planted_faults, true_mechanism
+from kinematify.evaluation.planted import (
+    AXIS,
+    NOTHING,
+    PARENT,
+    PIVOT,
+    RANGE,
+    SECOND,
+    SIGN,
+    TYPE,
+    planted_faults,
+    true_mechanism,
+)
 from kinematify.evaluation.record import table
 from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.refinement.plan import Plan
@@ -54,8 +65,15 @@ SAMPLE = (
     "src_satellite_dish", "src_solar_panel", "tz_button", "tz_cabinet_hammer", "urdformer_13", "urdformer_55",
 )  # fmt: skip
 """Objects of other hands whose licence lets us fit to them; none of them is measured by `kinematify bench refine`."""
-_FAULTS = (AXIS, PIVOT, TYPE, PARENT, SECOND)
-_CLASS = {AXIS: failure_rates.LINE, PIVOT: failure_rates.LINE, TYPE: failure_rates.TYPE, PARENT: failure_rates.PARENT}
+_FAULTS = (AXIS, PIVOT, TYPE, SIGN, PARENT, SECOND, RANGE)
+_CLASS = {
+    AXIS: failure_rates.LINE,
+    PIVOT: failure_rates.LINE,
+    TYPE: failure_rates.TYPE,
+    PARENT: failure_rates.PARENT,
+    SIGN: failure_rates.RANGE,
+    RANGE: failure_rates.RANGE,
+}
 
 
 class FailuresOptions(Options):

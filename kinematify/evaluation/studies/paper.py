@@ -3,7 +3,8 @@
 Trees: the five rewards under `paper` (the base link is the part of highest degree, edges inside a cluster are
 forbidden), `paper-base` (the base link is given, as in Algorithm 1) and `paper-open` (given, and nothing is forbidden);
 pieces of cut parts are not joined. Contact strength is exp(-gap / tolerance), for the paper says "proximity" and gives
-no formula; *by area* it is the area of the contact beside the largest one. Gaps are exact, *by fields* they are the
+no formula, so that all parts that touch have nearly the same; *by area* it is the area of the contact beside the
+largest one. Behind parts of wrong trees stands the strength of their contact. Gaps are exact, *by fields* they are the
 smallest signed distance of surface samples in the field of the other part, as the paper has it.
 
 Joints: on the true tree, DW-CAVL as printed and DW-CAVL+, in which a sample that has left the contact by more than
@@ -76,7 +77,8 @@ class PaperOptions(Options):
     )
     everyday: tuple[str, ...] = Field(_SAMPLE, description="Names or patterns of everyday objects; * for all.")
     objects: tuple[str, ...] = Field(("*",), description="Names or patterns of objects of these.")
-    poses: Annotated[tuple[str, ...], among(_POSES)] = Field(_POSES, description="Poses of trees and whole objects.")
+    poses: Annotated[tuple[str, ...], among(_POSES)] = Field(_POSES, description="Poses of trees.")
+    whole_poses: Annotated[tuple[str, ...], among(_POSES)] = Field(("rest",), description="Poses of whole objects.")
     seed: int = Field(0, description="Draws the errors of the oracles.")
     sdf: Literal["grid", "neural"] = Field("grid", description="Signed distances of the joints.")
 
@@ -100,10 +102,11 @@ def measure(options: PaperOptions, work: Work) -> Measured:
     chosen = {item.name for item in matching([item for found in sets.values() for item in found], options.objects)}
     items = [(name, item) for name, found in sets.items() for item in found if item.name in chosen]
     records: list[Record] = []
+    poses_of = {"trees": options.poses, "joints": ("rest",), "whole": options.whole_poses}
     for part, function in (("trees", searched_trees), ("joints", judged_joints), ("whole", inferred_wholes)):
         if part not in options.parts:
             continue
-        poses = [item for item in CONDITIONS if item.name in (("rest",) if part == "joints" else options.poses)]
+        poses = [item for item in CONDITIONS if item.name in poses_of[part]]
         asked = {
             f"{part}, {item.name}, {pose.name}": PosedObject(
                 item=item, condition=pose, sdf=options.sdf, seed=options.seed
@@ -145,8 +148,24 @@ def searched_trees(asked: PosedObject) -> Record:
             "rules": name,
             "ted": tree_edit_distance(true, found).value,
             "parents": parent_errors(true, found),
+            "wrong": [
+                _wrong_parent(assembly, graph, part, true[part], found[part])
+                for part in true
+                if true[part] != found[part]
+            ],
         })  # fmt: skip
     return {"rows": rows}
+
+
+def _wrong_parent(assembly: Assembly, graph: ContactGraph, part: int, true: int, found: int) -> str:
+    """A part that hangs on another one than it should, with the strength of its contact with either."""
+
+    def parent(index: int) -> str:
+        edge = graph.by_pair.get((min(part, index), max(part, index)))
+        held = "no contact" if edge is None else f"{edge.strength:.3f}"
+        return "the base" if index < 0 else f"{assembly.names[index]} ({held})"
+
+    return f"{assembly.names[part]} on {parent(found)}, in truth on {parent(true)}"
 
 
 def inferred_wholes(asked: PosedObject) -> Record:
@@ -247,7 +266,7 @@ def report(found: Report[Record]) -> list[str]:
         wrong = [row for row in parts["trees"] if row["rules"] == "paper-open" and row["ted"] > 0]
         blocks.append(
             "\n".join(
-                f"- {row['object']}, {row['pose']}: TED {row['ted']:g}, {row['parents']} parents" for row in wrong
+                f"- {row['object']}, {row['pose']}: TED {row['ted']:g}; {'; '.join(row['wrong'])}" for row in wrong
             )
             or "None."
         )
