@@ -79,7 +79,7 @@ def test_bench_counts_what_refinement_finds_and_repairs(
     monkeypatch.chdir(tmp_path)
     written(tmp_path / "models" / "door")
     words = ["bench", "refine", "--data", "models", "--objects", "*", "--faults", f"{PIVOT},{SIGN}", "--jobs", "1"]
-    assert run([*words, "--inferred", "-o", "out"]) == 0
+    assert run([*words, "--inferred", "*", "-o", "out"]) == 0
     capsys.readouterr()
     records = load_study_report(tmp_path / "out", "refine").records
     assert [record["fault"] for record in records] == ["nothing", PIVOT, SIGN, "as inferred"]

@@ -4,7 +4,8 @@ Trees: the five rewards under `paper` (the base link is the part of highest degr
 forbidden), `paper-base` (the base link is given, as in Algorithm 1) and `paper-open` (given, and nothing is forbidden);
 pieces of cut parts are not joined. Contact strength is exp(-gap / tolerance), for the paper says "proximity" and gives
 no formula, so that all parts that touch have nearly the same; *by area* it is the area of the contact beside the
-largest one. Behind parts of wrong trees stands the strength of their contact. Gaps are exact, *by fields* they are the
+largest one. A part hangs wrong where it touches another one no less than what carries it, be it for a gap in the true
+joint or because both meet in that pose; the strengths stand beside. Gaps are exact, *by fields* they are the
 smallest signed distance of surface samples in the field of the other part, as the paper has it.
 
 Joints: on the true tree, DW-CAVL as printed and DW-CAVL+, in which a sample that has left the contact by more than

@@ -5,15 +5,16 @@ part, the other type, the other sign, another parent that the part touches, and 
 fitted choice puts next, written in place of a right one with the log odds of it. Contacts are as measured; the
 candidates are those of inference, the right one among them. The other wrong joints have the log odds that the fitted
 choice gives them beside the candidates, with --level those of the best candidate, so that only simulation tells them
-apart. *Found*: a failure blames the joint. *Repaired*: parent, type, axis within 10 deg, line within a tenth of the
-part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is inferred anew. *Harm*:
-joints that were right and are not any more, or whose range overlaps the true one by .1 less. The rows *nothing* are the
-true mechanisms as they are.
+apart. *Found*: a failure blames the joint, in whichever round. *Repaired*: parent, type, axis within 10 deg, line
+within a tenth of the part, and the opening side are right afterwards; of *parent*, the parent, on which the joint is
+inferred anew. *Harm*: joints that were right and are not any more, or whose range overlaps the true one by .1 less. The
+rows *nothing* are the true mechanisms as they are.
 
---inferred asks what simulation can do about the joints that inference gets wrong, with the true tree given. The rows
-*as inferred* refine what inference chooses there, with nothing planted. Then right near-best hypotheses are simulated
-beside every joint that was chosen wrong. *In the pool*: there is one. *Told*: the simulation has more against the joint
-that was chosen than against a right one. No loop that chooses by simulation repairs more.
+--inferred OBJECTS asks what simulation can do about the joints that inference gets wrong, with the true tree given. The
+rows *as inferred* refine what inference chooses there, with nothing planted; the rows *nothing* are of these objects
+too. Then right near-best hypotheses are simulated beside every joint that was chosen wrong. *In the pool*: there is
+one. *Told*: the simulation has more against the joint that was chosen than against a right one. No loop that chooses by
+simulation repairs more.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ class RefineOptions(Options):
         ("geometry",), description="Some of geometry, engines, task."
     )
     level: bool = Field(default=False, description="Planted joints score as the best candidate does.")
-    inferred: bool = Field(default=False, description="Joints that inference gets wrong as well.")
+    inferred: tuple[str, ...] = Field((), description="Objects refined as they are inferred as well; * for all.")
     seed: int = Field(0, description="Draws the joints.")
     config: str = Field("default", description="Configuration of the inference.")
 
@@ -87,16 +88,25 @@ class Planting:
 
 def measure(options: RefineOptions, work: Work) -> Measured:
     """Plant the faults of every object and refine each."""
+    every = find_objects(options.data)
+    planted = {item.name for item in matching(every, options.objects)}
+    inferred = {item.name for item in matching(every, options.inferred)} if options.inferred else set()
     asked = {
         f"{item.name}, {tier}": Planting(
-            item=item, faults=options.faults, tier=tier, level=options.level, seed=options.seed, config=options.config
+            item=item,
+            faults=options.faults if item.name in planted else (),
+            tier=tier,
+            level=options.level,
+            seed=options.seed,
+            config=options.config,
         )
         for tier in options.tiers
-        for item in matching(find_objects(options.data), options.objects)
+        for item in every
+        if item.name in planted | inferred
     }
     found = list(work.each(refined_faults, asked, timeout=7200.0).values())
-    if options.inferred:
-        found += work.each(judged_inferences, asked, timeout=7200.0).values()
+    judged = {name: planting for name, planting in asked.items() if planting.item.name in inferred}
+    found += work.each(judged_inferences, judged, timeout=7200.0).values()
     return [record for object_record in found for record in object_record["faults"]], {}
 
 
@@ -167,14 +177,15 @@ def _refined(mechanism: Mechanism, planted: Planted, asked: Planting) -> Record:
     before, after = mechanism.scores(planted.inference), mechanism.scores(answer)
     wrong, left = mechanism.wrong(planted.inference), mechanism.wrong(answer)
     shorter = {part for part in before if after[part].limit_iou < before[part].limit_iou - _IOU_LOST}
-    blamed = {part for part in wrong if any(item.startswith(f"{part}: ") for item in history.rounds[0].blamed)}
+    phrases = [phrase for item in history.rounds for phrase in item.blamed]
+    blamed = {part for part in wrong if any(item.startswith(f"{part}: ") for item in phrases)}
     cured = {part for part in wrong if after[part].matched} if planted.fault == PARENT else wrong - left
     return {
         "object": asked.item.name,
         "tier": asked.tier,
         "fault": planted.fault,
         "part": planted.part,
-        "failed": list(history.rounds[0].failed),
+        "failed": list(dict.fromkeys(failed for item in history.rounds for failed in item.failed)),
         "wrong": len(wrong),
         "found": len(blamed),
         "repaired": len(cured),
