@@ -134,7 +134,8 @@ class Feedback:
 
     def has_error(self, child: str) -> bool:
         """Whether an error, not only warnings, speaks against the joint of a part."""
-        return any(item.error for item in (*self.lines, *self.types) if item.child == child)
+        signals: tuple[LineSignal | TypeSignal, ...] = (*self.lines, *self.types)
+        return any(item.error for item in signals if item.child == child)
 
     def failed_at(self, child: str) -> frozenset[float]:
         """Values of the joint of a part at which it failed for its line or its type [rad or m]."""
