@@ -182,7 +182,12 @@ class _Loop:
                 plan, contacts, changes, refused = self._choose(done)
             if not changes:
                 self.done[-1] = replace(done, round=replace(done.round, refused=(*done.round.refused, *refused)))
-                self.ended = "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
+                if done.round.tier != self.tier:
+                    self.ended = f"the time was used up before {self.tier} could be simulated"
+                else:
+                    self.ended = (
+                        "nothing was left to choose again" if done.feedback else "nothing failed that it can mend"
+                    )
                 return
             if plan.signature in seen:
                 self.ended = "the next plan had been simulated before"

@@ -540,9 +540,15 @@ def test_what_fails_by_geometry_is_mended_before_an_engine_runs() -> None:
     assert history.kept == 1
 
 
+def test_time_that_ends_before_an_engine_runs_is_told() -> None:
+    history = refine(inferred("drawer"), tier="engines", seconds=1e-6).history
+    assert history.ended == "the time was used up before engines could be simulated"
+    assert [item.tier for item in history.rounds] == ["geometry"]
+
+
 def test_what_only_fails_in_an_engine_is_tried_there_again() -> None:
     right = joint_above(inferred("drawer"), "drawer")
-    blocked = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0))
+    blocked = mistaken(inferred("drawer"), "drawer", (1.0, 0.0, 0.0), lead=0.0)
     blind = SETTINGS.model_copy(update={"geometry": SETTINGS.geometry.model_copy(update={"tolerance": 1.0})})
     refinement = refine(blocked, tier="engines", rounds=1, settings=blind)
     first = refinement.history.rounds[0]
