@@ -1,13 +1,14 @@
-"""A real browser for tests of pages: the Chromium of the system, without a window."""
+"""A page in a real browser; tests are skipped where there is none."""
 
 from __future__ import annotations
 
-import os
-import shutil
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
+
+from kinematify.errors import EnvironmentFault
+from kinematify.evaluation.browser import open_browser
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,26 +17,16 @@ if TYPE_CHECKING:
 
 _PATIENCE = 180_000
 """For a page on a machine without a graphics card that other tests share [ms]."""
-_NAMES = ("chromium", "chromium-browser", "google-chrome")
-
-
-def browser_path() -> str:
-    """Path of the browser; skips the test where there is none."""
-    named = os.environ.get("KINEMATIFY_BROWSER")
-    found = named or next((path for path in map(shutil.which, _NAMES) if path), None)
-    if found is None:
-        pytest.skip("there is no Chromium on this machine (Debian: apt-get install chromium)")
-    return found
 
 
 @contextmanager
 def opened(address: str, *, dark: bool = False, width: int = 1200) -> Iterator[tuple[Page, list[str]]]:
     """Open an address; yield the page and, as they come, errors of its scripts and what it says on the console."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    path = browser_path()
-    flags = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    with playwright.sync_playwright() as engine:
-        browser = engine.chromium.launch(executable_path=path, args=flags)
+    with ExitStack() as stack:
+        try:
+            browser = stack.enter_context(open_browser())
+        except EnvironmentFault as fault:
+            pytest.skip(str(fault))
         page = browser.new_page(viewport={"width": width, "height": 800}, color_scheme="dark" if dark else "light")
         page.set_default_timeout(_PATIENCE)
         told: list[str] = []
@@ -44,7 +35,6 @@ def opened(address: str, *, dark: bool = False, width: int = 1200) -> Iterator[t
         page.on("request", lambda request: _note_request(request.url, told))
         page.goto(address)
         yield page, told
-        browser.close()
 
 
 def _note_request(url: str, told: list[str]) -> None:

@@ -14,13 +14,13 @@ import numpy as np
 
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.robot.robot import Inertial
+from kinematify.robot.weld import is_closed
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.config import ModelConfig
     from kinematify.robot.arrays import FloatArray, IntArray
 
-_WELD = 1e-7  # vertices closer than this fraction of the part's diagonal are one: above the rounding of float32 files
 _SLACK = 1e-6  # relative rounding of a volume compared with that of the hull
 
 
@@ -60,19 +60,7 @@ def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: Mod
 
 def _closed_volume(part: Part) -> _Solid | None:
     """Moments of the enclosed volume, or None if the mesh is not closed."""
-    # STL and other soups repeat a vertex for every face: compare positions, not indices.
-    keys = np.round((part.vertices - part.bounds[0]) / max(part.diagonal * _WELD, 1e-300)).astype(np.int64)
-    _, welded = np.unique(keys, axis=0, return_inverse=True)
-    return _integrate(part.vertices, part.faces) if _is_closed(welded.reshape(-1)[part.faces]) else None
-
-
-def _is_closed(faces: IntArray) -> bool:
-    """True if every directed edge is met by its reverse: the boundary of the surface is empty."""
-    start, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
-    count = int(faces.max()) + 1
-    forward = np.sort(start * count + end)
-    backward = np.sort(end * count + start)
-    return bool(np.array_equal(forward, backward))
+    return _integrate(part.vertices, part.faces) if is_closed(part.vertices, part.faces) else None
 
 
 def _integrate(vertices: FloatArray, faces: IntArray) -> _Solid:

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 import numpy as np
 
 from kinematify.robot.appearance import Appearance, Material, joined, painted
-from kinematify.robot.colors import srgb_of
+from kinematify.robot.colors import linear_of, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 
 if TYPE_CHECKING:
@@ -31,6 +31,9 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 _HARMLESS = ("KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "MSFT_", "KHR_mesh_quantization")
 """Extensions that a file may require without changing how positions are stored."""
+_OLDER = "KHR_materials_pbrSpecularGlossiness"
+_DEFAULT = Material(color=(1.0, 1.0, 1.0, 1.0), metallic=1.0, roughness=1.0)
+"""What glTF lets a surface look like of which the file says no more."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -170,7 +173,7 @@ class _Materials:
         index, colors = primitive.get("material"), primitive["attributes"].get("COLOR_0")
         if index is None and colors is None:
             return None
-        material = Material(color=(1.0, 1.0, 1.0, 1.0)) if index is None else self._material(index)
+        material = _DEFAULT if index is None else self._material(index)
         if colors is not None and material.texture is None:
             return self._painted(colors, corners, material)
         uv = None if index is None or material.texture is None else self._places(primitive, index, corners)
@@ -182,10 +185,12 @@ class _Materials:
     def _painted(self, accessor: int, corners: IntArray, material: Material) -> Appearance:
         """Colours of vertices, which are linear light, times that of the material, a mean for each face."""
         stated = self._source.numbers(accessor).astype(np.float64)
-        factor = np.array(material.color)
         light = stated[corners].mean(axis=1)
         opacity = light[:, 3] if light.shape[1] == 4 else np.ones(len(light))
-        return painted(np.column_stack([srgb_of(light[:, :3]), opacity]) * factor)
+        colors = srgb_of(light[:, :3] * linear_of(np.array(material.color[:3])))
+        looks = painted(np.column_stack([colors, opacity * material.color[3]]))
+        named = (replace(material, name="", color=one.color) for one in looks.materials)
+        return replace(looks, materials=tuple(named))
 
     def _places(self, primitive: dict[str, Any], index: int, corners: IntArray) -> FloatArray | None:
         """Where the corners lie in the texture, upwards as everywhere but in glTF, shape (F, 3, 2)."""
@@ -207,13 +212,14 @@ class _Materials:
             stated = self._document["materials"][index]
             factor, picture = _base_color(stated)
             surface = stated.get("pbrMetallicRoughness", {})
+            metallic = _DEFAULT.metallic if _OLDER not in stated.get("extensions", {}) else 0.0
             red, green, blue = srgb_of(np.array(factor[:3])).tolist()
             opacity = float(factor[3]) if stated.get("alphaMode", "OPAQUE") != "OPAQUE" else 1.0
             self._read[index] = Material(
                 name=str(stated.get("name", "")),
                 color=(red, green, blue, opacity),
-                metallic=float(surface.get("metallicFactor", 1.0 if surface else 0.0)),
-                roughness=float(surface.get("roughnessFactor", 1.0)),
+                metallic=float(surface.get("metallicFactor", metallic)),
+                roughness=float(surface.get("roughnessFactor", _DEFAULT.roughness)),
                 texture=self._texture(index, picture["index"]) if picture else None,
             )
         return self._read[index]
@@ -243,7 +249,7 @@ class _Materials:
 
 def _base_color(material: dict[str, Any]) -> tuple[list[float], dict[str, Any]]:
     """Linear colour with opacity of a material, and its texture; of its older way to say it where it uses that."""
-    older = material.get("extensions", {}).get("KHR_materials_pbrSpecularGlossiness")
+    older = material.get("extensions", {}).get(_OLDER)
     if older is not None:
         return older.get("diffuseFactor", [1.0, 1.0, 1.0, 1.0]), older.get("diffuseTexture", {})
     surface = material.get("pbrMetallicRoughness", {})

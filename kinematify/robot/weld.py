@@ -12,6 +12,9 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from kinematify.robot.arrays import FloatArray, IntArray
 
+_SAME_PLACE = 1e-7
+"""Fraction of the diagonal: above the rounding of float32 files."""
+
 
 def welded(vertices: FloatArray, faces: IntArray, tolerance: float) -> tuple[FloatArray, IntArray]:
     """Return what `weld` returns without the faces that are kept."""
@@ -70,6 +73,21 @@ def snapped(vertices: FloatArray, faces: IntArray, cells: int) -> tuple[FloatArr
     kept = (moved[:, 0] != moved[:, 1]) & (moved[:, 1] != moved[:, 2]) & (moved[:, 2] != moved[:, 0])
     _, distinct = np.unique(np.sort(moved[kept], axis=1), axis=0, return_index=True)
     return vertices[outward[first]], moved[kept][distinct]
+
+
+def is_closed(vertices: FloatArray, faces: IntArray) -> bool:
+    """Return True if every directed edge is met by its reverse: the boundary of the surface is empty.
+
+    Args:
+        vertices: Shape (V, 3); those at the same place count as one, as STL and other soups repeat them for every face.
+        faces: Shape (F, 3), at least one.
+    """
+    keys = np.round((vertices - vertices.min(axis=0)) / max(_SAME_PLACE * _diagonal(vertices), 1e-300))
+    _, place = np.unique(keys.astype(np.int64), axis=0, return_inverse=True)
+    corners = place.reshape(-1)[faces]
+    start, end = corners.reshape(-1), np.roll(corners, -1, axis=1).reshape(-1)
+    count = int(corners.max()) + 1
+    return bool(np.array_equal(np.sort(start * count + end), np.sort(end * count + start)))
 
 
 def _diagonal(points: FloatArray) -> float:

@@ -7,19 +7,19 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import trimesh
-from PIL import Image
 
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import quaternion_of, rotation_from_x
+from kinematify.robot.vectors import crossed, dots, lengths_of
+from kinematify.robot.weld import is_closed
+from kinematify.view.part_glb import glb_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     import viser
 
-    from kinematify.robot.appearance import Surface
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint
     from kinematify.view.scene import ViewScene
     from kinematify.view.shown import ClosedChain
@@ -129,8 +129,7 @@ class DrawnModel:
 
     def _add_glow(self, top: str, color: Color) -> Any:
         vertices, faces = self._scene.meshes[top]
-        shell = trimesh.Trimesh(vertices, faces, process=False)
-        swollen = vertices + _SWOLLEN * self._scene.size * np.asarray(shell.vertex_normals)
+        swollen = vertices + _SWOLLEN * self._scene.size * _normals(vertices, faces)
         handle = self._server.scene.add_mesh_simple(
             f"/parts/{top}/glow",
             swollen.astype(np.float32),
@@ -175,31 +174,10 @@ class DrawnModel:
     def _add_bodies(self) -> None:
         for top, surfaces in self._scene.surfaces.items():
             self._frames[top] = self._server.scene.add_frame(f"/parts/{top}", show_axes=False)
-            for number, surface in enumerate(surfaces):
-                handle = self._add_surface(f"/parts/{top}/{number}", surface)
-                handle.on_click(partial(self._clicked, top))
-
-    def _add_surface(self, name: str, surface: Surface) -> Any:
-        material = surface.material
-        if material.texture is None or surface.uv is None:
-            red, green, blue, opacity = material.color
-            return self._server.scene.add_mesh_simple(
-                name,
-                surface.vertices.astype(np.float32),
-                surface.faces.astype(np.uint32),
-                color=(round(255 * red), round(255 * green), round(255 * blue)),
-                opacity=None if opacity >= 1.0 else opacity,
-                flat_shading=True,
-                side="double",
+            handle = self._server.scene.add_glb(
+                f"/parts/{top}/seen", glb_of(surfaces, double_sided=not _is_solid(*self._scene.meshes[top]))
             )
-        look: Any = trimesh.visual
-        picture = Image.fromarray(material.texture.pixels)
-        mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
-        shown = look.material.PBRMaterial(
-            baseColorTexture=picture, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True
-        )
-        mesh.visual = look.TextureVisuals(uv=surface.uv, material=shown)
-        return self._server.scene.add_mesh_trimesh(name, mesh)
+            handle.on_click(partial(self._clicked, top))
 
     def _add_lines(self, name: str, points: FloatArray, color: Color, *, visible: bool = True) -> Any:
         colors = np.broadcast_to(np.array(color, dtype=np.uint8), points.shape)
@@ -220,3 +198,19 @@ class DrawnModel:
             if number == len(self._dashes):
                 self._dashes.append(self._add_lines(f"/closed/{number}", points, _CLOSED))
             self._dashes[number].points = points.astype(np.float32)
+
+
+def _is_solid(vertices: FloatArray, faces: IntArray) -> bool:
+    """True if a mesh is closed and its triangles look outward."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    return is_closed(vertices, faces) and float(dots(a, crossed(b, c)).sum()) > 0.0
+
+
+def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """Unit normals of vertices, means over their faces weighted by area, shape (V, 3)."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    sums = np.zeros_like(vertices)
+    for corner in faces.T:
+        np.add.at(sums, corner, crossed(b - a, c - a))
+    normals: FloatArray = sums / np.maximum(lengths_of(sums), np.finfo(float).tiny)[:, None]
+    return normals

@@ -36,6 +36,7 @@ def shown_with(scene: ViewScene, path: Path) -> Shown:
             scene=scene,
             alternatives=_alternatives_of(record),
             doubtful=tuple(map(str, record.get("doubtful", ()))),
+            doubtful_below=float(record.get("doubtful_below", 0.0)),
             chains=tuple(_chain(item, scene.robot) for item in record.get("closed_chains", ())),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:

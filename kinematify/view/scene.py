@@ -10,10 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
-from kinematify.geometry.scene import read_scene, relative
-from kinematify.render.picture import PosedMesh
 from kinematify.robot.appearance import Material, joined, plain, surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import (
@@ -26,10 +22,12 @@ from kinematify.robot.transforms import joint_motion, rotation_about
 from kinematify.validation.formats.view_data import camera_turn
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
-    from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.rest import Allowance
     from kinematify.geometry.scene import Scene
+    from kinematify.render.picture import PosedMesh
     from kinematify.robot.appearance import Appearance, Rgba, Surface
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.robot import Joint, RigidGroup, Robot
@@ -53,10 +51,15 @@ class Touch:
 class ViewScene:
     """A model with the joints that are tried."""
 
-    def __init__(self, robot: Robot, settings: ValidationSettings) -> None:
-        """Keep the robot; collisions are prepared when first asked for."""
+    def __init__(self, robot: Robot, read_solid: Callable[[], Robot] | None = None) -> None:
+        """Keep the robot; collisions are prepared when first asked for.
+
+        Args:
+            robot: What is seen.
+            read_solid: Reads the robot with its collision geometry; None: `robot` has it.
+        """
         self.robot = robot
-        self._settings = settings
+        self._read_solid = read_solid or (lambda: robot)
         self._tried: dict[str, Alternative] = {}
 
     @cached_property
@@ -113,6 +116,8 @@ class ViewScene:
 
     def posed(self, q: Mapping[str, float]) -> tuple[PosedMesh, ...]:
         """Return what is seen of every group in a configuration, frame of the root link, for pictures."""
+        from kinematify.render.picture import PosedMesh  # noqa: PLC0415  # loads the ray caster
+
         poses = self.poses(q)
         found = []
         for index, group in enumerate(self.groups):
@@ -220,6 +225,8 @@ class ViewScene:
         Args:
             q: Leader -> value [rad or m].
         """
+        from kinematify.geometry.scene import relative  # noqa: PLC0415  # as for `_collisions`
+
         scene, overlap, allowance = self._collisions
         poses = self.poses(q)
         tops = [self.groups[body.group].top for body in scene.bodies]
@@ -275,7 +282,12 @@ class ViewScene:
 
     @cached_property
     def _collisions(self) -> tuple[Scene, Overlap, Allowance]:
-        scene = read_scene(self.robot, self._settings.geometry)
+        from kinematify.config.validation import load_settings  # noqa: PLC0415  # what is seen first needs none of these
+        from kinematify.geometry.overlap import Overlap  # noqa: PLC0415
+        from kinematify.geometry.rest import Allowance  # noqa: PLC0415
+        from kinematify.geometry.scene import read_scene  # noqa: PLC0415
+
+        scene = read_scene(self._read_solid(), load_settings().geometry)
         overlap = Overlap(scene)
         return scene, overlap, Allowance(scene, overlap)
 

@@ -45,6 +45,16 @@ class ClosedChain:
         return np.concatenate([_dashed(first - reach, first + reach), _dashed(first, second)])
 
 
+@dataclass(frozen=True, kw_only=True)
+class Sight:
+    """A finding as the viewer shows it."""
+
+    title: str
+    message: str
+    q: Mapping[str, float] = field(default_factory=dict)
+    links: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shown:
     """A model to look at."""
@@ -54,6 +64,8 @@ class Shown:
     """Candidates of joints by (parent, child) link."""
     doubtful: tuple[str, ...] = ()
     """Links whose joints are to be looked at, the least sure first."""
+    doubtful_below: float = 0.0
+    """Confidence below which they are."""
     chains: tuple[ClosedChain, ...] = ()
     """Where chains of joints close."""
 

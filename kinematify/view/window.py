@@ -5,10 +5,10 @@ from __future__ import annotations
 import html
 import threading
 from contextlib import redirect_stdout
+from functools import partial
 from io import StringIO
 from typing import TYPE_CHECKING
 
-from kinematify.config.validation import load_settings
 from kinematify.errors import EnvironmentFault
 from kinematify.model.output import MODEL_FILE, RECORD_FILE
 from kinematify.robot.read import read_robot
@@ -20,23 +20,33 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kinematify.view.server import ModelViewer, Sight
+    from kinematify.view.keep import ModelFolder
+    from kinematify.view.server import ModelViewer
+    from kinematify.view.shown import Sight
 
 _PAGE_HEIGHT = 620
 """Of the frame in a notebook [pixels]."""
 
 
 def read_model(urdf: Path, package_dirs: Sequence[Path]) -> Shown:
-    """Read a URDF with its colours, and what `inference.json` tells of its joints where that lies beside it.
+    """Read what is seen of a URDF, and what `inference.json` tells of its joints where that lies beside it.
 
     Raises:
         InputError: One of them cannot be read.
     """
-    scene = ViewScene(read_robot(urdf, package_dirs=package_dirs, appearance=True), load_settings())
+    seen = read_robot(urdf, package_dirs=package_dirs, geometry="shown", appearance=True)
+    scene = ViewScene(seen, partial(read_robot, urdf, package_dirs=package_dirs))
     record = urdf.parent / RECORD_FILE
     if not record.is_file():
         return Shown(scene=scene, chains=declared_chains(scene.robot))
     return shown_with(scene, record)
+
+
+def _model_folder(urdf: Path) -> ModelFolder:
+    """The folder of a model, to write in; it loads the inference, which takes longer than to show the page."""
+    from kinematify.view.keep import ModelFolder  # noqa: PLC0415
+
+    return ModelFolder(urdf.parent)
 
 
 class Window:
@@ -70,22 +80,22 @@ class Window:
             raise EnvironmentFault(
                 "The viewer needs the package viser, which is not installed. Run `pip install kinematify[view]`."
             ) from error
-        from kinematify.view.keep import ModelFolder  # noqa: PLC0415  # loads the inference
         from kinematify.view.server import ModelViewer  # noqa: PLC0415  # needs viser
 
         shown = read_model(urdf, package_dirs)
         self._stop = threading.Event()
         with redirect_stdout(StringIO()):  # a banner of its own
-            self._server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
+            self.server = viser.ViserServer(host=host, port=port, label="kinematify view", verbose=False)
+        """Of viser: what else is to stand on the page may be added to it."""
         self.viewer: ModelViewer = ModelViewer(
-            self._server,
+            self.server,
             shown,
             sights=sights,
-            folder=ModelFolder(urdf.parent) if urdf.name == MODEL_FILE and shown.alternatives else None,
+            open_folder=partial(_model_folder, urdf) if urdf.name == MODEL_FILE and shown.alternatives else None,
             reopen=lambda: read_model(urdf, package_dirs),
         )
         name = "localhost" if host in ("127.0.0.1", "0.0.0.0") else host
-        self.url = f"http://{name}:{self._server.get_port()}"
+        self.url = f"http://{name}:{self.server.get_port()}"
         """Address of the page."""
 
     def run(self) -> None:
@@ -100,7 +110,7 @@ class Window:
         """End the page."""
         self._stop.set()
         with redirect_stdout(StringIO()):
-            self._server.stop()
+            self.server.stop()
 
     def _repr_html_(self) -> str:
         """The page in a notebook."""

@@ -7,16 +7,22 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import mujoco
 import numpy as np
 import pytest
 import trimesh
 from PIL import Image
-from pxr import Usd, UsdGeom, UsdShade
-from scipy.spatial import cKDTree
 
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
+from kinematify.evaluation.studies.colors import (
+    dressed,
+    make_object,
+    seen_of_glb,
+    seen_of_mjcf,
+    seen_of_urdf,
+    seen_of_usd,
+    unlike,
+)
 from kinematify.formats.export import export
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
@@ -25,19 +31,13 @@ from kinematify.model.scene import posed_meshes
 from kinematify.model.urdf import write_urdf
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import PictureScene, render_scene
-from kinematify.robot.appearance import plain
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
-from kinematify.robot.read import read_robot
+from kinematify.robot.mesh_file import read_meshes
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.robot.arrays import FloatArray
-
-_ALIKE = 0.05
-"""Of the range of a channel."""
 
 
 def _box(size: float, x: float) -> trimesh.Trimesh:
@@ -46,45 +46,6 @@ def _box(size: float, x: float) -> trimesh.Trimesh:
         box = box.subdivide()
     box.apply_translation((x, 0.0, 0.0))
     return box
-
-
-def _picture(random: np.random.Generator) -> Image.Image:
-    """Four quarters of different colours, so that a turned or mirrored picture is noticed."""
-    quarters = random.integers(20, 236, (2, 2, 3), dtype=np.uint8)
-    return Image.fromarray(np.kron(quarters, np.ones((16, 16, 1), dtype=np.uint8)))
-
-
-def _dressed(mesh: trimesh.Trimesh, kind: str, random: np.random.Generator) -> trimesh.Trimesh:
-    look: Any = trimesh.visual
-    color = [*random.uniform(0.05, 0.95, 3).tolist(), 1.0]
-    if kind == "plain":
-        mesh.visual = look.TextureVisuals(material=look.material.PBRMaterial(baseColorFactor=color, metallicFactor=0.0))
-    elif kind == "texture":
-        uv = mesh.vertices[:, :2] / 0.2 + 0.5
-        material = look.material.PBRMaterial(baseColorTexture=_picture(random), baseColorFactor=[1.0, 1.0, 1.0, 1.0])
-        mesh.visual = look.TextureVisuals(uv=uv, material=material)
-    else:
-        chosen = random.integers(30, 226, (3, 4))
-        chosen[:, 3] = 255
-        third = np.digitize(mesh.triangles_center[:, 2], (-0.03, 0.03))
-        mesh.visual = look.ColorVisuals(mesh, face_colors=chosen[third].astype(np.uint8))
-    return mesh
-
-
-def _make(seed: int, folder: Path) -> Path:
-    """A GLB of two or three boxes with colours of all kinds."""
-    random = np.random.default_rng(seed)
-    scene = trimesh.Scene()
-    for index in range(2 + seed % 2):
-        kind = ("plain", "texture", "vertices")[(seed + index) % 3]
-        mesh = _dressed(_box(0.2, 0.21 * index), kind, random)
-        if kind == "vertices":  # corners of their own, so that no colour is a mixture
-            mesh.unmerge_vertices()
-        scene.add_geometry(mesh, geom_name=f"part {index}", node_name=f"part {index}")
-    path = folder / f"object_{seed}.glb"
-    written: Any = scene.export
-    path.write_bytes(written(file_type="glb"))
-    return path
 
 
 def _model(assembly: Assembly) -> KinematicModel:
@@ -108,70 +69,25 @@ def _model(assembly: Assembly) -> KinematicModel:
     return build_model(assembly, tree, joints, name="object", config=load_config().model)
 
 
-def _spots(mesh: RawMesh) -> tuple[FloatArray, FloatArray]:
-    """Places on a mesh, three of each face, and their colours."""
-    looks = mesh.appearance or plain((0.7, 0.7, 0.7, 1.0), len(mesh.faces))
-    weights = np.array([[0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]])
-    corners = mesh.vertices[mesh.faces]
-    places = np.concatenate([np.einsum("c,fck->fk", weight, corners) for weight in weights])
-    every = np.arange(len(mesh.faces))
-    colors = np.concatenate([looks.colors_at(every, np.tile(weight, (len(every), 1))) for weight in weights])
-    return places, colors
-
-
-def _unlike(given: RawMesh, found: RawMesh) -> float:
-    """Share of the places of one mesh whose colour differs at the same place of the other one."""
-    places, colors = _spots(given)
-    others, seen = _spots(found)
-    distance, nearest = cKDTree(others).query(places)
-    assert distance.max() < 1e-5, "the same shape at the same place"
-    return float((np.abs(seen[nearest, :3] - colors[:, :3]).max(axis=1) > _ALIKE).mean())
-
-
-def _upright(mesh: RawMesh) -> RawMesh:
-    turned = mesh.vertices @ np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]).T
-    return RawMesh(name=mesh.name, vertices=turned, faces=mesh.faces, appearance=mesh.appearance)
-
-
 @pytest.mark.parametrize("seed", range(20))
 def test_a_glb_keeps_its_colours_in_the_urdf_and_as_glb(seed: int, tmp_path: Path) -> None:
-    path = _make(seed, tmp_path)
-    given = _upright(merged(read_meshes(path, appearance=True), "given"))
+    path = make_object(seed, tmp_path)
+    given = seen_of_glb(path)
     urdf = write_urdf(_model(load_assembly(path)), tmp_path)
     out = tmp_path / "out.glb"
     assert not any("colour" in lost for lost in export(urdf, "glb", out).lost)
-    assert _unlike(given, _upright(merged(read_meshes(out, appearance=True), "out"))) < 0.01
+    assert unlike(given, seen_of_glb(out)) < 0.01
+    assert unlike(given, seen_of_urdf(urdf)) < 0.03, "rounded places in a picture"
 
 
-def test_mjcf_has_the_colours_and_the_textures(tmp_path: Path) -> None:
-    urdf = write_urdf(_model(load_assembly(_make(3, tmp_path))), tmp_path)
+@pytest.mark.parametrize("seed", range(4))
+def test_mjcf_and_usd_have_the_colours_and_the_textures(seed: int, tmp_path: Path) -> None:
+    path = make_object(seed, tmp_path)
+    urdf = write_urdf(_model(load_assembly(path)), tmp_path)
     export(urdf, "mjcf", tmp_path / "out.xml")
-    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out.xml"))
-    seen = [geom for geom in range(model.ngeom) if model.geom_contype[geom] == 0]
-    textured = [geom for geom in seen if model.geom_matid[geom] >= 0]
-    assert len(textured) == 1
-    assert model.ntex == 1
-    stated = [shape for link in read_robot(urdf, appearance=True).links for shape in link.visuals]
-    plain_one = next(s for s in stated if s.mesh.appearance and len(s.mesh.appearance.materials) == 1
-                     and not s.mesh.appearance.is_textured)  # fmt: skip
-    assert plain_one.color is not None
-    assert any(model.geom_rgba[geom] == pytest.approx(plain_one.color, abs=1e-3) for geom in seen)
-    assert len(seen) == 1 + 1 + 3, "a plain part, one with a texture, and one of three colours"
-
-
-def test_usd_has_materials_with_their_textures(tmp_path: Path) -> None:
-    urdf = write_urdf(_model(load_assembly(_make(3, tmp_path))), tmp_path)
     export(urdf, "usd", tmp_path / "out.usda")
-    stage = Usd.Stage.Open(str(tmp_path / "out.usda"))
-    shown = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh) and "/visuals/" in str(prim.GetPath())]
-    assert len(shown) == 5
-    assert all(UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0] for prim in shown)
-    pictures = [
-        UsdShade.Shader(prim).GetInput("file").Get()
-        for prim in stage.Traverse()
-        if prim.IsA(UsdShade.Shader) and UsdShade.Shader(prim).GetIdAttr().Get() == "UsdUVTexture"
-    ]
-    assert [Path(picture.resolvedPath).is_file() for picture in pictures] == [True]
+    assert unlike(seen_of_glb(path), seen_of_mjcf(tmp_path / "out.xml")) < 0.01
+    assert unlike(seen_of_glb(path), seen_of_usd(tmp_path / "out.usda")) < 0.01
 
 
 def test_a_picture_shows_the_texture(tmp_path: Path) -> None:
@@ -248,7 +164,7 @@ def test_colours_of_vertices_of_obj_and_ply_are_read(tmp_path: Path) -> None:
 
 
 def test_colours_of_collada_are_read(tmp_path: Path) -> None:
-    box = _dressed(_box(0.2, 0.0), "plain", np.random.default_rng(1))
+    box = dressed(_box(0.2, 0.0), "plain", np.random.default_rng(1))
     visual: Any = box.visual
     stated = visual.material.baseColorFactor
     written: Any = trimesh.exchange.dae.export_collada

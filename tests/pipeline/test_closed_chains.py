@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from kinematify.cli.inferred import describe
-from kinematify.config.validation import load_settings
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.robot.read import read_robot
 from kinematify.view.record import shown_with
@@ -48,7 +47,7 @@ def test_the_record_has_it_and_the_viewer_draws_a_dashed_line(tmp_path: Path) ->
     (item,) = record["closed_chains"]
     assert sorted(item["parts"]) == sorted(inferred().closed_chains[0].parts)
     assert record["doubtful_below"] == 0.5
-    scene = ViewScene(read_robot(folder / "model.urdf"), load_settings())
+    scene = ViewScene(read_robot(folder / "model.urdf"))
     (chain,) = shown_with(scene, folder / "inference.json").chains
     at_rest, moved = (
         chain.dashes(scene.poses({item["opened_by"]: value}), scene.size)[-1, 1]

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+import json
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 import pytest
+import trimesh
 
 from kinematify.robot.appearance import MAX_MATERIALS, Appearance, Material, Texture, joined, painted, plain, surfaces
+from kinematify.robot.colors import linear_of
+from kinematify.robot.mesh_file import read_meshes
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 RED, BLUE = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
@@ -67,3 +76,23 @@ def test_many_colours_become_few_that_are_near() -> None:
     assert np.abs(seen - smooth).max() < 0.02
     few = painted(smooth[:: 5000 // 40])
     assert np.array([few.materials[k].color for k in few.material_of_face]) == pytest.approx(smooth[:: 5000 // 40])
+
+
+def test_colours_of_vertices_are_multiplied_as_light_by_those_of_the_material(tmp_path: Path) -> None:
+    mesh = trimesh.creation.box()
+    mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=np.tile([[128, 128, 128, 255]], (8, 1)))
+    path = tmp_path / "a.gltf"
+    written: Any = mesh.export
+    content = {name: bytes(data) for name, data in written(file_type="gltf").items()}
+    said = json.loads(content.pop("model.gltf"))
+    said["materials"] = [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 1.0, 1.0, 1.0], "roughnessFactor": 0.3}}]
+    said["meshes"][0]["primitives"][0]["material"] = 0
+    path.write_text(json.dumps(said))
+    for name, data in content.items():
+        (tmp_path / name).write_bytes(data)
+    (read,) = read_meshes(path, appearance=True)
+    assert read.appearance is not None
+    (material,) = read.appearance.materials
+    red, green = linear_of(np.array(material.color[:2]))
+    assert (red, green) == pytest.approx((0.5 * 128 / 255, 128 / 255), abs=0.002)
+    assert (material.metallic, material.roughness) == (1.0, 0.3)

@@ -7,17 +7,21 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.config.validation import load_settings
+from kinematify.evaluation.studies.colors import make_object, unlike
+from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
+from kinematify.robot.mesh_file import read_meshes
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.view.alternatives import Alternative, described, distinct
+from kinematify.view.part_glb import glb_of
 from kinematify.view.record import load_alternatives
 from kinematify.view.scene import ViewScene
 
@@ -40,7 +44,7 @@ def urdf(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def scene(urdf: Path) -> ViewScene:
-    return ViewScene(read_robot(urdf), load_settings())
+    return ViewScene(read_robot(urdf))
 
 
 def test_bodies_stand_where_the_joints_put_them(scene: ViewScene) -> None:
@@ -139,7 +143,7 @@ def test_a_model_without_colours_gets_some_and_one_with_colours_keeps_them(urdf:
         '<material name="r"><color rgba="1 0 0 0.5"/></material></visual><collision>',
     )
     urdf.write_text(red)
-    shown = ViewScene(read_robot(urdf, appearance=True), load_settings()).surfaces
+    shown = ViewScene(read_robot(urdf, appearance=True)).surfaces
     assert (1.0, 0.0, 0.0, 0.5) in {surface.material.color for surface in shown["door"]}
 
 
@@ -186,3 +190,36 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(urdf: Path) -> None:
     assert rest == "Closed.\n"
     assert errors == ""
     assert process.returncode == 0
+
+
+def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    from kinematify.view.window import Window  # needs viser
+
+    shape = '<geometry><box size="1 0.1 2"/></geometry>'
+    missing = f'<visual>{shape}</visual><collision><geometry><mesh filename="gone.obj"/></geometry></collision>'
+    urdf.write_text(_URDF.replace(f"<collision>{shape}</collision>", missing, 1))
+    window = Window(urdf, port=18085)
+    window.run_aside()
+    try:
+        for _ in range(200):
+            if "gone.obj" in (said := window.viewer.status):
+                break
+            time.sleep(0.05)
+        assert said.startswith("Collisions cannot be looked for.")
+    finally:
+        window.close()
+
+
+def test_a_part_is_sent_to_the_page_as_it_looks(tmp_path: Path) -> None:
+    given = make_object(2, tmp_path)
+    for mesh in read_meshes(given, appearance=True):
+        assert mesh.appearance is not None
+        sent = glb_of(surfaces(mesh.vertices, mesh.faces, mesh.appearance), double_sided=False)
+        (tmp_path / "sent.glb").write_bytes(sent)
+        (found,) = read_meshes(tmp_path / "sent.glb", appearance=True)
+        assert unlike(mesh, found) == 0.0
+        assert found.appearance is not None
+        assert {(item.metallic, item.roughness) for item in found.appearance.materials} == {
+            (item.metallic, item.roughness) for item in mesh.appearance.materials
+        }
