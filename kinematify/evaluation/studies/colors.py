@@ -172,7 +172,7 @@ def seen_of_urdf(path: Path) -> RawMesh:
     """What is seen of a URDF, all joints at zero."""
     robot = read_robot(path, geometry="shown", appearance=True)
     poses = forward_kinematics(robot, {})
-    meshes = [
+    meshes = tuple(
         RawMesh(
             name=link.name,
             vertices=mesh.vertices @ poses[link.name][:3, :3].T + poses[link.name][:3, 3],
@@ -181,7 +181,7 @@ def seen_of_urdf(path: Path) -> RawMesh:
         )
         for link in robot.links
         for mesh in link.meshes
-    ]
+    )
     return merged(meshes, path.name)
 
 
@@ -197,19 +197,19 @@ def seen_of_mjcf(path: Path) -> RawMesh:
         start, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
         turn = data.geom_xmat[geom].reshape(3, 3)
         material, texture, uv = int(model.geom_matid[geom]), None, None
-        color = model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]
+        red, green, blue, opacity = (model.geom_rgba[geom] if material < 0 else model.mat_rgba[material]).tolist()
         if material >= 0 and (number := int(model.mat_texid[material, mujoco.mjtTextureRole.mjTEXROLE_RGB])) >= 0:
             texture = _texture_of(model, number)
             corners = model.mesh_facetexcoord[start : start + faces]
             uv = model.mesh_texcoord[int(model.mesh_texcoordadr[mesh]) + corners] * [1.0, -1.0] + [0.0, 1.0]
         looks = Appearance(
-            materials=(Material(color=tuple(map(float, color)), texture=texture),),
+            materials=(Material(color=(red, green, blue, opacity), texture=texture),),
             material_of_face=np.zeros(faces, dtype=np.int64),
             uv=uv,
         )
         placed = model.mesh_vert[first : first + count] @ turn.T + data.geom_xpos[geom]
         meshes.append(RawMesh(name="", vertices=placed, faces=model.mesh_face[start : start + faces], appearance=looks))
-    return merged(meshes, path.name)
+    return merged(tuple(meshes), path.name)
 
 
 def _texture_of(model: mujoco.MjModel, number: int) -> Texture:
@@ -252,7 +252,7 @@ def seen_of_usd(path: Path) -> RawMesh:
             uv=uv,
         )
         meshes.append(RawMesh(name="", vertices=points, faces=faces, appearance=looks))
-    return merged(meshes, path.name)
+    return merged(tuple(meshes), path.name)
 
 
 def _on_the_page(urdf: Path, given: Path, exported: Path) -> Record:
