@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from kinematify.config.base import CONFIG_FOLDER, StageConfig, load_values, validated
-from kinematify.config.bearings import BearingConfig, QualityConfig, RailConfig
+from kinematify.config.bearings import BearingConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
 from kinematify.config.joints import (
     ClearanceConfig,
@@ -70,7 +70,6 @@ __all__ = [
     "NeuralSdfConfig",
     "PanelsConfig",
     "PreviewConfig",
-    "QualityConfig",
     "RailConfig",
     "RailsConfig",
     "RefineConfig",
@@ -103,7 +102,6 @@ class Config(StageConfig):
     contact: ContactConfig
     seam: SeamConfig
     bearing: BearingConfig
-    quality: QualityConfig
     model: ModelConfig
     collision: CollisionConfig
     dynamics: DynamicsConfig

@@ -165,16 +165,3 @@ class BearingConfig(StageConfig):
     def circle_tolerance_sine(self) -> float:
         """Sine of `circle_tolerance`."""
         return math.sin(math.radians(self.circle_tolerance))
-
-
-class QualityConfig(StageConfig):
-    """Weight of a contact edge in the tree search."""
-
-    half_score: float
-    """Bearing score at which half of the full quality is reached."""
-    contact_weight: float
-    """Largest quality of an edge without any bearing."""
-    strength_power: float
-    """Exponent of the contact strength; small values compress its range."""
-    bridge_share: float
-    """What an edge between parts that do not touch keeps of it."""

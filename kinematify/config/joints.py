@@ -354,8 +354,6 @@ class ConfidenceConfig(StageConfig):
     """How likely a part must be fixed to be taken for it."""
     name_weight: float
     """Log odds that a part's name adds to the kind of joint that it speaks of."""
-    parent_margin: float
-    """Lead in reward over trees with another parent at which that parent is e times less likely."""
 
 
 class JointsConfig(StageConfig):

@@ -44,6 +44,8 @@ class ContactConfig(StageConfig):
 
     tolerance: float
     """Largest gap that counts as contact."""
+    near: float
+    """Parts with a larger gap up to this are bridged: one may hang on the other, though something else touches it."""
     bridge_ratio: float
     """Where parts touch nothing, gaps up to this many times the smallest one count as contact."""
     strength: Literal["area", "proximity"]

@@ -65,10 +65,6 @@ class RewardWeights(StageConfig):
     """R_hier: children no larger than parents."""
     base: float
     """Score of the root under the base rule."""
-    direct: float
-    """R_direct: what touches the base hangs on it; not in the paper's reward."""
-    stack: float
-    """R_stack: what turns about one line hangs side by side; not in the paper's reward."""
 
 
 class TopologyConfig(StageConfig):
@@ -80,8 +76,8 @@ class TopologyConfig(StageConfig):
     """Our terms with joint quality, or the five terms of the paper with contact strength."""
     base_rule: Literal["scored", "degree", "given"]
     """Our scored rule, the paper's highest degree, or none: the base link has to be given, as in its Algorithm 1."""
-    cluster_edges: Literal["penalise", "forbid"]
-    """What happens to edges inside a cluster of congruent parts."""
+    cluster_edges: Literal["allow", "forbid"]
+    """Whether a tree may have edges inside a cluster of congruent parts."""
     weights: RewardWeights
     base: BaseConfig
     preferred_degree: int
@@ -104,23 +100,15 @@ class TopologyConfig(StageConfig):
     """Edges outside the spanning tree that are searched at most."""
     keep: int
     """Distinct trees that are kept."""
+    clear_score: float
+    """Score of a bearing from which on a contact is not asked what holds it."""
     stack_deg: float
     """Axes within this angle are one line [deg]."""
     stack_distance: float
     """The same for their distance, in diagonals."""
     virtual_distance: float
     """``d_max``: centroids farther apart are joined only when nothing nearer is left, in diagonals."""
-    proximity_weight: float
-    """Share of contact strength in an edge's weight; breaks ties between equal joints."""
-    journal_quality: float
-    """Least quality of an edge whose one part holds the other all around a line."""
-    skip_penalty: float
-    """Factor on the quality of an edge between two leaves on one pin with a third one between them."""
     pin_score: float
     """Score of a bearing line from which two links share a pin."""
     pin_opens: float
     """How far a shared pin may come apart without a chain of joints closing there, in diagonals."""
-    cluster_penalty: float
-    """Factor on the quality of an edge inside a cluster that has a rival."""
-    decisive_ratio: float
-    """An edge inside a cluster that is this many times better than its rival is not weakened."""

@@ -47,13 +47,16 @@ def build_contact_graph(
         gap_of: Distance between the parts of a pair [m]; the exact one if absent.
 
     Returns:
-        A connected graph: components that do not touch are joined by their smallest gap, marked as bridges.
+        A connected graph: parts that are near, and components by their smallest gap, are joined by bridges.
     """
     tolerance = config.tolerance * assembly.diagonal
+    reach = max(config.near, config.tolerance) * assembly.diagonal
     gap_of = gap_of or partial(exact_gap, surfaces)
-    gaps = {pair: gap for pair in near_pairs(assembly, tolerance) if (gap := gap_of(pair)) <= tolerance}
+    within = {pair: gap for pair in near_pairs(assembly, reach) if (gap := gap_of(pair)) <= reach}
+    gaps = {pair: gap for pair, gap in within.items() if gap <= tolerance}
     band = config.band * assembly.diagonal
     bridges = find_bridges(assembly, surfaces, list(gaps), near=config.bridge_ratio, limit=band)
+    bridges |= {pair: gap for pair, gap in within.items() if gap > tolerance}
     raw = [
         (pair, gap, *_contact_samples(surfaces, pair, max(band, 3 * gap), config.samples, seed))
         for pair, gap in sorted({**gaps, **bridges}.items())

@@ -48,7 +48,7 @@ class ContactEdge:
     samples_b: ContactSamples
     """Samples of part `b` near part `a`."""
     bridge: bool = False
-    """True where the parts do not touch and the edge only joins components (paper: virtual edge)."""
+    """True where the parts do not touch: they are near, or the edge joins components (paper: virtual edge)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

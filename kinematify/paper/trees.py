@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,9 +27,10 @@ class PaperReward(TreeReward):
         """The paper's ``s(u, v)``; parts that a virtual edge joins do not touch and have none."""
         return {pair: 0.0 if edge.bridge else edge.strength for pair, edge in self.graph.by_pair.items()}
 
-    def weights_for(self, base: int) -> dict[Pair, float]:
-        """The same edge weights whatever the base link is."""
-        return dict(self.quality)
+    @cached_property
+    def likely(self) -> dict[Pair, float]:
+        """Nothing: contact strength is no probability."""
+        return {}
 
     def own_terms(self, tree: TreeLayout, base_score: float) -> dict[str, float]:
         """R_sym, halved into [0, 1], and R_hier."""

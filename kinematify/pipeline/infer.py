@@ -74,7 +74,7 @@ def infer(
         trees = find_trees(assembly, graph, bearings, config, base=root)
     with clock.stage("joints", 0.7):
         joints = choose_joints(assembly, graph, trees[0], bearings, config)
-        joints = with_doubt_of_parents(joints, trees, config.joints.confidence.parent_margin)
+        joints = with_doubt_of_parents(joints, trees[0])
     clock.progress("done", 1.0)
     return Inference(
         assembly=assembly,

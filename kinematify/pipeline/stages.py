@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.joints.choice.decide import estimate_joints
 from kinematify.paper.trees import PaperReward, base_by_degree
 from kinematify.topology.base import BaseCandidate
 from kinematify.topology.evidence import gather_evidence
+from kinematify.topology.pins import find_pins
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import plausible_bases, search_trees
 from kinematify.topology.stats import assembly_stats
@@ -40,11 +41,11 @@ def find_trees(
     warm: Sequence[KinematicTree] = (),
 ) -> tuple[KinematicTree, ...]:
     """The best kinematic trees of an assembly; arguments as in `rank_trees`."""
-    evidence = gather_evidence(assembly, graph, bearings, config)
+    stats = assembly_stats(assembly)
     return rank_trees(
         graph,
-        assembly_stats(assembly),
-        evidence,
+        stats,
+        gather_evidence(graph, stats, bearings, find_pins(assembly, graph, bearings, config)),
         config.topology,
         seed=config.seed,
         base=base,
@@ -113,19 +114,11 @@ def choose_joints(
     return estimate_paper_joints(assembly, graph, tuple(tree.edges()), config=config)
 
 
-def with_doubt_of_parents(
-    joints: Sequence[JointEstimate], trees: Sequence[KinematicTree], margin: float
-) -> tuple[JointEstimate, ...]:
-    """Joints with less confidence where trees that are nearly as good hang the part on another one."""
-    best = trees[0]
+def with_doubt_of_parents(joints: Sequence[JointEstimate], tree: KinematicTree) -> tuple[JointEstimate, ...]:
+    """Joints with less confidence where the part could as well hang on another one."""
     found = []
     for joint in joints:
-        rivals: dict[int, float] = {}
-        for tree in trees[1:]:
-            above = tree.parents[joint.child]
-            if above != joint.parent:
-                rivals[above] = max(rivals.get(above, -math.inf), tree.reward)
-        right = 1.0 / (1.0 + sum(math.exp((reward - best.reward) / margin) for reward in rivals.values()))
+        right = tree.likely.get(pair(joint.parent, joint.child), 1.0)
         evidence = {**joint.evidence, "parent_likely": right}
         found.append(replace(joint, confidence=joint.confidence * right, evidence=evidence))
     return tuple(found)

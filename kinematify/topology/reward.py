@@ -6,21 +6,16 @@ Each term is in [0, 1]. `TreeReward` binds them to an assembly and returns the w
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.contact.graph import pair
 from kinematify.errors import InputError
-from kinematify.topology.evidence import coaxial_carriers
-from kinematify.topology.quality import effective_quality
+from kinematify.topology.edges import edge_probabilities, scores_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    BoolArray = NDArray[np.bool_]
 
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
@@ -30,8 +25,6 @@ if TYPE_CHECKING:
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""
-_LEAST_WEIGHT = 1e-6
-"""Share of its quality that an edge keeps which a base link speaks against."""
 _MAD_TO_SIGMA = 1.4826
 """Median absolute deviation to standard deviation of a normal distribution."""
 
@@ -141,36 +134,6 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
     return float(np.mean(scores)) if scores else 1.0
 
 
-def side_by_side(tree: TreeLayout, carriers: Mapping[Pair, frozenset[int]]) -> float:
-    """Our R_stack in [0, 1]: share of the children that could not as well hang on what carries their parent.
-
-    Shafts one in another (the hands of a clock) turn about one line and past each other, so that both trees move
-    alike; each is driven from the body, on its own.
-    """
-    above: dict[int, frozenset[int]] = {tree.order[0]: frozenset()}
-    stacked = []
-    for child in tree.order[1:]:
-        parent = int(tree.parents[child])
-        above[child] = above[parent] | {parent}
-        stacked.append(not above[parent].isdisjoint(carriers.get(pair(parent, child), ())))
-    return 1.0 - float(np.mean(stacked))
-
-
-def on_the_base(tree: TreeLayout, touches: BoolArray, clear: BoolArray) -> float:
-    """Our R_direct in [0, 1]: share of the children that hang on the base, do not touch it, or show a joint elsewhere.
-
-    Doors and drawers touch their neighbours as they touch the body, and no joint need show at either contact.
-
-    Args:
-        tree: The tree.
-        touches: Which parts touch, shape (n, n).
-        clear: Which edges show a joint, shape (n, n).
-    """
-    children, base = tree.children, tree.order[0]
-    parents = tree.parents[children]
-    return 1.0 - float(((parents != base) & touches[base, children] & ~clear[parents, children]).mean())
-
-
 def log_hierarchy(tree: TreeLayout, hulls: FloatArray) -> float:
     """Our R_hier in (0, 1]: ``1 / (1 + mean max(0, log h_v / h_u))`` with hull volumes.
 
@@ -229,33 +192,22 @@ class TreeReward:
         self.quality = self.edge_quality()
         if simulated is not None:
             self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
-        stacks = coaxial_carriers(evidence, angle=config.stack_deg, distance=config.stack_distance * self.diagonal)
-        self.stacks = {edge: carriers for edge, carriers in stacks.items() if evidence[edge].passing}
-        self.touches = np.zeros((graph.n_parts, graph.n_parts), dtype=bool)
         self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
         for (a, b), value in self.quality.items():
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
-            self.touches[a, b] = self.touches[b, a] = True
 
     def edge_quality(self) -> dict[Pair, float]:
-        """Weight of every contact edge in [0, 1], before what a simulation had against it."""
-        return effective_quality(self.graph, self.evidence, self.config)
+        """Weight of every contact edge in [0, 1], before what a simulation had against it; 0 without evidence."""
+        return {pair: self.evidence[pair].quality if pair in self.evidence else 0.0 for pair in self.graph.by_pair}
 
-    def weights_for(self, base: int) -> dict[Pair, float]:
-        """Edge weights whose maximum spanning tree has about the best sum of R_contact and R_direct for a base link.
-
-        All are above 0 and keep their order: what competes with an edge is told by ratios.
-        """
-        weights = self.config.weights
-        loss = weights.direct / weights.contact if weights.contact > 0.0 else 0.0
-        return {
-            (a, b): max(value - loss * self._elsewhere(base, a, b, value), _LEAST_WEIGHT * value)
-            for (a, b), value in self.quality.items()
-        }
-
-    def _elsewhere(self, base: int, a: int, b: int, value: float) -> bool:
-        """Whether two parts, one of which touches the base link, show no joint between them."""
-        return base not in (a, b) and value < self.config.journal_quality and bool(self.touches[base, [a, b]].any())
+    @cached_property
+    def likely(self) -> dict[Pair, float]:
+        """Probability of every contact edge to be in the tree, whatever its root."""
+        if not self.quality:
+            return {}
+        scores = scores_of(np.array(list(self.quality.values())))
+        probabilities, _ = edge_probabilities(list(self.quality), scores, self.graph.n_parts)
+        return dict(zip(self.quality, probabilities.tolist(), strict=True))
 
     def terms(self, parents: Sequence[int], base_score: float = 0.0) -> dict[str, float]:
         """Value of every term in [0, 1].
@@ -279,8 +231,6 @@ class TreeReward:
             "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.cluster_of),
             "hier": log_hierarchy(tree, self.hulls),
             "base": base_score,
-            "stack": side_by_side(tree, self.stacks),
-            "direct": on_the_base(tree, self.touches, self.edge_weights >= self.config.journal_quality),
         }
 
     def _survived(self, tree: TreeLayout) -> float:

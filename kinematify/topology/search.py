@@ -45,7 +45,7 @@ def search_trees(
         best = sorted(seen, key=lambda parents: -seen[parents])[:keep]
         found |= {parents: (seen[parents], reward.terms(parents, candidate.score)) for parents in best}
     ranked = sorted(found, key=lambda parents: (-found[parents][0], parents))[:keep]
-    return tuple(_finish(reward.graph, parents, *found[parents]) for parents in ranked)
+    return tuple(_finish(reward, parents, *found[parents]) for parents in ranked)
 
 
 def plausible_bases(reward: TreeReward) -> tuple[BaseCandidate, ...]:
@@ -98,8 +98,7 @@ def _trees_of_base(
 ) -> dict[Parents, float]:
     """Reward of every complete tree seen for one base link under the configured mode."""
     config, graph = reward.config, reward.graph
-    weights = reward.weights_for(candidate.part)
-    edges = spanning_edges(weights, reward.centroids)
+    edges = spanning_edges(reward.quality, reward.centroids)
 
     def judge(parents: Parents) -> float:
         return reward.total(reward.terms(parents, candidate.score))
@@ -110,7 +109,7 @@ def _trees_of_base(
     if config.mode == "bfs":
         breadth_first = breadth_first_tree(graph, candidate.part, reward.centroids)
         return {breadth_first: judge(breadth_first)}
-    problem = _search_problem(reward, weights, edges, candidate.part, judge)
+    problem = _search_problem(reward, edges, candidate.part, judge)
     warm = oriented
     if reward.searches_all_contacts or problem.forbidden:
         warm = breadth_first_tree(graph, candidate.part, reward.centroids, problem.forbidden)
@@ -123,7 +122,6 @@ def _trees_of_base(
 
 def _search_problem(
     reward: TreeReward,
-    weights: Mapping[Pair, float],
     edges: Sequence[Pair],
     root: int,
     judge: Callable[[Parents], float],
@@ -132,7 +130,7 @@ def _search_problem(
     if reward.searches_all_contacts:
         usable = OpenEdges(usable=frozenset(touching_pairs(graph)), certain=frozenset())
     else:
-        usable = open_edges(weights, edges, graph.n_parts, config)
+        usable = open_edges(reward.quality, edges, graph.n_parts, config)
     neighbours: list[list[int]] = [[] for _ in range(graph.n_parts)]
     for a, b in sorted(usable.usable):
         neighbours[a].append(b)
@@ -161,13 +159,14 @@ def _cluster_pairs(graph: ContactGraph) -> Iterator[Pair]:
         yield from combinations(sorted(cluster), 2)
 
 
-def _finish(graph: ContactGraph, parents: Parents, total: float, terms: Mapping[str, float]) -> KinematicTree:
+def _finish(reward: TreeReward, parents: Parents, total: float, terms: Mapping[str, float]) -> KinematicTree:
     used = {pair(parent, child) for child, parent in enumerate(parents) if parent >= 0}
-    touching = set(touching_pairs(graph))
+    touching = set(touching_pairs(reward.graph))
     return KinematicTree(
         parents=parents,
         broken=frozenset(touching - used),
         virtual=frozenset(used - touching),
         reward=total,
         terms=terms,
+        likely={edge: reward.likely[edge] for edge in sorted(used) if edge in reward.likely},
     )

@@ -25,8 +25,11 @@ class KinematicTree:
     """Total reward under the configured weights; higher is better."""
     terms: Mapping[str, float] = field(default_factory=dict)
     """Value of each reward term, each in [0, 1]."""
+    likely: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    """Probability of its edges (a < b) among all trees of the contact graph; those that are not named are certain."""
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "likely", MappingProxyType(dict(self.likely)))
         object.__setattr__(self, "terms", MappingProxyType(dict(self.terms)))
 
     @property

@@ -1,4 +1,4 @@
-"""Reward terms against values computed by hand, part measurements, and the soft penalty inside clusters."""
+"""Reward terms against values computed by hand, and part measurements."""
 
 from __future__ import annotations
 
@@ -11,9 +11,6 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
-from kinematify.topology.evidence import EdgeEvidence, coaxial_carriers
-from kinematify.topology.quality import bottleneck, effective_quality
-from kinematify.topology.spanning import maximum_spanning_edges, on_cycles, parents_from
 from kinematify.topology.stats import part_stats
 from tests.topology.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
 
@@ -110,110 +107,11 @@ def test_every_term_and_the_total_stay_in_the_unit_interval(
     assert 0 <= reward.total(values) <= 1
 
 
-def test_cluster_edge_without_rival_keeps_its_quality() -> None:
-    graph = graph_of(3, {(0, 1): 0.0, (1, 2): 0.0}, [(1, 2)])
-    evidence = {key: EdgeEvidence(quality=0.5, axis=None) for key in graph.by_pair}
-    assert effective_quality(graph, evidence, CONFIG)[1, 2] == pytest.approx(0.5, rel=0.01)
-
-
-@pytest.mark.parametrize(("touch", "kept"), [(0.12, False), (0.9, True)])
-def test_cluster_edge_must_be_decisively_better_than_its_rival(touch: float, kept: bool) -> None:
-    # Two fingers on a palm (fit 0.04) whose tips touch.
-    graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0}, [(1, 2)])
-    fits = {(0, 1): 0.04, (0, 2): 0.05, (1, 2): touch}
-    evidence = {key: EdgeEvidence(quality=value, axis=None) for key, value in fits.items()}
-    value = effective_quality(graph, evidence, CONFIG)[1, 2]
-    assert value == pytest.approx(touch if kept else touch * CONFIG.cluster_penalty, rel=0.01)
-
-
-def test_an_edge_that_a_pin_holds_is_not_weakened() -> None:
-    """The leaves of a folding door: congruent, both beside the frame, and one on the other by its barrels."""
-    graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0}, [(1, 2)])
-    fits = {(0, 1): 0.6, (0, 2): 0.4, (1, 2): 0.3}
-    evidence = {key: EdgeEvidence(quality=value, axis=None, has_journal=key == (1, 2)) for key, value in fits.items()}
-    weights = effective_quality(graph, evidence, CONFIG)
-    assert weights[1, 2] == pytest.approx(CONFIG.journal_quality)
-    assert maximum_spanning_edges(weights, 3) == ((0, 1), (1, 2))
-
-
-def test_only_edges_of_cycles_can_be_replaced() -> None:
-    assert on_cycles([(0, 1), (1, 2), (0, 2), (2, 3)], 4) == [(0, 1), (1, 2), (0, 2)]
-    assert on_cycles([(0, 1)], 2) == []
-
-
-def shafts(offset: float = 0.0, lean: float = 0.0, *, passing: bool = True) -> dict[tuple[int, int], EdgeEvidence]:
-    """A body and two shafts one in the other; the inner one may stand off the line or lean."""
-    line = {"quality": 0.9, "axis": np.array([0.0, 0.0, 1.0]), "point": np.zeros(3)}
-    other = {"quality": 0.9, "axis": np.array([np.sin(lean), 0.0, np.cos(lean)]), "point": np.array([offset, 0, 5.0])}
-    return {
-        (0, 1): EdgeEvidence(**line),  # type: ignore[arg-type]
-        (0, 2): EdgeEvidence(**line),  # type: ignore[arg-type]
-        (1, 2): EdgeEvidence(**other, passing=passing),  # type: ignore[arg-type]
-    }
-
-
-@pytest.mark.parametrize(("offset", "lean", "found"), [(0.0, 0.0, True), (0.1, 0.0, False), (0.0, 0.1, False)])
-def test_a_carrier_bears_both_shafts_on_their_own_line(offset: float, lean: float, found: bool) -> None:
-    carriers = coaxial_carriers(shafts(offset, lean), angle=2.0, distance=0.05)
-    assert (0 in carriers.get((1, 2), ())) is found
-
-
-@pytest.mark.parametrize("passing", [True, False])
-def test_shafts_that_pass_each_other_hang_side_by_side(passing: bool) -> None:
-    graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})
-    stats = [stat((0, 0, 0), 2.0), stat((0, 0, 1)), stat((0, 0, 2), 0.5)]
-    reward = terms.TreeReward(graph, stats, shafts(passing=passing), CONFIG)
-    chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1), (-1, 0, 0)))
-    assert star == 1.0
-    assert chain == (0.5 if passing else 1.0)
-
-
-def test_shafts_are_driven_from_the_body_however_many_lie_between() -> None:
-    """Three hands: the last one touches the body and the second hand, which itself hangs on the first."""
-    line = {"quality": 0.9, "axis": np.array([0.0, 0.0, 1.0]), "point": np.zeros(3), "passing": True}
-    pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (2, 3)]
-    graph = graph_of(4, dict.fromkeys(pairs, 0.0))
-    stats = [stat((0, 0, 0), 2.0), *(stat((0, 0, k), 1.0 / k) for k in (1, 2, 3))]
-    evidence = {key: EdgeEvidence(**line) for key in pairs}  # type: ignore[arg-type]
-    reward = terms.TreeReward(graph, stats, evidence, CONFIG)
-    chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1, 2), (-1, 0, 0, 0)))
-    assert (chain, star) == (pytest.approx(1 / 3), 1.0)
-
-
-def test_what_touches_the_base_hangs_on_it_where_no_joint_shows() -> None:
-    """A door that touches the drawer below it a little better than the body; a bearing outweighs the rule."""
-    graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})
-    stats = [stat((0, 0, 0), 2.0), stat((0, 0, 1)), stat((0, 0, 2), 0.5)]
-    for there, parents in ((0.34, (-1, 0, 0)), (0.9, (-1, 0, 1))):
-        fits = {(0, 1): 0.37, (0, 2): 0.31, (1, 2): there}
-        evidence = {key: EdgeEvidence(quality=value, axis=None) for key, value in fits.items()}
-        reward = terms.TreeReward(graph, stats, evidence, CONFIG)
-        best = max([(-1, 0, 0), (-1, 0, 1)], key=lambda tree: reward.total(reward.terms(tree)))
-        assert best == parents
-        assert tuple(parents_from(maximum_spanning_edges(reward.weights_for(0), 3), 3, 0)) == parents
-
-
-def test_proximity_only_breaks_ties() -> None:
-    graph = graph_of(3, {(0, 1): 0.0, (0, 2): 1.0, (1, 2): 1.0})
-    better = {(0, 1): 0.51, (0, 2): 0.5, (1, 2): 0.5}
-    evidence = {key: EdgeEvidence(quality=value, axis=None) for key, value in better.items()}
-    weights = effective_quality(graph, evidence, CONFIG)
-    assert (0, 1) in maximum_spanning_edges(weights, 3)
-    equal = {key: EdgeEvidence(quality=0.5, axis=None) for key in better}
-    assert maximum_spanning_edges(effective_quality(graph, equal, CONFIG), 3) == ((0, 2), (1, 2))
-
-
 def test_a_bridge_has_no_contact_strength() -> None:
     graph = graph_of(2, {})
     bridged = type(graph)(n_parts=2, edges=(edge(0, 1, 0.9, bridge=True),), clusters=(), tolerance=0.01)
     stats = [stat((0, 0, 0)), stat((1, 0, 0))]
     assert PaperReward(bridged, stats, {}, PAPER).quality == {(0, 1): 0.0}
-
-
-def test_bottleneck_is_the_weakest_edge_of_the_strongest_path() -> None:
-    weights = {(0, 1): 0.9, (1, 2): 0.3, (0, 3): 0.5, (2, 3): 0.6}
-    assert bottleneck(weights, 4, (0, 2)) == 0.5
-    assert bottleneck({(0, 1): 0.9}, 4, (0, 2)) == 0.0
 
 
 def test_measurements_of_boxes() -> None:

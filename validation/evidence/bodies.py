@@ -11,6 +11,9 @@ from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.contact.build import build_contact_graph, exact_gap
 from kinematify.geometry.surface import part_surfaces
+from kinematify.topology.edges import edge_qualities
+from kinematify.topology.pins import find_pins
+from kinematify.topology.stats import assembly_stats
 from kinematify.joints.hypotheses.bearing import fit_edge, score_line
 
 if TYPE_CHECKING:
@@ -89,6 +92,12 @@ class Bodies:
     def diagonal(self) -> float:
         """Diagonal of the model [m]."""
         return self.assembly.diagonal
+
+    @cached_property
+    def qualities(self) -> Mapping[Pair, float]:
+        """How good each contact is for the tree, in [0, 1] (`topology.edges`)."""
+        pins = find_pins(self.assembly, self.graph, self.bearings, self.config)
+        return edge_qualities(self.graph, assembly_stats(self.assembly), self.bearings, pins)
 
     def gap(self, pair: Pair) -> float:
         """Exact distance of two bodies [m]."""

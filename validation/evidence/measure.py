@@ -14,7 +14,6 @@ import numpy as np
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.hypotheses.line import Line
 from kinematify.joints.hypotheses.panels import GIVEN
-from kinematify.joints.measure.quality import edge_quality
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import PartCache
 from kinematify.robot.joint_type import JointType
@@ -47,7 +46,7 @@ class ParentEvidence:
     gap: float
     """Distance of the two, fraction of the model's diagonal."""
     quality: float
-    """How well the best joint of the declared pair explains their contact, in [0, 1]; 0 where they do not touch."""
+    """How good their contact is for the tree, in [0, 1]; 0 where they do not touch."""
     best: int | None
     """Body with the best contact, without the declared parent and what the child carries; None if there is none."""
     best_quality: float
@@ -178,7 +177,7 @@ def _quality(bodies: Bodies, child: int, body: int) -> float:
     edge = bodies.graph.by_pair.get(_pair(child, body))
     if edge is None or edge.bridge:
         return 0.0
-    return edge_quality(edge, bodies.bearings[_pair(child, body)], bodies.config.quality)
+    return bodies.qualities[_pair(child, body)]
 
 
 def _pair(first: int, second: int) -> Pair:

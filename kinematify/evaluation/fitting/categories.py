@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kinematify.evaluation.fitting.edges import TreeExample
     from kinematify.evaluation.fitting.examples import Example
 
 ALIKE: Mapping[str, tuple[str, ...]] = {
@@ -90,6 +91,6 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
 _OF_NAME = {name: category for category, names in ALIKE.items() for name in names}
 
 
-def category_of(example: Example) -> str:
+def category_of(example: Example | TreeExample) -> str:
     """The word that real objects of the same kind carry."""
     return _OF_NAME.get(example.category, example.category)

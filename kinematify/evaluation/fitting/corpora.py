@@ -21,6 +21,7 @@ from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.evaluation.fitting.broken_off import with_pieces_broken_off
 from kinematify.evaluation.fitting.composed import compose
+from kinematify.evaluation.fitting.edges import read_tree_examples, tree_example, write_tree_examples
 from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
 from kinematify.evaluation.fitting.modelling import WAYS, remodelled
 from kinematify.evaluation.fitting.objects import OBJECTS, drawn_object
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
+    from kinematify.evaluation.fitting.edges import TreeExample
     from kinematify.evaluation.fitting.examples import Example
     from kinematify.generate.blueprint import Blueprint
 
@@ -42,6 +44,7 @@ _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
 _BROKEN_ROUNDS = 2
+_TREE_ROUNDS = 2
 _MOST_PARTS = 25  # of an object with pieces broken off
 _AJAR = 0.25  # of the generated objects
 _TIMEOUT = 3600.0  # [s] of one object, on a busy machine
@@ -94,6 +97,15 @@ def broken_sources(sources: Sequence[Source]) -> list[Source]:
     ]
 
 
+def tree_sources(sources: Sequence[Source]) -> list[Source]:
+    """Those whose contacts the edges of the tree are fitted to: whole ones, and two of every family and recipe."""
+    return [
+        source
+        for source in sources
+        if not source.broken and (source.origin not in (FAMILY, PROGRAMMED) or source.number < _TREE_ROUNDS)
+    ]
+
+
 def gather_examples(
     sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
 ) -> list[Example]:
@@ -109,10 +121,36 @@ def gather_examples(
     Raises:
         EnvironmentFault: An object killed its worker or took an hour.
     """
+    paths = _gathered(_measure, sources, cache, seed=seed, workers=workers, progress=progress)
+    return [example for path in paths for example in read_examples(path)]
+
+
+def gather_trees(
+    sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
+) -> list[TreeExample]:
+    """The contact graphs of objects and their true trees; arguments as of `gather_examples`.
+
+    Raises:
+        EnvironmentFault: An object killed its worker or took an hour.
+    """
+    paths = _gathered(_measure_tree, sources, cache, seed=seed, workers=workers, progress=progress)
+    return [example for path in paths for example in read_tree_examples(path)]
+
+
+def _gathered(
+    measure: Callable[[Source, Path, int], None],
+    sources: Sequence[Source],
+    cache: Path,
+    *,
+    seed: int,
+    workers: int,
+    progress: Callable[[str, float], None],
+) -> list[Path]:
+    """One file for every object, written by `measure` where there is none yet."""
     cache.mkdir(parents=True, exist_ok=True)
     paths = [cache / f"{_key(source, seed)}.npz" for source in sources]
     missing = {path: source for source, path in zip(sources, paths, strict=True) if not path.exists()}
-    tasks = [(str(path), partial(_measure, source, path, seed)) for path, source in missing.items()]
+    tasks = [(str(path), partial(measure, source, path, seed)) for path, source in missing.items()]
     running = run_tasks(tasks, Processes(workers, preload=(__name__,)), timeout=_TIMEOUT, reuse=_REUSE)
     with closing(running):
         for done, (path, failure) in enumerate(running, start=len(sources) - len(missing) + 1):
@@ -122,7 +160,7 @@ def gather_examples(
                     f"{name} could not be measured: {failure.message}. Start again; {cache} keeps what was measured."
                 )
             progress(name, done / len(sources))
-    return [example for path in paths for example in read_examples(path)]
+    return paths
 
 
 def _key(source: Source, seed: int) -> str:
@@ -155,9 +193,30 @@ def _measure(source: Source, path: Path, seed: int) -> None:
         origin=source.origin,
         source=opened.source,
         fits=opened.fits,
+        style=opened.style,
         broken=source.broken,
     )
     write_examples(path, found)
+
+
+def _measure_tree(source: Source, path: Path, seed: int) -> None:
+    """The same of the contacts of an object."""
+    try:
+        opened = _generated(source, seed) if source.folder is None else _read(source.folder)
+    except (KinematifyError, ValueError):
+        write_tree_examples(path, [])
+        return
+    name = f"{source.name}_{source.number}" if source.folder is None else source.name
+    example = tree_example(
+        Assembly(parts=opened.parts, source=name),
+        opened.truth,
+        load_config(),
+        category=opened.category,
+        origin=source.origin,
+        source=opened.source,
+        fits=opened.fits,
+    )
+    write_tree_examples(path, [example])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -171,6 +230,8 @@ class _Opened:
     """Whose work it is."""
     fits: bool
     """It may enter weights that ship."""
+    style: str = ""
+    """Way of modelling that was drawn."""
 
 
 def _read(folder: Path) -> _Opened:
@@ -201,6 +262,7 @@ def _generated(source: Source, seed: int) -> _Opened:
         category=category,
         source=source.origin,
         fits=True,
+        style=str(blueprint.parameters.get("modelled", "")),
     )
 
 

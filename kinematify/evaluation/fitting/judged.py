@@ -5,13 +5,14 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from kinematify.config import load_config
 from kinematify.evaluation.fitting.categories import category_of
 from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
+from kinematify.evaluation.fitting.edges import edges_row, fit_edges
 from kinematify.evaluation.fitting.trees import (
     fit_opening,
     fit_rigidity,
@@ -32,9 +33,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config import ConfidenceConfig
+    from kinematify.evaluation.fitting.edges import EdgesRow, TreeExample
     from kinematify.evaluation.fitting.examples import Example
     from kinematify.robot.arrays import FloatArray
 
+_Kind = TypeVar("_Kind", "Example", "TreeExample")
 _FOLDS = 5
 _GENERATED_SETS = {FAMILY: "families", PROGRAMMED: "objects as people program them", COMPOSED: "random mechanisms"}
 _RIGHT_DEG = 5.0
@@ -81,16 +84,18 @@ def judge_left_out(
 ) -> list[FloatArray]:
     """Probabilities of the hypotheses of every example by trees whose fit had none of its group.
 
-    Groups (categories or sources) fall into five folds; nothing of a fold is fitted to when it is judged.
+    Groups (categories, sources or styles) fall into five folds; nothing of a fold is fitted to when it is judged. What
+    has no group is fitted to in all of them and not judged: all its hypotheses are alike.
     """
-    found: dict[int, FloatArray] = {}
+    found = {k: np.full(len(item.kinds), 1.0 / len(item.kinds)) for k, item in enumerate(examples) if not group(item)}
     folds = folds_of(examples, group)
     for fold in range(_FOLDS):
         progress(f"left out {fold + 1} of {_FOLDS}", fold / _FOLDS)
-        judged = [k for k, at in enumerate(folds) if at == fold]
+        judged = [k for k, at in enumerate(folds) if at == fold and k not in found]
         if not judged:
             continue
-        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
+        kept = [at != fold or k in found for k, at in enumerate(folds)]
+        fitted = [example for example, stays in zip(examples, kept, strict=True) if example.fits and stays]
         scorer = fit_scorer(fitted, seeds=(0,), network_seeds=(0,), provenance={})
         found |= {k: scorer.probabilities(examples[k].kinds, examples[k].measured) for k in judged}
     return agreed_examples(examples, [found[k] for k in range(len(examples))])
@@ -139,6 +144,20 @@ def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRo
             fixed=int(fixed[index].sum()),
             found=_share(taken[index][fixed[index]]),
         )
+        for name, index in sets_of(examples).items()
+    }
+
+
+def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]:
+    """How many edges of the true trees are found with weights whose fit had nothing of the category; by set."""
+    folds = folds_of(examples, category_of)
+    scores: dict[int, FloatArray] = {}
+    for fold in sorted(set(folds)):
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
+        weights = fit_edges(fitted, {})
+        scores |= {k: weights.scores(examples[k].measured) for k, at in enumerate(folds) if at == fold}
+    return {
+        name: edges_row([examples[k] for k in index], [scores[k] for k in index])
         for name, index in sets_of(examples).items()
     }
 
@@ -204,7 +223,7 @@ def _share(taken: NDArray[np.bool_]) -> float | None:
     return float(taken.mean()) if len(taken) else None
 
 
-def folds_of(examples: Sequence[Example], group: Callable[[Example], str]) -> list[int]:
+def folds_of(examples: Sequence[_Kind], group: Callable[[_Kind], str]) -> list[int]:
     """The fold of each example: by the name of its group alone, so that a new group moves no other."""
     return [zlib.crc32(group(example).encode()) % _FOLDS for example in examples]
 
@@ -274,7 +293,7 @@ def calibration_of(examples: Sequence[Example], likely: Sequence[FloatArray]) ->
     }
 
 
-def sets_of(examples: Sequence[Example]) -> dict[str, list[int]]:
+def sets_of(examples: Sequence[_Kind]) -> dict[str, list[int]]:
     """Name of each set that has a row of its own -> positions of its examples."""
     found: dict[str, list[int]] = {}
     for k, example in enumerate(examples):

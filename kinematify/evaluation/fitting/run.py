@@ -18,14 +18,18 @@ from kinematify.evaluation.fitting.corpora import (
     GENERATED,
     broken_sources,
     gather_examples,
+    gather_trees,
     generated_sources,
     real_sources,
+    tree_sources,
 )
+from kinematify.evaluation.fitting.edges import edges_row, fit_edges, write_edge_weights
 from kinematify.evaluation.fitting.judged import (
     CAUSES,
     agreed_examples,
     calibration_of,
     cause_of,
+    judge_edges_left_out,
     judge_left_out,
     judge_opening_left_out,
     judge_rigidity_left_out,
@@ -51,14 +55,17 @@ from kinematify.evaluation.fitting.trees import (
 )
 from kinematify.evaluation.record import table
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS
+from kinematify.topology.edges import EDGE_WEIGHTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from kinematify.evaluation.fitting.edges import TreeExample
     from kinematify.evaluation.fitting.examples import Example
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
+    from kinematify.topology.edges import EdgeWeights
 
     Likely = Mapping[str, Sequence[FloatArray]]
 
@@ -102,12 +109,14 @@ def run_fit(
     sources = generated_sources(rounds, composed) + [source for folder in folders for source in real_sources(folder)]
     sources += broken_sources(sources)
     examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
+    trees = gather_trees(tree_sources(sources), cache / "trees", seed=seed, workers=workers, progress=progress)
     drawn = {"seed": seed, "rounds": rounds, "composed": composed}
-    return fit_and_judge(examples, out, drawn=drawn, ablation=ablation, progress=progress)
+    return fit_and_judge(examples, trees, out, drawn=drawn, ablation=ablation, progress=progress)
 
 
 def fit_and_judge(
     examples: Sequence[Example],
+    trees: Sequence[TreeExample],
     out: Path,
     *,
     drawn: Mapping[str, int],
@@ -134,19 +143,28 @@ def fit_and_judge(
     write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
     write_scorer(_opening(examples, provenance), out / OPENING_WEIGHTS)
     write_scorer(_turning(examples, provenance), out / TURNING_WEIGHTS)
+    edges = fit_edges([example for example in trees if example.fits], provenance)
+    write_edge_weights(edges, out / EDGE_WEIGHTS)
     likely = {"left out by category": judge_left_out(examples, category_of, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
     shipped = [scorer.probabilities(example.kinds, example.measured) for example in examples]
     likely["shipped weights"] = agreed_examples(examples, shipped)
+    by_style = {**likely, "left out by style": judge_left_out(examples, lambda example: example.style, progress)}
+    styled = [k for k, example in enumerate(examples) if example.style]
     report = {
         "schema": 2,
         "provenance": provenance,
         "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
+        "styles": {
+            name: _rows(examples, [styled[k] for k in index], by_style)
+            for name, index in sets_of([examples[k] for k in styled]).items()
+        },
         "calibration": _calibration(examples, likely["left out by category"]),
         "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
         "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
         "turning": {name: asdict(row) for name, row in judge_turning_left_out(examples).items()},
+        "edges": _edges(trees, edges),
     }
     if ablation:
         report |= _ablation(examples, progress)
@@ -181,6 +199,19 @@ def _turning(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scor
     scorer = fit_turning(fitted, seeds=_SEEDS, provenance={})
     facts = {"joints": len(fitted), "recipe": turning_recipe_key(scorer.measurements)}
     return replace(scorer, provenance={**provenance, **facts})
+
+
+def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]:
+    """True edges that the likeliest trees have, by set: left out by category, and with the weights that ship."""
+    left_out = judge_edges_left_out(trees)
+    found = {}
+    for name, index in sets_of(trees).items():
+        some = [trees[k] for k in index]
+        found[name] = {
+            "left out by category": asdict(left_out[name]),
+            "shipped weights": asdict(edges_row(some, [shipped.scores(example.measured) for example in some])),
+        }
+    return found
 
 
 def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
@@ -261,20 +292,7 @@ def as_markdown(report: dict[str, Any]) -> str:
         "proposed; type; direction given the type; line beside the right one, which counts as right in the columns "
         "before."
     )
-    head = ("set", "joints", "chosen by", "types right", "type right and within 5 deg", "the same, per object")
-    rows = [
-        (
-            name,
-            f"{row['joints']}",
-            by,
-            *(f"{row[key]:.1%}" for key in ("types", "within", "within_per_object")),
-            f"{row['angle_deg']:.1f}",
-            *(f"{row['causes'].get(cause, 0)}" for cause in CAUSES),
-        )
-        for name, sets in report["sets"].items()
-        for by, row in sets.items()
-    ]
-    blocks = ["# The choice of joints", introduction, table((*head, "angle [deg]", *CAUSES), rows)]
+    blocks = ["# The choice of joints", introduction, _choice_table(report["sets"])]
     found = report["calibration"]
     if found:
         pairs = zip(found["confidence"], found["right"], strict=True)
@@ -284,6 +302,16 @@ def as_markdown(report: dict[str, Any]) -> str:
             f"{found['errors_in_least_sure']:.0%} of the errors. Mean confidence of each fifth, and share right: "
             f"{fifths}. Calibration error: {found['error']:.3f}."
         )
+    edges = [(name, by, row) for name, by_what in report["edges"].items() for by, row in by_what.items()]
+    if edges:
+        heading = ("set", "objects", "edges", "weighed by", "true edges found", "objects with all")
+        shown = [
+            (name, f"{row['objects']}", f"{row['edges']}", by, _percent(row["found"]), _percent(row["whole"]))
+            for name, by, row in edges
+        ]
+        blocks += ["Edges of the tree, whatever its root:", table(heading, shown)]
+    if report["styles"]:
+        blocks += ["Generated objects with a drawn way of modelling:", _choice_table(report["styles"])]
     rigidity = report["rigidity"]
     if any(row["fixed"] for row in rigidity.values()):
         columns = ("set", "moving parts", "taken for fixed", "pieces broken off", "found to be fixed")
@@ -317,3 +345,21 @@ def as_markdown(report: dict[str, Any]) -> str:
             body = [(name, *(f"{row[of]:.3f}" for of in sets)) for name, row in report[key].items()]
             blocks += [f"{title}:", table((key, *sets), body)]
     return "\n\n".join(blocks) + "\n"
+
+
+def _choice_table(sets: Mapping[str, Any]) -> str:
+    """Figures and causes of errors of sets, by what chose."""
+    head = ("set", "joints", "chosen by", "types right", "type right and within 5 deg", "the same, per object")
+    rows = [
+        (
+            name,
+            f"{row['joints']}",
+            by,
+            *(f"{row[key]:.1%}" for key in ("types", "within", "within_per_object")),
+            f"{row['angle_deg']:.1f}",
+            *(f"{row['causes'].get(cause, 0)}" for cause in CAUSES),
+        )
+        for name, by_what in sets.items()
+        for by, row in by_what.items()
+    ]
+    return table((*head, "angle [deg]", *CAUSES), rows)

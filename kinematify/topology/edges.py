@@ -1,0 +1,203 @@
+"""How good a contact edge is for the tree: what is measured of it, weighed by fitted weights.
+
+A spanning tree T has the probability exp(sum of s_e over its edges) / Z, where s_e = w . x_e is linear in the
+measurements x_e and Z sums over all spanning trees of the contact graph (matrix-tree theorem, Kirchhoff 1847). The fit
+maximised the likelihood of the true trees (`evaluation/fitting/edges.py`). The most likely tree is the maximum spanning
+tree of s, and so of every growing function of it.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
+
+from kinematify.errors import EnvironmentFault
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kinematify.contact.graph import ContactEdge, ContactGraph, Pair
+    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.topology.pins import EdgePins
+    from kinematify.topology.stats import PartStats
+
+EDGE_WEIGHTS = "edges.json"
+FORMAT = 1
+"""Raised where the meaning of the file changes."""
+MEASUREMENTS = (
+    "bearing", "clear_bearing", "log_bearing", "best_of_smaller", "best_of_larger", "log_gap", "bridge", "log_share",
+    "log_wide_share", "of_largest_contact", "of_smaller_contacts", "of_larger_contacts", "twins", "bearing_of_twins",
+    "log_hull_ratio", "size", "inside", "journal", "passing", "adjacent_leaves", "skips_a_leaf",
+)  # fmt: skip
+"""Columns of `edge_measurements`."""
+_NEAR, _WIDE = 1.0, 8.0  # tolerances of the contact within which area counts
+_LOWEST = -18.0  # scores below the best by more than this are as unlikely as can be told
+_SOFT = 2.0  # the quality is a growing function of s; half of it keeps apart what is beyond doubt
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeWeights:
+    """A linear score of edges; arrays of shape (k,)."""
+
+    measurements: tuple[str, ...]
+    mean: FloatArray
+    scale: FloatArray
+    weights: FloatArray
+    provenance: Mapping[str, Any]
+
+    def scores(self, measured: FloatArray) -> FloatArray:
+        """``s_e`` of measurements of shape (m, k), shape (m,)."""
+        found: FloatArray = ((measured - self.mean) / self.scale) @ self.weights
+        return found
+
+
+def edge_qualities(
+    graph: ContactGraph, stats: Sequence[PartStats], bearings: Mapping[Pair, EdgeBearing], pins: EdgePins
+) -> dict[Pair, float]:
+    """Quality of every contact edge in (0, 1), which grows with its score; arguments as in `edge_measurements`.
+
+    Raises:
+        EnvironmentFault: The weights are missing, damaged or of another version.
+    """
+    scores = shipped_edge_weights().scores(edge_measurements(graph, stats, bearings, pins))
+    qualities = 1.0 / (1.0 + np.exp(-scores / _SOFT))
+    return dict(zip(graph.by_pair, qualities.tolist(), strict=True))
+
+
+def scores_of(qualities: FloatArray) -> FloatArray:
+    """``s_e`` of qualities in [0, 1], the inverse of what `edge_qualities` does; shape (m,)."""
+    bounded = np.clip(qualities, 1e-6, 1.0 - 1e-6)
+    found: FloatArray = _SOFT * np.log(bounded / (1.0 - bounded))
+    return found
+
+
+def edge_probabilities(pairs: Sequence[Pair], scores: FloatArray, n: int) -> tuple[FloatArray, float]:
+    """Probability of each edge to be in the spanning tree, shape (m,), and ``log Z``.
+
+    Both come from the Laplacian of the graph with weights exp(s): Z is its minor, and the probability of an edge is its
+    weight times the resistance between its ends.
+
+    Args:
+        pairs: Edges; where they leave the graph in pieces, Z is 0, and each piece has its own tree.
+        scores: ``s_e``, shape (m,).
+        n: Number of parts.
+    """
+    a, b = np.array(pairs).T
+    highest = float(scores.max())
+    weights = np.exp(np.maximum(scores - highest, _LOWEST))
+    laplacian = np.zeros((n, n))
+    np.add.at(laplacian, (a, b), -weights)
+    np.add.at(laplacian, (b, a), -weights)
+    np.fill_diagonal(laplacian, -laplacian.sum(axis=1))
+    # A constant added within each piece makes the Laplacian regular and changes no resistance.
+    label = connected_components(csr_matrix(laplacian), directed=False)[1]
+    inverse = np.linalg.inv(laplacian + (label[:, None] == label[None]))
+    resistance = inverse[a, a] + inverse[b, b] - 2.0 * inverse[a, b]
+    log_z = float(np.linalg.slogdet(laplacian[1:, 1:])[1]) + (n - 1) * highest
+    return np.clip(weights * resistance, 0.0, 1.0), log_z
+
+
+def edge_measurements(
+    graph: ContactGraph, stats: Sequence[PartStats], bearings: Mapping[Pair, EdgeBearing], pins: EdgePins
+) -> FloatArray:
+    """What is measured of every contact edge, in the order of the graph, shape (m, len(MEASUREMENTS)).
+
+    Args:
+        graph: Contacts with their samples, bridges, and clusters of congruent parts.
+        stats: Size and place of every part, world frame.
+        bearings: Bearing lines of the edges, best first; an edge without any has none.
+        pins: What holds the parts of the edges.
+    """
+    if not graph.edges:
+        return np.empty((0, len(MEASUREMENTS)))
+    bounds = np.array([item.bounds for item in stats])
+    hulls = np.array([item.hull_volume for item in stats])
+    diagonal = float(np.linalg.norm(bounds[:, 1].max(axis=0) - bounds[:, 0].min(axis=0)))
+    a, b = np.array(list(graph.by_pair)).T
+    small, large = np.where(hulls[a] < hulls[b], (a, b), (b, a))
+    extents = bounds[:, 1] - bounds[:, 0] + 1e-9 * diagonal
+    faces = 2.0 * (extents * np.roll(extents, 1, axis=1)).sum(axis=1)
+    smaller_faces = np.minimum(faces[a], faces[b])
+
+    lines = [bearings[pair].lines if pair in bearings else () for pair in graph.by_pair]
+    score = np.array([items[0].score if items else 0.0 for items in lines])
+    best = _largest_of_parts(len(stats), a, b, score)
+    gap = np.array([edge.gap for edge in graph.edges])
+    area = np.array([_mutual_area(edge, _NEAR * graph.tolerance) for edge in graph.edges])
+    wide = np.array([_mutual_area(edge, _WIDE * graph.tolerance) for edge in graph.edges])
+    total = np.bincount(np.concatenate([a, b]), np.concatenate([area, area]), minlength=len(stats))
+    label = np.array(graph.cluster_of)
+    twins = ((label[a] >= 0) & (label[a] == label[b])).astype(np.float64)
+    common = np.minimum(bounds[a, 1], bounds[b, 1]) - np.maximum(bounds[a, 0], bounds[b, 0]) + 1e-9 * diagonal
+    inside = np.clip(common, 0.0, None).prod(axis=1) / np.minimum(extents[a].prod(axis=1), extents[b].prod(axis=1))
+    bearing = score / (score + 0.02)
+    return np.column_stack(
+        [
+            bearing,
+            score / (score + 0.2),
+            np.log10(score + 1e-3),
+            score >= best[small],
+            score >= best[large],
+            np.log10(gap / diagonal + 1e-4),
+            np.array([edge.bridge for edge in graph.edges]),
+            np.log10(area / smaller_faces + 1e-4),
+            np.log10(wide / smaller_faces + 1e-4),
+            np.sqrt(area / max(float(area.max()), 1e-300)),
+            area / np.maximum(total[small], 1e-300),
+            area / np.maximum(total[large], 1e-300),
+            twins,
+            twins * bearing,
+            np.log10(hulls[small] / hulls[large] + 1e-5),
+            np.linalg.norm(bounds[small, 1] - bounds[small, 0], axis=1) / diagonal,
+            np.minimum(inside, 1.0),
+            *(
+                [edge in held for edge in graph.by_pair]
+                for held in (pins.journals, pins.passing, pins.adjacent, pins.skipping)
+            ),
+        ]
+    ).astype(np.float64)
+
+
+def _largest_of_parts(n: int, a: IntArray, b: IntArray, values: FloatArray) -> FloatArray:
+    """Largest value over the edges of each part, shape (n,)."""
+    found = np.zeros(n)
+    np.maximum.at(found, a, values)
+    np.maximum.at(found, b, values)
+    return found
+
+
+def _mutual_area(edge: ContactEdge, reach: float) -> float:
+    """Geometric mean of the two areas within `reach` [m] of the other part, or a fifth beyond the gap [m^2]."""
+    reach = max(reach, 1.2 * edge.gap)
+    near = [float(side.areas[side.distances <= reach].sum()) for side in (edge.samples_a, edge.samples_b)]
+    return float(np.sqrt(near[0] * near[1]))
+
+
+@cache
+def shipped_edge_weights() -> EdgeWeights:
+    """The weights that come with the package.
+
+    Raises:
+        EnvironmentFault: Their file is missing, damaged or of another version.
+    """
+    remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
+    try:
+        stored = json.loads((files("kinematify.topology") / EDGE_WEIGHTS).read_text(encoding="utf-8"))
+        if stored["format"] != FORMAT or tuple(stored["measurements"]) != MEASUREMENTS:
+            raise EnvironmentFault(
+                f"The weights of the tree's edges ({EDGE_WEIGHTS}) are of format {stored['format']} and of "
+                f"{len(stored['measurements'])} measurements; this version of kinematify reads format {FORMAT} with "
+                f"{len(MEASUREMENTS)}. {remedy}"
+            )
+        arrays = {key: np.array(stored[key], dtype=np.float64) for key in ("mean", "scale", "weights")}
+        return EdgeWeights(measurements=MEASUREMENTS, provenance=stored["provenance"], **arrays)
+    except (OSError, ValueError, KeyError) as error:
+        raise EnvironmentFault(f"The weights of the tree's edges ({EDGE_WEIGHTS}) cannot be read. {remedy}") from error

@@ -1,0 +1,182 @@
+"""Edges of the tree: probabilities against all spanning trees, what is measured of contacts, and whole objects."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kinematify.config import load_config
+from kinematify.errors import EnvironmentFault
+from kinematify.evaluation.fitting.edges import (
+    TreeExample,
+    edge_recipe_key,
+    edges_row,
+    fit_edges,
+    read_tree_examples,
+    tree_example,
+    write_edge_weights,
+    write_tree_examples,
+)
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.solids import bore, box, cylinder
+from kinematify.generate.procedural.truth import ground_truth
+from kinematify.pipeline.infer import infer
+from kinematify.topology import edges
+from kinematify.topology.edges import (
+    MEASUREMENTS,
+    edge_measurements,
+    edge_probabilities,
+    scores_of,
+    shipped_edge_weights,
+)
+from kinematify.topology.pins import EdgePins
+from kinematify.topology.stats import assembly_stats
+from tests.joints.joint_scenes import evidence
+from tests.known import known_object, turning
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from tests.known import KnownObject
+
+CONFIG = load_config()
+
+
+@given(st.integers(0, 1000))
+def test_probabilities_are_those_over_all_spanning_trees(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    pairs = [pair for pair in combinations(range(5), 2) if pair[1] == pair[0] + 1 or rng.random() < 0.5]
+    scores = rng.normal(0.0, 2.0, len(pairs))
+    trees = [some for some in combinations(range(len(pairs)), 4) if nx.is_tree(nx.Graph([pairs[k] for k in some]))]
+    trees = [some for some in trees if len({part for k in some for part in pairs[k]}) == 5]
+    weights = np.array([np.exp(scores[list(some)].sum()) for some in trees])
+    by_hand = [sum(w for w, some in zip(weights, trees, strict=True) if k in some) for k in range(len(pairs))]
+    likely, log_z = edge_probabilities(pairs, scores, 5)
+    np.testing.assert_allclose(likely, np.array(by_hand) / weights.sum(), atol=1e-6)
+    assert log_z == pytest.approx(np.log(weights.sum()))
+
+
+def test_pieces_have_trees_of_their_own() -> None:
+    likely, _ = edge_probabilities([(0, 1), (0, 2), (1, 2), (3, 4)], np.zeros(4), 5)
+    np.testing.assert_allclose(likely, [2 / 3, 2 / 3, 2 / 3, 1.0], atol=1e-6)
+
+
+def test_scores_come_back_from_qualities() -> None:
+    scores = np.array([-9.0, -1.0, 0.0, 4.0])
+    np.testing.assert_allclose(scores_of(1.0 / (1.0 + np.exp(-scores / 2.0))), scores, atol=1e-9)
+
+
+def clock() -> KnownObject:
+    """A case and two hands on shafts one in the other."""
+    case = box((-0.1, 0.0, -0.1), (0.1, 0.04, 0.1)) - bore(0.006, 3e-4, (0, -1, 0), (0, 0.0303, 0))
+    solids = {"case": case}
+    for k, (radius, length) in enumerate(((0.006, 0.05), (0.003, 0.08))):
+        level = -0.003 - 0.004 * k
+        hand = box((-0.004, level - 0.002, 0.0), (0.004, level, length)) + cylinder(
+            0.01, (0, level - 0.002, 0), (0, level, 0)
+        )
+        solids[f"hand_{k}"] = hand + cylinder(radius, (0, level - 0.001, 0), (0, 0.03, 0))
+    solids["hand_0"] -= bore(0.003, 3e-4, (0, -1, 0), (0, 1, 0))
+    joints = [turning("case", f"hand_{k}", (0, 1, 0), (0, 0, 0), (-np.inf, np.inf)) for k in range(2)]
+    return known_object("clock", solids, *joints)
+
+
+def test_measurements_are_finite_and_do_not_depend_on_the_unit() -> None:
+    known = clock()
+    _, graph, bearings = evidence(known)
+    measured = edge_measurements(graph, assembly_stats(known.assembly), bearings, EdgePins())
+    assert measured.shape == (len(graph.edges), len(MEASUREMENTS))
+    assert np.isfinite(measured).all()
+    larger = replace(known, parts=tuple(replace(part, vertices=100.0 * part.vertices) for part in known.parts))
+    _, graph, bearings = evidence(larger)
+    np.testing.assert_allclose(
+        edge_measurements(graph, assembly_stats(larger.assembly), bearings, EdgePins()), measured, atol=1e-3
+    )
+
+
+@pytest.mark.parametrize(("family", "parameters"), [("door", {"kind": "folding", "leaves": 2}), ("stapler", {})])
+def test_parts_that_touch_several_others_hang_where_their_joint_is(family: str, parameters: dict[str, object]) -> None:
+    """Leaves of a folding door on each other, the arm of a stapler on its magazine."""
+    blueprint = build(FAMILIES[family], parameters, seed=0)
+    truth = ground_truth(blueprint)
+    inference = infer(blueprint.assembly, config=CONFIG)
+    names = blueprint.assembly.names
+    found = {names[child]: names[parent] for parent, child in inference.trees[0].edges()}
+    assert found == {truth.part_names[j.child]: truth.part_names[j.parent] for j in truth.joints}
+
+
+def test_hands_of_a_clock_hang_side_by_side() -> None:
+    known = clock()
+    tree = infer(known.assembly, config=CONFIG).trees[0]
+    case = known.index["case"]
+    assert tree.root == case
+    assert all(tree.parents[known.index[name]] == case for name in ("hand_0", "hand_1"))
+
+
+def test_a_lid_over_a_rim_hangs_on_the_pot_though_it_touches_the_handle_alone() -> None:
+    """0.7 % of the object's size from the pot, which is more than a contact and less than a part elsewhere."""
+    pot = cylinder(0.1, (0, 0, 0), (0, 0, 0.15)) - cylinder(0.094, (0, 0, 0.006), (0, 0, 0.2))
+    handle = box((0.1, -0.01, 0.05), (0.14, 0.01, 0.165))
+    lid = cylinder(0.1, (0, 0, 0.152), (0, 0, 0.16)) + box((0.09, -0.01, 0.152), (0.1, 0.01, 0.16))
+    known = known_object("pot", {"pot": pot, "handle": handle, "lid": lid})
+    tree = infer(known.assembly, config=CONFIG).trees[0]
+    assert tree.parents[known.index["lid"]] == known.index["pot"]
+
+
+# ---- the fit ---------------------------------------------------------------------------------------------------------
+
+
+def small_examples() -> list[TreeExample]:
+    found = []
+    for name in ("stapler", "fridge", "oven", "toilet"):
+        blueprint = build(FAMILIES[name], {}, seed=0)
+        found.append(
+            tree_example(
+                blueprint.assembly,
+                ground_truth(blueprint),
+                CONFIG,
+                category=name,
+                origin="family",
+                source="ours",
+                fits=True,
+            )
+        )
+    return found
+
+
+def test_a_small_fit_finds_its_own_trees_and_is_written_and_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    examples = small_examples()
+    write_tree_examples(tmp_path / "one.npz", examples)
+    again = read_tree_examples(tmp_path / "one.npz")
+    assert [item.parents for item in again] == [item.parents for item in examples]
+    weights = fit_edges(again, {"seed": 0})
+    row = edges_row(again, [weights.scores(item.measured) for item in again])
+    assert row.found > 0.9
+    write_edge_weights(weights, tmp_path / edges.EDGE_WEIGHTS)
+    monkeypatch.setattr(edges, "files", lambda _: tmp_path)
+    read = edges.shipped_edge_weights.__wrapped__()
+    np.testing.assert_allclose(read.weights, weights.weights, atol=1e-6)
+
+
+def test_the_weights_are_of_the_recipe() -> None:
+    assert shipped_edge_weights().provenance["recipe"] == edge_recipe_key()
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"format": 99, "measurements": []}'])
+def test_damaged_weights_are_refused_with_the_remedy(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / edges.EDGE_WEIGHTS).write_text(text, encoding="utf-8")
+    monkeypatch.setattr(edges, "files", lambda _: tmp_path)
+    with pytest.raises(EnvironmentFault, match="kinematify fit"):
+        edges.shipped_edge_weights.__wrapped__()

@@ -1,0 +1,45 @@
+"""What holds two parts is asked where the tree may depend on it, and nowhere else."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from kinematify.config import load_config
+from kinematify.joints.hypotheses.bearing_line import BearingLine
+from kinematify.topology.pins import EdgePins, coaxial_carriers, find_pins
+from tests.joints.joint_scenes import evidence
+from tests.topology.test_edges import clock
+
+CONFIG = load_config()
+
+
+def bearing(pivot: tuple[float, float, float], axis: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> BearingLine:
+    return BearingLine(
+        axis=np.array(axis), pivot=np.array(pivot), score=1.0, surface_a=1, surface_b=1, circles_a=1, circles_b=1
+    )
+
+
+@pytest.mark.parametrize(("offset", "lean", "found"), [(0.0, 0.0, True), (0.1, 0.0, False), (0.0, 0.1, False)])
+def test_a_carrier_bears_both_shafts_on_their_own_line(offset: float, lean: float, found: bool) -> None:
+    """A body and two shafts one in the other; the inner one may stand off the line or lean."""
+    inner = bearing((offset, 0.0, 5.0), (np.sin(lean), 0.0, np.cos(lean)))
+    lines = {(0, 1): bearing((0, 0, 0)), (0, 2): bearing((0, 0, 0)), (1, 2): inner}
+    assert (0 in coaxial_carriers(lines, angle=2.0, distance=0.05).get((1, 2), ())) is found
+
+
+def test_hands_of_a_clock_pass_each_other() -> None:
+    known = clock()
+    _, graph, bearings = evidence(known)
+    pins = find_pins(known.assembly, graph, bearings, CONFIG)
+    assert (known.index["hand_0"], known.index["hand_1"]) in pins.passing
+
+
+def test_nothing_is_asked_of_a_chain() -> None:
+    known = clock()
+    _, graph, bearings = evidence(known)
+    case = known.index["case"]
+    chain = {edge: bearing for edge, bearing in bearings.items() if case in edge}
+    edges = tuple(edge for edge in graph.edges if case in (edge.a, edge.b))
+    one = type(graph)(n_parts=graph.n_parts, edges=edges, clusters=graph.clusters, tolerance=graph.tolerance)
+    assert find_pins(known.assembly, one, chain, CONFIG) == EdgePins()
