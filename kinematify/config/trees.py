@@ -65,6 +65,8 @@ class RewardWeights(StageConfig):
     """R_hier: children no larger than parents."""
     base: float
     """Score of the root under the base rule."""
+    stack: float
+    """R_stack: what turns about one line hangs side by side; not in the paper's reward."""
 
 
 class TopologyConfig(StageConfig):

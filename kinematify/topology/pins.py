@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,8 +27,8 @@ class EdgePins:
 
     journals: frozenset[Pair] = frozenset()
     """One part holds the other all around a line."""
-    passing: frozenset[Pair] = frozenset()
-    """One part turns past the other about their line, all around; asked of coaxial parts only."""
+    passing: Mapping[Pair, frozenset[int]] = field(default_factory=dict)
+    """One part turns past the other about their line, all around, and these parts bear both there."""
     adjacent: frozenset[Pair] = frozenset()
     """Both are leaves on one pin, next to each other, and cannot pass each other."""
     skipping: frozenset[Pair] = frozenset()
@@ -61,7 +61,8 @@ def find_pins(
     triples = sorted({tuple(sorted((a, b, c))) for (a, b), found in carriers.items() for c in found})
     adjacent, skipping = leaf_pairs(cache, triples, lines, passing, config.joints)
     journals = journal_pairs(cache, doubtful, config.joints)
-    return EdgePins(journals=journals, passing=passing, adjacent=adjacent, skipping=skipping)
+    beside = {edge: carriers[edge] for edge in sorted(passing)}
+    return EdgePins(journals=journals, passing=beside, adjacent=adjacent, skipping=skipping)
 
 
 def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distance: float) -> dict[Pair, frozenset[int]]:

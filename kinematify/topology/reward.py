@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.contact.graph import pair
 from kinematify.errors import InputError
 from kinematify.topology.edges import edge_probabilities, scores_of
 
@@ -134,6 +135,21 @@ def corresponding_symmetry(tree: TreeLayout, clusters: Sequence[Sequence[int]], 
     return float(np.mean(scores)) if scores else 1.0
 
 
+def side_by_side(tree: TreeLayout, carriers: Mapping[Pair, frozenset[int]]) -> float:
+    """Our R_stack in [0, 1]: share of the children that could not as well hang on what carries their parent.
+
+    Shafts one in another (the hands of a clock) turn about one line and past each other, so that both trees move
+    alike; each is driven from the body, on its own.
+    """
+    above: dict[int, frozenset[int]] = {tree.order[0]: frozenset()}
+    stacked = []
+    for child in tree.order[1:]:
+        parent = int(tree.parents[child])
+        above[child] = above[parent] | {parent}
+        stacked.append(not above[parent].isdisjoint(carriers.get(pair(parent, child), ())))
+    return 1.0 - float(np.mean(stacked))
+
+
 def log_hierarchy(tree: TreeLayout, hulls: FloatArray) -> float:
     """Our R_hier in (0, 1]: ``1 / (1 + mean max(0, log h_v / h_u))`` with hull volumes.
 
@@ -192,6 +208,7 @@ class TreeReward:
         self.quality = self.edge_quality()
         if simulated is not None:
             self.quality = {edge: value * simulated.of_pair(edge) for edge, value in self.quality.items()}
+        self.stacks = {edge: item.carriers for edge, item in evidence.items() if item.carriers}
         self.edge_weights = np.zeros((graph.n_parts, graph.n_parts))
         for (a, b), value in self.quality.items():
             self.edge_weights[a, b] = self.edge_weights[b, a] = value
@@ -231,6 +248,7 @@ class TreeReward:
             "sym": corresponding_symmetry(tree, self.graph.clusters, self.graph.cluster_of),
             "hier": log_hierarchy(tree, self.hulls),
             "base": base_score,
+            "stack": side_by_side(tree, self.stacks),
         }
 
     def _survived(self, tree: TreeLayout) -> float:

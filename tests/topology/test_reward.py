@@ -11,6 +11,7 @@ from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
+from kinematify.topology.evidence import EdgeEvidence
 from kinematify.topology.stats import part_stats
 from tests.topology.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
 
@@ -105,6 +106,19 @@ def test_every_term_and_the_total_stay_in_the_unit_interval(
     values = reward.terms(parents, base_score=0.5)
     assert all(0 <= value <= 1 for value in values.values()), values
     assert 0 <= reward.total(values) <= 1
+
+
+@pytest.mark.parametrize("passing", [True, False])
+def test_shafts_that_pass_each_other_hang_side_by_side(passing: bool) -> None:
+    graph = graph_of(3, {(0, 1): 0.0, (0, 2): 0.0, (1, 2): 0.0})
+    stats = [stat((0, 0, 0), 2.0), stat((0, 0, 1)), stat((0, 0, 2), 0.5)]
+    evidence = {key: EdgeEvidence(quality=0.9, axis=None) for key in graph.by_pair}
+    if passing:
+        evidence[1, 2] = EdgeEvidence(quality=0.9, axis=None, carriers=frozenset({0}))
+    reward = terms.TreeReward(graph, stats, evidence, CONFIG)
+    chain, star = (reward.terms(parents)["stack"] for parents in ((-1, 0, 1), (-1, 0, 0)))
+    assert star == 1.0
+    assert chain == (0.5 if passing else 1.0)
 
 
 def test_a_bridge_has_no_contact_strength() -> None:
