@@ -49,7 +49,7 @@ def command(
 
     Each object has a model.urdf and a source.json, as those of `kinematify bench`; those whose licence is for research
     alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
-    To ship new weights, copy the .npz files into kinematify/joints/choice, and edges.json into kinematify/topology.
+    To ship new weights, copy the .npz files and edges.json into kinematify/joints/choice.
     """
     from kinematify.evaluation.fitting.packages import write_installed
     from kinematify.evaluation.fitting.run import as_markdown, run_fit

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from kinematify.contact.graph import pair
 from kinematify.errors import InputError
+from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice.decide import estimate_joints
+from kinematify.joints.measure.pins import find_pins
 from kinematify.paper.trees import PaperReward, base_by_degree
 from kinematify.topology.base import BaseCandidate
 from kinematify.topology.evidence import gather_evidence
-from kinematify.topology.pins import find_pins
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import plausible_bases, search_trees
-from kinematify.topology.stats import assembly_stats
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.candidate import JointEstimate
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.topology.evidence import EdgeEvidence
     from kinematify.topology.reward import SimulatedEdges
-    from kinematify.topology.stats import PartStats
     from kinematify.topology.tree import KinematicTree
 
 

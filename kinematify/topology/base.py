@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from kinematify.config import BaseConfig
     from kinematify.contact.graph import Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.topology.evidence import EdgeEvidence
-    from kinematify.topology.stats import PartStats
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.choice.edges import edge_qualities
 from kinematify.robot.arrays import read_only
-from kinematify.topology.edges import edge_qualities
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.measure.pins import EdgePins
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.pins import EdgePins
-    from kinematify.topology.stats import PartStats
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

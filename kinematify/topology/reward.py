@@ -13,16 +13,16 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.errors import InputError
-from kinematify.topology.edges import edge_probabilities, scores_of
+from kinematify.joints.choice.edges import edge_probabilities, scores_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.topology.evidence import EdgeEvidence
-    from kinematify.topology.stats import PartStats
 
 EPSILON = 1e-9
 """The paper's ``epsilon``: keeps denominators positive."""

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from kinematify.topology.virtual import nearest_pair, virtual_costs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from collections.abc import Set as AbstractSet
 
     from kinematify.contact.graph import ContactGraph, Pair
@@ -84,19 +84,6 @@ def tree_path(edges: Sequence[Pair], n: int, ends: Pair) -> tuple[Pair, ...]:
         steps.append((min(node, parent), max(node, parent)))
         node = parent
     return tuple(steps) if node == ends[0] else ()
-
-
-def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
-    """Edges that others could replace: without one of them, all parts that it joins are still connected."""
-    kept = list(edges)
-    replaceable = []
-    for edge in kept:
-        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
-        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
-        labels = connected_components(matrix, directed=False)[1]
-        if labels[edge[0]] == labels[edge[1]]:
-            replaceable.append(edge)
-    return replaceable
 
 
 def parents_from(edges: Sequence[Pair], n: int, root: int) -> list[int]:

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
+from kinematify.geometry.part_stats import part_stats
 from kinematify.paper.trees import PaperReward, hierarchy, symmetry
 from kinematify.topology import reward as terms
 from kinematify.topology.evidence import EdgeEvidence
-from kinematify.topology.stats import part_stats
 from tests.topology.topology_objects import BOX_FACES, box, edge, graph_of, random_assembly, stat
 
 CONFIG = load_config().topology

@@ -10,11 +10,11 @@ from kinematify.assembly.assemble import simplified
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.contact.build import build_contact_graph, exact_gap
+from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
-from kinematify.topology.edges import edge_qualities
-from kinematify.topology.pins import find_pins
-from kinematify.topology.stats import assembly_stats
+from kinematify.joints.choice.edges import edge_qualities
 from kinematify.joints.hypotheses.bearing import fit_edge, score_line
+from kinematify.joints.measure.pins import find_pins
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -95,7 +95,7 @@ class Bodies:
 
     @cached_property
     def qualities(self) -> Mapping[Pair, float]:
-        """How good each contact is for the tree, in [0, 1] (`topology.edges`)."""
+        """How good each contact is for the tree, in [0, 1] (`joints.choice.edges`)."""
         pins = find_pins(self.assembly, self.graph, self.bearings, self.config)
         return edge_qualities(self.graph, assembly_stats(self.assembly), self.bearings, pins)
 

@@ -12,12 +12,12 @@ from scipy.optimize import minimize
 
 from kinematify.contact.build import build_contact_graph
 from kinematify.evaluation.fitting.examples import content_key
+from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.choice.edges import FORMAT, MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
 from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.topology.edges import FORMAT, MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
-from kinematify.topology.pins import find_pins
+from kinematify.joints.measure.pins import find_pins
 from kinematify.topology.spanning import maximum_spanning_edges
-from kinematify.topology.stats import assembly_stats
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -80,9 +80,13 @@ def tree_example(
 def fit_edges(examples: Sequence[TreeExample], provenance: Mapping[str, Any]) -> EdgeWeights:
     """Weights under which the true trees are likeliest, by L-BFGS; each category weighs as the root of its objects.
 
-    Objects with one possible tree teach nothing, nor do those of which a true edge joins parts that are not near.
+    Objects with one possible tree teach nothing, nor do those of which a true edge joins parts that are not near;
+    without any other all weights are 0.
     """
     usable = [item for item in examples if len(item.pairs) >= len(item.parents) == int(item.true.sum()) + 1]
+    if not usable:
+        flat = np.zeros(len(MEASUREMENTS))
+        return EdgeWeights(measurements=MEASUREMENTS, mean=flat, scale=flat + 1.0, weights=flat, provenance=provenance)
     values = np.concatenate([item.measured for item in usable])
     mean, scale = values.mean(axis=0), values.std(axis=0) + 1e-9
     standard = [(item.measured - mean) / scale for item in usable]
@@ -159,7 +163,7 @@ def _missed(example: TreeExample, scores: FloatArray) -> int:
 
 
 def write_edge_weights(weights: EdgeWeights, path: Path) -> None:
-    """Write the file that `topology.edges.shipped_edge_weights` reads."""
+    """Write the file that `choice.edges.shipped_edge_weights` reads."""
     arrays = {key: [round(float(value), 6) for value in getattr(weights, key)] for key in ("mean", "scale", "weights")}
     stored = {"format": FORMAT, "measurements": weights.measurements, **arrays, "provenance": dict(weights.provenance)}
     path.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")

@@ -54,8 +54,8 @@ from kinematify.evaluation.fitting.trees import (
     write_scorer,
 )
 from kinematify.evaluation.record import table
+from kinematify.joints.choice.edges import EDGE_WEIGHTS
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS
-from kinematify.topology.edges import EDGE_WEIGHTS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -63,14 +63,15 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.fitting.edges import TreeExample
     from kinematify.evaluation.fitting.examples import Example
+    from kinematify.joints.choice.edges import EdgeWeights
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.edges import EdgeWeights
 
     Likely = Mapping[str, Sequence[FloatArray]]
 
 _SEEDS, _NETWORK_SEEDS = (0, 1), (0, 1, 2)
 _LEAST = 10  # joints below which calibration says nothing
+_FEWEST_STYLES = 5  # ways of modelling, so that leaving some out leaves others
 _LEARNING = (0.25, 0.5, 1.0)
 
 
@@ -150,16 +151,11 @@ def fit_and_judge(
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
     shipped = [scorer.probabilities(example.kinds, example.measured) for example in examples]
     likely["shipped weights"] = agreed_examples(examples, shipped)
-    by_style = {**likely, "left out by style": judge_left_out(examples, lambda example: example.style, progress)}
-    styled = [k for k, example in enumerate(examples) if example.style]
     report = {
         "schema": 2,
         "provenance": provenance,
         "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
-        "styles": {
-            name: _rows(examples, [styled[k] for k in index], by_style)
-            for name, index in sets_of([examples[k] for k in styled]).items()
-        },
+        "styles": _styles(examples, likely, progress),
         "calibration": _calibration(examples, likely["left out by category"]),
         "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
         "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
@@ -199,6 +195,20 @@ def _turning(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scor
     scorer = fit_turning(fitted, seeds=_SEEDS, provenance={})
     facts = {"joints": len(fitted), "recipe": turning_recipe_key(scorer.measurements)}
     return replace(scorer, provenance={**provenance, **facts})
+
+
+def _styles(
+    examples: Sequence[Example], likely: Likely, progress: Callable[[str, float], None]
+) -> dict[str, dict[str, Any]]:
+    """Figures of generated objects with a drawn way of modelling, left out by it too; nothing of too few ways."""
+    styled = [k for k, example in enumerate(examples) if example.style]
+    if len({examples[k].style for k in styled}) < _FEWEST_STYLES:
+        return {}
+    by_what = {**likely, "left out by style": judge_left_out(examples, lambda example: example.style, progress)}
+    return {
+        name: _rows(examples, [styled[k] for k in index], by_what)
+        for name, index in sets_of([examples[k] for k in styled]).items()
+    }
 
 
 def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]:

@@ -28,17 +28,17 @@ from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.generate.procedural.truth import ground_truth
-from kinematify.pipeline.infer import infer
-from kinematify.topology import edges
-from kinematify.topology.edges import (
+from kinematify.geometry.part_stats import assembly_stats
+from kinematify.joints.choice import edges
+from kinematify.joints.choice.edges import (
     MEASUREMENTS,
     edge_measurements,
     edge_probabilities,
     scores_of,
     shipped_edge_weights,
 )
-from kinematify.topology.pins import EdgePins
-from kinematify.topology.stats import assembly_stats
+from kinematify.joints.measure.pins import EdgePins
+from kinematify.pipeline.infer import infer
 from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning
 

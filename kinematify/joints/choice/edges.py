@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.contact.graph import ContactEdge, ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.measure.pins import EdgePins
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.pins import EdgePins
-    from kinematify.topology.stats import PartStats
 
 EDGE_WEIGHTS = "edges.json"
 FORMAT = 1
@@ -190,7 +190,7 @@ def shipped_edge_weights() -> EdgeWeights:
     """
     remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
     try:
-        stored = json.loads((files("kinematify.topology") / EDGE_WEIGHTS).read_text(encoding="utf-8"))
+        stored = json.loads((files("kinematify.joints.choice") / EDGE_WEIGHTS).read_text(encoding="utf-8"))
         if stored["format"] != FORMAT or tuple(stored["measurements"]) != MEASUREMENTS:
             raise EnvironmentFault(
                 f"The weights of the tree's edges ({EDGE_WEIGHTS}) are of format {stored['format']} and of "

@@ -6,14 +6,15 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
 from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, passing_pairs
 from kinematify.joints.measure.workspace import PartCache
-from kinematify.topology.spanning import on_cycles
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
@@ -63,6 +64,19 @@ def find_pins(
     journals = journal_pairs(cache, doubtful, config.joints)
     beside = {edge: carriers[edge] for edge in sorted(passing)}
     return EdgePins(journals=journals, passing=beside, adjacent=adjacent, skipping=skipping)
+
+
+def on_cycles(edges: Iterable[Pair], n: int) -> list[Pair]:
+    """Edges that others could replace: without one of them, all parts that it joins are still connected."""
+    kept = list(edges)
+    replaceable = []
+    for edge in kept:
+        rows, columns = np.array([other for other in kept if other != edge]).reshape(-1, 2).T
+        matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n))
+        labels = connected_components(matrix, directed=False)[1]
+        if labels[edge[0]] == labels[edge[1]]:
+            replaceable.append(edge)
+    return replaceable
 
 
 def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distance: float) -> dict[Pair, frozenset[int]]:

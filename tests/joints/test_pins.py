@@ -7,11 +7,16 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.joints.hypotheses.bearing_line import BearingLine
-from kinematify.topology.pins import EdgePins, coaxial_carriers, find_pins
+from kinematify.joints.measure.pins import EdgePins, coaxial_carriers, find_pins, on_cycles
 from tests.joints.joint_scenes import evidence
-from tests.topology.test_edges import clock
+from tests.joints.test_edges import clock
 
 CONFIG = load_config()
+
+
+def test_only_edges_of_cycles_can_be_replaced() -> None:
+    assert on_cycles([(0, 1), (1, 2), (0, 2), (2, 3)], 4) == [(0, 1), (1, 2), (0, 2)]
+    assert on_cycles([(0, 1)], 2) == []
 
 
 def bearing(pivot: tuple[float, float, float], axis: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> BearingLine:
