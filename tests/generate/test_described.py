@@ -55,6 +55,13 @@ def test_a_sentence_may_say_how_it_looks_and_what_it_has():
             from_text(sentence)
 
 
+def test_sizes_of_parts_without_a_number_are_told():
+    request = from_text("a wheelchair with two big wheels and two small casters")
+    assert request.unused == ("big wheels", "small casters")
+    assert request.build().family == "wheelchair"
+    assert from_text("a cart with four small wheels and a wide drawer").unused == ("small wheels", "wide drawer")
+
+
 def test_what_changes_nothing_is_told():
     request = from_text("a sleek retro-style pocket knife for my grandfather")
     assert request.family == "pocket_knife"

@@ -444,16 +444,21 @@ def _kinds(
     details: Mapping[str, int] | None = None,
     fine: float = 1.0,
 ) -> Iterator[Body]:
-    """Bodies that are built alike, one a line: width, depth and height [m], then the words for it."""
+    """Bodies that are built alike, one a line: width, depth and height [m], then the words for it.
+
+    Behind `has` stands what it usually has, a mechanism and how many, where nothing is asked for.
+    """
     for row in rows.strip().splitlines():
-        width, depth, height, words = row.split(maxsplit=3)
+        width, depth, height, described = row.split(maxsplit=3)
+        words, _, had = described.partition(" has ")
+        kind, _, number = had.rpartition(" ")
         yield Body(
-            words=phrases(words),
+            words=phrases(words.rstrip()),
             size=(float(width), float(depth), float(height)),
             build=build,
             material=material,
             always=always or {},
-            usual=usual or {},
+            usual={kind: int(number)} if had else usual or {},
             says=says or {},
             details=details or {},
             fine=fine,
@@ -461,32 +466,46 @@ def _kinds(
 
 
 _FURNITURE = """
-0.7 0.45 0.9 cabinet, cupboard, locker, sideboard, kiosk, shoe cabinet, display cabinet, shoe rack
-0.9 0.45 0.8 aquarium stand, fish tank stand, media console, media cabinet, media unit, hi-fi stand, kitchen island
-0.6 0.4 1.2 bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet
-0.5 0.2 0.6 medicine cabinet, key cabinet, first aid cabinet, wall cabinet, spice cabinet, spice rack
-0.7 0.5 0.85 vanity, vanity unit, washstand, sink unit, changing table, baby changing table, island, reception desk
-0.5 0.4 0.55 night table, end table, night stand, printer stand, plant stand
-1.2 0.6 2.0 wardrobe, armoire, closet, garderobe, linen closet
-1.5 0.4 0.5 tv stand, tv unit, tv bench, tv lowboard, lowboard, entertainment center, entertainment unit, media bench
-3.0 4.0 2.6 barn, shed, garden shed, hut, cabin, garage, stable, playhouse, tiny house, house
-0.6 0.5 0.7 dollhouse, doll house, rabbit hutch, chicken coop, dog house, doghouse, kennel, bird house, birdhouse
-0.9 0.45 0.9 dresser, drawer unit, tallboy dresser, lingerie chest, apothecary cabinet, card catalog, map cabinet
-0.9 0.9 2.1 phone booth, telephone booth, shower cabin, shower enclosure, sauna, elevator, elevator cabin, lift cabin
+0.7 0.45 0.9 cabinet, cupboard, locker, sideboard, kiosk, shoe cabinet, display cabinet, shoe rack has door 2
+0.9 0.45 0.8 aquarium stand, fish tank stand, media console, media cabinet, media unit, hi-fi stand, kitchen island \
+    has door 2
+0.6 0.4 1.2 bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet \
+    has door 2
+0.5 0.2 0.6 medicine cabinet, key cabinet, first aid cabinet, wall cabinet, spice cabinet, spice rack has door 1
+0.7 0.5 0.85 vanity, vanity unit, washstand, sink unit, changing table, baby changing table, island, reception desk \
+    has drawer 2
+0.5 0.4 0.55 night table, end table, night stand, printer stand, plant stand has drawer 1
+1.2 0.6 2.0 wardrobe, armoire, closet, garderobe, linen closet has door 2
+1.5 0.4 0.5 tv stand, tv unit, tv bench, tv lowboard, lowboard, entertainment center, entertainment unit, media bench \
+    has drawer 2
+3.0 4.0 2.6 barn, shed, garden shed, hut, cabin, garage, stable, playhouse, tiny house, house has door 2
+0.6 0.5 0.7 dollhouse, doll house, rabbit hutch, chicken coop, dog house, doghouse, kennel, bird house, birdhouse \
+    has door 2
+0.9 0.45 0.9 dresser, drawer unit, tallboy dresser, lingerie chest, apothecary cabinet, card catalog, map cabinet \
+    has drawer 3
+0.9 0.9 2.1 phone booth, telephone booth, shower cabin, shower enclosure, sauna, elevator, elevator cabin, lift cabin \
+    has door 1
 """
 _MACHINES = """
-0.4 0.22 0.3 control box, console, housing, machine housing, lab box, instrument box, junction box, control unit
-0.5 0.2 0.7 electrical panel, fuse box, breaker box, switch cabinet, electrical cabinet, switchgear, distribution board
-0.45 0.6 1.1 filing cabinet, file cabinet
-0.7 0.45 0.9 tool chest, rolling tool chest, tool cabinet, rolling cabinet, tool storage cabinet
-0.6 0.8 2.0 server rack, rack cabinet, server cabinet, network cabinet, charging station, charging cabinet
-0.7 0.7 1.7 arcade machine, arcade cabinet, jukebox, slot machine, atm, cash machine, gumball machine, pinball machine
-0.35 0.35 1.1 water dispenser, water cooler, fuel pump, gas pump, parking machine, parking meter, hand sanitizer station
-0.35 0.25 0.2 radio, amplifier, stereo, speaker, loudspeaker, hi-fi, receiver, oscilloscope, power supply, generator
-0.3 0.35 0.4 coffee grinder, juicer, popcorn machine, ice cream maker, bread maker, air fryer, humidifier, air purifier
-0.15 0.05 0.2 thermostat, intercom, doorbell, alarm panel, keypad, light switch panel, timer
-0.5 0.45 0.5 3d printer, incubator, autoclave, centrifuge, fume hood, glove box, kiln, air conditioner, heater
-0.6 0.6 0.85 drum washer, tumble dryer, dryer, clothes dryer, compactor
+0.4 0.22 0.3 control box, console, housing, machine housing, lab box, instrument box, junction box, control unit \
+    has button 6
+0.5 0.2 0.7 electrical panel, fuse box, breaker box, switch cabinet, electrical cabinet, distribution board \
+    has door 1
+0.45 0.6 1.1 filing cabinet, file cabinet has drawer 4
+0.7 0.45 0.9 tool chest, rolling tool chest, tool cabinet, rolling cabinet, tool storage cabinet has drawer 5
+0.6 0.8 2.0 server rack, rack cabinet, server cabinet, network cabinet, charging station, charging cabinet has door 1
+0.7 0.7 1.7 arcade machine, arcade cabinet, jukebox, slot machine, atm, cash machine, gumball machine, pinball machine \
+    has button 6
+0.35 0.35 1.1 water dispenser, water cooler, fuel pump, gas pump, parking meter, hand sanitizer station \
+    has button 2
+0.35 0.25 0.2 radio, amplifier, stereo, speaker, loudspeaker, hi-fi, receiver, oscilloscope, power supply, generator \
+    has knob 2
+0.3 0.35 0.4 coffee grinder, juicer, popcorn machine, ice cream maker, bread maker, air fryer, humidifier \
+    has knob 1
+0.15 0.05 0.2 thermostat, intercom, doorbell, alarm panel, keypad, light switch panel, timer has button 4
+0.5 0.45 0.5 3d printer, incubator, autoclave, centrifuge, fume hood, glove box, kiln, air conditioner, heater \
+    has door 1
+0.6 0.6 0.85 drum washer, tumble dryer, dryer, clothes dryer, compactor has door 1
 """
 BODIES = (
     *_kinds(_block, _FURNITURE, material="wood"),
@@ -547,19 +566,24 @@ BODIES = (
     *_kinds(
         _tub,
         """
-        0.55 0.35 0.32 crate, tub, toolbox, tool box, bin, wheelie bin, container, chest, trunk, treasure chest, box
-        1.1 0.45 0.5 storage bench, ottoman, hope chest, blanket chest, toy box, toy chest, window seat, bench
-        1.0 0.6 0.85 chest freezer, freezer chest, deep freezer, ice cream freezer, dumpster, compost bin, composter
-        0.6 0.4 0.4 cooler, cool box, ice chest, esky, picnic basket, basket, laundry basket, hamper, planter, sandbox
-        0.25 0.15 0.1 lunch box, lunchbox, pencil case, pencil box, music box, tin, gift box, ring box, glasses case
-        0.45 0.3 0.2 bread box, bread bin, briefcase, instrument case, record case, camera case, cash box, file box
+        0.55 0.35 0.32 crate, tub, toolbox, tool box, bin, wheelie bin, container, chest, trunk, treasure chest, box \
+    has lid 1
+        1.1 0.45 0.5 storage bench, ottoman, hope chest, blanket chest, toy box, toy chest, window seat, bench has lid 1
+        1.0 0.6 0.85 chest freezer, freezer chest, deep freezer, ice cream freezer, dumpster, compost bin, composter \
+    has lid 1
+        0.6 0.4 0.4 cooler, cool box, ice chest, esky, picnic basket, basket, laundry basket, hamper, laundry hamper \
+    has lid 1
+        0.25 0.15 0.1 lunch box, lunchbox, pencil case, pencil box, music box, tin, gift box, ring box, glasses case \
+    has lid 1
+        0.45 0.3 0.2 bread box, bread bin, briefcase, instrument case, record case, camera case, cash box, file box \
+    has lid 1
         """,
         material="plastic",
     ),
     *_kinds(
         _coffer,
         """
-        0.7 0.5 0.9 grill, barbecue, bbq, barbecue grill, smoker, fire pit
+        0.7 0.5 0.9 grill, barbecue, bbq, barbecue grill, smoker, fire pit has lid 1
         1.0 2.0 0.5 bed, storage bed, daybed, platform bed, captain bed
         """,
     ),
@@ -706,7 +730,7 @@ BODIES = (
         _panel,
         """
         0.6 0.2 0.45 control panel, panel, board, switchboard, dashboard, instrument panel, pegboard, busy board
-        0.8 0.2 0.4 wall panel, coat hook rack, key rack, wall rack, hook rail, key holder, coat hook board
+        0.8 0.2 0.4 wall panel, coat hook rack, key rack, wall rack, hook rail, key holder, coat hook board has hook 4
         """,
     ),
     *_kinds(
@@ -723,7 +747,9 @@ BODIES = (
         fine=0.3,
     ),
     *_kinds(
-        _frame, "1.0 0.12 2.1 frame, portal, doorway, door frame, archway, gateway, serving hatch", material="wood"
+        _frame,
+        "1.0 0.12 2.1 frame, portal, doorway, door frame, archway, gateway, serving hatch has door 1",
+        material="wood",
     ),
 )
 """All bodies; no word stands twice."""

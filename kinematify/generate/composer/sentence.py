@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, TypeVar
@@ -226,7 +227,8 @@ class _Reader:
         number, texts = self._tokens[k].number, self._texts(k)
         if number is None or len(texts) < _BARE or texts[1] not in UNITS:
             return 0
-        if self.wanted and self._tokens[k - 1].text != ",":
+        of_what_comes = self.body is not None and _longest(self._texts(k + _BARE + 1), self._known()) is not None
+        if of_what_comes or (self.wanted and self._tokens[k - 1].text != ","):
             return 0  # it would be the length of a mechanism
         metres = number * UNITS[texts[1]]
         if not _SHORTEST <= metres <= _LONGEST:
@@ -438,12 +440,17 @@ class _Reader:
 
 
 def _unusual(words: tuple[str, ...], names: Sequence[str]) -> str:
-    said = next((name for name in names if tuple(name.replace("-", " ").split()) == words), " ".join(words))
+    said = next((name for name in names if _words_of(name) == words), " ".join(words))
     return "" if said == names[0] else said
 
 
 def _longest(texts: tuple[str, ...], named: Mapping[tuple[str, ...], _Kind]) -> tuple[tuple[str, ...], _Kind] | None:
     return next(((words, kind) for words, kind in named.items() if texts[: len(words)] == words), None)
+
+
+def _words_of(name: str) -> tuple[str, ...]:
+    """A name as a sentence is split: `3d` is two words."""
+    return tuple(re.findall(r"[0-9]+|[a-z]+", name))
 
 
 @cache
@@ -458,7 +465,7 @@ def _mechanisms() -> dict[tuple[str, ...], Mechanism]:
 
 def _by_words(named: Iterable[tuple[str, _Kind]]) -> dict[tuple[str, ...], _Kind]:
     """Keyed by the words of the names, the longest first."""
-    found = {tuple(word.replace("-", " ").split()): kind for word, kind in named}
+    found = {_words_of(word): kind for word, kind in named}
     return dict(sorted(found.items(), key=lambda item: -len(item[0])))
 
 

@@ -17,7 +17,7 @@ from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import PartRequirement
 from kinematify.generate.procedural.language.sizes import OVERALL
 from kinematify.generate.procedural.language.understand import NotUnderstoodError, understand
-from kinematify.generate.procedural.language.words import PLAIN_WORDS, without_purposes
+from kinematify.generate.procedural.language.words import PLAIN_WORDS, without_purposes, without_rough_sizes
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -103,9 +103,10 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
         InputError: It cannot be understood; see `understand`.
     """
     sentence, purposes = without_purposes(sentence, nouns_of_mechanisms())
+    sentence, rough = without_rough_sizes(sentence, nouns_of_mechanisms())
     plain = tuple(dict.fromkeys(re.findall(rf"\b(?:{'|'.join(sorted(PLAIN_WORDS))})\b", sentence.lower())))
     request = _read(sentence, lenient=lenient)
-    return replace(request, unused=(*plain, *purposes, *request.unused))
+    return replace(request, unused=(*plain, *purposes, *rough, *request.unused))
 
 
 def _read(sentence: str, *, lenient: bool) -> Request:

@@ -78,7 +78,7 @@ def _vessel(values: Values) -> Manifold:
 FAMILY = Family(
     name="bucket",
     title="bucket",
-    words=("bucket", "pail", "water bucket", "paint bucket", "cleaning bucket"),
+    words=("bucket", "pail", "water bucket", "paint bucket", "cleaning bucket", "mop bucket"),
     material="plastic",
     parameters=(
         length(

@@ -77,7 +77,16 @@ def _hand(dial: float, kind: int, hub: float, level: float) -> Manifold:
 FAMILY = Family(
     name="clock",
     title="clock",
-    words=("clock", "wall clock", "kitchen clock", "station clock", "table clock", "analog clock", "watch"),
+    words=(
+        "clock",
+        "wall clock",
+        "kitchen clock",
+        "station clock",
+        "table clock",
+        "analog clock",
+        "watch",
+        "alarm clock",
+    ),
     material="plastic",
     parameters=(
         length("width", 0.3, (0.12, 1.0), "Outer width or diameter.", usual=(0.2, 0.45), words="diameter"),

@@ -156,7 +156,15 @@ def _add_buttons(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="coffee_machine",
     title="coffee machine",
-    words=("coffee machine", "coffee maker", "espresso machine", "coffeemaker", "coffee brewer", "coffee pot"),
+    words=(
+        "coffee machine",
+        "coffee maker",
+        "espresso machine",
+        "coffeemaker",
+        "coffee brewer",
+        "coffee pot",
+        "espresso maker",
+    ),
     material="plastic",
     parameters=(
         length("width", 0.22, (0.16, 0.8), "Outer width.", usual=(0.18, 0.3)),

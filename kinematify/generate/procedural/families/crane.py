@@ -168,7 +168,7 @@ def _tube(half: float, start: float, end: float, inner: float, deep: float) -> M
 FAMILY = Family(
     name="crane",
     title="crane",
-    words=("crane", "tower crane", "mobile crane", "construction crane", "hoist"),
+    words=("crane", "tower crane", "mobile crane", "construction crane", "hoist", "toy crane"),
     material="steel",
     parameters=(
         choice(

@@ -160,7 +160,19 @@ def _add_folding_barrels(
 FAMILY = Family(
     name="door",
     title="door",
-    words=("door", "doorway", "gate"),
+    words=(
+        "door",
+        "doorway",
+        "gate",
+        "garden gate",
+        "front door",
+        "house door",
+        "interior door",
+        "room door",
+        "baby gate",
+        "safety gate",
+        "yard gate",
+    ),
     material="wood",
     parameters=(
         length("width", 0.95, (0.7, 5.0), "Outer width.", usual=(0.8, 1.4)),

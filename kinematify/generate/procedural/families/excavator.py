@@ -109,7 +109,7 @@ def _scoop(values: Values, radius: float, start: float) -> Manifold:
 FAMILY = Family(
     name="excavator",
     title="excavator",
-    words=("excavator", "digger", "backhoe", "mini excavator", "power shovel"),
+    words=("excavator", "digger", "backhoe", "mini excavator", "power shovel", "toy excavator"),
     material="steel",
     parameters=(
         length("length", 2.6, (1.5, 5.0), "Of the tracks.", usual=(1.6, 4.0)),

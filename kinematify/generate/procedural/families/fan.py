@@ -149,7 +149,7 @@ def _add_controls(values: Values, workshop: Workshop, place: tuple[float, float,
 FAMILY = Family(
     name="fan",
     title="fan",
-    words=("fan", "ventilator", "blower"),
+    words=("fan", "ventilator", "blower", "table fan", "floor fan", "desk fan"),
     material="plastic",
     parameters=(
         choice(

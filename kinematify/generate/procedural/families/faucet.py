@@ -101,7 +101,18 @@ def _swivel(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="faucet",
     title="faucet",
-    words=("faucet", "tap", "water tap", "kitchen tap", "kitchen faucet", "mixer tap", "spigot", "basin tap"),
+    words=(
+        "faucet",
+        "tap",
+        "water tap",
+        "kitchen tap",
+        "kitchen faucet",
+        "mixer tap",
+        "spigot",
+        "basin tap",
+        "bathroom faucet",
+        "sink faucet",
+    ),
     material="steel",
     parameters=(
         length("height", 0.24, (0.18, 0.6), "Of spout or post.", usual=(0.2, 0.36)),

@@ -87,7 +87,18 @@ def _hang(values: Values, workshop: Workshop, name: str, *, solids: list[Manifol
 FAMILY = Family(
     name="folding_chair",
     title="folding chair",
-    words=("folding chair", "foldable chair", "camping chair", "collapsible chair", "garden chair", "deck chair"),
+    words=(
+        "folding chair",
+        "foldable chair",
+        "camping chair",
+        "collapsible chair",
+        "garden chair",
+        "deck chair",
+        "beach chair",
+        "lawn chair",
+        "patio chair",
+        "director chair",
+    ),
     material="wood",
     parameters=(
         length("width", 0.44, (0.3, 0.7), "Outer width.", usual=(0.38, 0.5)),

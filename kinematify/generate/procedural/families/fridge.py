@@ -85,7 +85,17 @@ def _bins(opening: Opening, clearance: float) -> list[Manifold]:
 FAMILY = Family(
     name="fridge",
     title="fridge",
-    words=("fridge", "refrigerator", "freezer", "fridge freezer", "icebox", "cooler", "minibar"),
+    words=(
+        "fridge",
+        "refrigerator",
+        "freezer",
+        "fridge freezer",
+        "icebox",
+        "cooler",
+        "minibar",
+        "mini fridge",
+        "kitchen fridge",
+    ),
     material="metal",
     parameters=(
         length("width", 0.6, (0.4, 1.5), "Outer width.", usual=(0.55, 0.9)),

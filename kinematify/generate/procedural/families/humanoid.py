@@ -159,7 +159,17 @@ def _add_arm(values: Values, workshop: Workshop, name: str, sy: int, shoulder: F
 FAMILY = Family(
     name="humanoid",
     title="robot with arms and legs",
-    words=("humanoid", "humanoid robot", "android", "biped", "bipedal robot", "person shaped robot"),
+    words=(
+        "humanoid",
+        "humanoid robot",
+        "android",
+        "biped",
+        "bipedal robot",
+        "person shaped robot",
+        "toy robot",
+        "robot toy",
+        "wind up robot",
+    ),
     material="plastic",
     parameters=(
         length("thigh", 0.36, (0.25, 0.6), "Its length.", usual=(0.3, 0.42)),

@@ -73,7 +73,19 @@ def _window(opening: Opening, clearance: float) -> Manifold:
 FAMILY = Family(
     name="oven",
     title="oven or stove",
-    words=("oven", "stove", "cooker", "range", "kitchen stove", "range cooker"),
+    words=(
+        "oven",
+        "stove",
+        "cooker",
+        "range",
+        "kitchen stove",
+        "range cooker",
+        "gas stove",
+        "gas oven",
+        "electric stove",
+        "cooking range",
+        "gas cooker",
+    ),
     material="metal",
     parameters=(
         length("width", 0.6, (0.35, 1.2), "Outer width.", usual=(0.5, 0.9)),

@@ -107,7 +107,18 @@ def _twist(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="pen",
     title="pen",
-    words=("pen", "ballpoint pen", "ballpoint", "ball pen", "biro", "fountain pen", "felt pen", "marker"),
+    words=(
+        "pen",
+        "ballpoint pen",
+        "ballpoint",
+        "ball pen",
+        "biro",
+        "fountain pen",
+        "felt pen",
+        "marker",
+        "click pen",
+        "retractable pen",
+    ),
     material="plastic",
     parameters=(
         length("length", 0.14, (0.1, 0.2), "Of the barrel.", usual=(0.125, 0.155)),

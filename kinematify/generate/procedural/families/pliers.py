@@ -70,7 +70,20 @@ def _grooves(values: Values, gap: float, jaw: float) -> list[Manifold]:
 FAMILY = Family(
     name="pliers",
     title="pair of pliers",
-    words=("pliers", "pair of pliers", "combination pliers", "pincers", "pair of pincers"),
+    words=(
+        "pliers",
+        "pair of pliers",
+        "combination pliers",
+        "pincers",
+        "pair of pincers",
+        "wire cutters",
+        "wire cutter",
+        "side cutter",
+        "nippers",
+        "wire stripper",
+        "crimping pliers",
+        "cutting pliers",
+    ),
     material="steel",
     parameters=(
         length("length", 0.18, (0.1, 0.4), "Over all.", usual=(0.13, 0.25)),

@@ -70,7 +70,22 @@ def _lever(values: Values, span: Span, *, large: bool) -> Manifold:
 FAMILY = Family(
     name="scissors",
     title="pair of scissors",
-    words=("scissors", "pair of scissors", "shears", "pair of shears", "kitchen scissors"),
+    words=(
+        "scissors",
+        "pair of scissors",
+        "shears",
+        "pair of shears",
+        "kitchen scissors",
+        "garden shears",
+        "pruning shears",
+        "hedge shears",
+        "hedge clippers",
+        "secateurs",
+        "tin snips",
+        "paper scissors",
+        "nail scissors",
+        "poultry shears",
+    ),
     material="steel",
     parameters=(
         length("length", 0.18, (0.08, 0.35), "Over all.", usual=(0.12, 0.25)),

@@ -138,7 +138,17 @@ def _add_wheels(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="suitcase",
     title="suitcase",
-    words=("suitcase", "trolley case", "luggage", "travel case", "roller suitcase", "carry on"),
+    words=(
+        "suitcase",
+        "trolley case",
+        "luggage",
+        "travel case",
+        "roller suitcase",
+        "carry on",
+        "carry on suitcase",
+        "cabin bag",
+        "rolling suitcase",
+    ),
     material="plastic",
     parameters=(
         length("width", 0.4, (0.3, 0.7), "Of the shells.", usual=(0.34, 0.5)),

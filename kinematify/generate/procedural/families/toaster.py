@@ -82,7 +82,7 @@ def _add_tray(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="toaster",
     title="toaster",
-    words=("toaster", "bread toaster"),
+    words=("toaster", "bread toaster", "pop up toaster"),
     material="metal",
     parameters=(
         length("width", 0.19, (0.14, 0.5), "Outer width.", usual=(0.16, 0.32)),

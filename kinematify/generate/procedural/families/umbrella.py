@@ -90,7 +90,16 @@ def _add_runner(values: Values, workshop: Workshop, top: float) -> None:
 FAMILY = Family(
     name="umbrella",
     title="umbrella",
-    words=("umbrella", "parasol", "sunshade"),
+    words=(
+        "umbrella",
+        "parasol",
+        "sunshade",
+        "patio umbrella",
+        "garden umbrella",
+        "beach umbrella",
+        "sun umbrella",
+        "market umbrella",
+    ),
     material="metal",
     parameters=(
         length("height", 0.85, (0.5, 1.5), "Over all.", usual=(0.7, 1.0)),

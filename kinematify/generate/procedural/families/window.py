@@ -135,7 +135,7 @@ def _add_handle(
 FAMILY = Family(
     name="window",
     title="window",
-    words=("window", "skylight"),
+    words=("window", "skylight", "roof window", "house window", "basement window"),
     material="wood",
     parameters=(
         length("width", 1.0, (0.6, 4.0), "Outer width.", usual=(0.6, 1.6)),

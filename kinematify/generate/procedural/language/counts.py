@@ -285,7 +285,7 @@ def _number_before(reading: Reading, k: int) -> tuple[float | None, tuple[int, .
     at = k - 1
     while at >= 0 and k - at <= 3:
         token = reading.tokens[at]
-        if token.number is not None and at not in reading.used:
+        if token.number is not None and at not in reading.used and reading.text(at + 1) not in UNITS:
             before, factor = reading.text(at - 1), reading.number(at - 2)
             if before in JOINING and at >= 2 and factor is not None:
                 return token.number * factor, (at - 2, at - 1, at)
@@ -295,7 +295,7 @@ def _number_before(reading: Reading, k: int) -> tuple[float | None, tuple[int, .
                 times = reading.number(at - 1) if at else None
                 return 12 * int(times or 1), (at - 1, at) if times else (at,)
             return token.number, (at - 1, at) if before in ARTICLES else (at,)
-        if token.is_sign or at in reading.used or token.text in _NUMBER_ENDS:
+        if token.number is not None or token.is_sign or at in reading.used or token.text in _NUMBER_ENDS:
             return None, ()
         at -= 1
     return None, ()

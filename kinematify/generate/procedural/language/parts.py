@@ -228,9 +228,11 @@ class PartReader:
             != self.reading.text(end - 1)
         )
         count = int(number) if number is not None else None if plural else 1
-        self.require(
-            PartRequirement(nouns=stems, words=self.said(*where), place=place, count=count, at_least=2), *where
-        )
+        noun = "_".join(singular(self.reading.text(i), frozenset(stems)) for i in range(k, end))
+        for meant in (stems, (noun,)):  # two wheels may be all or those that are called no more than that
+            wanted = PartRequirement(nouns=meant, words=self.said(*where), place=place, count=count, at_least=2)
+            if meant[0] in stems and self.require(wanted, *where):
+                break
 
     def looks(self) -> None:
         """Colours and materials, of the whole object or of some of its parts."""

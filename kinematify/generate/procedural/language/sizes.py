@@ -9,7 +9,8 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.words import OPENNESS, UNITS
+from kinematify.generate.procedural.language.reading import nouns_of
+from kinematify.generate.procedural.language.words import OPENNESS, UNITS, singular
 
 if TYPE_CHECKING:
     from kinematify.generate.procedural.family import Family
@@ -139,10 +140,16 @@ def _lengths(reading: Reading) -> None:
         metres, end = length
         for at in (end, end + 1, k - 1, k - 2):
             name = _dimension(reading, reading.text(at), metres) if at not in reading.used else None
-            if name is not None:
+            if name is not None and not _is_of_a_part(reading, at + 1):
                 reading.take(name, metres, f"{name} {metres:g} m", *range(min(k, at), max(end, at + 1)))
                 break
         k = end
+
+
+def _is_of_a_part(reading: Reading, k: int) -> bool:
+    """Whether what stands before word k is said of a part: `60 cm wide drawers`."""
+    parts = {noun for p in reading.family.parameters if isinstance(p.default, int) for noun in nouns_of(p)}
+    return k not in reading.named and singular(reading.text(k), frozenset(parts)) in parts
 
 
 def read_bare_length(reading: Reading) -> None:

@@ -60,7 +60,8 @@ _PLAIN_TEXT = """
     regular usual common everyday generic scandinavian victorian farmhouse industrial traditional style styled design
     designed look looking kind type sort brand brushed polished matte glossy shiny painted lacquered varnished worn
     weathered dusty clean well built good great best high quality lightweight portable electric electrical electronic
-    manual home family professional commercial domestic sized size
+    manual home family professional commercial domestic sized size motorized motorised hydraulic pneumatic digital
+    automatic cordless rechargeable insulated waterproof washable foam padded upholstered handmade custom original
 """
 PLAIN_WORDS = frozenset(_PLAIN_TEXT.split())
 """What something is like, where that asks for no shape and no motion; told as of no effect."""
@@ -78,7 +79,31 @@ _PURPOSE = re.compile(
     r"[^,;.:]*?(?=\s*(?:$|[,;.:]|\b(?:with|and|that|which|having|whose|has|featuring|including|made|on|in)\b))",
     re.IGNORECASE,
 )
-_MANNER = re.compile(r"\b(?:in )?(?:an? )?[\w.]+[ -](?:style|styled)\b|\bfree[ -]?standing\b", re.IGNORECASE)
+_MANNER = re.compile(
+    r"\b(?:in )?(?:an? )?[\w.]+[ -](?:style|styled|fashioned)\b|\bfree[ -]?standing\b|\bsoft[ -]clos(?:e|ing)\b"
+    r"|\b(?:wall|floor|ceiling)[ -]mounted\b",
+    re.IGNORECASE,
+)
+_ROUGHLY = (
+    "big",
+    "large",
+    "huge",
+    "small",
+    "little",
+    "tiny",
+    "mini",
+    "wide",
+    "narrow",
+    "tall",
+    "long",
+    "short",
+    "deep",
+)
+"""Sizes of parts without a number; parts have the sizes that fit."""
+_ROUGH_PART = re.compile(
+    rf"(?<![\d.])(?<!\bcm )(?<!\bmm )(?<!\bm )\b(?P<size>(?:{'|'.join(_ROUGHLY)})\s+)(?P<noun>[a-z]+)\b", re.IGNORECASE
+)
+_HAVING = re.compile(r"(\b(?:with|having|has|featuring|including|plus)\b)", re.IGNORECASE)
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
 
 
@@ -123,6 +148,23 @@ def without_purposes(sentence: str, asking: frozenset[str]) -> tuple[str, tuple[
     for match in reversed(found):
         sentence = f"{sentence[: match.start()]} {sentence[match.end() :]}"
     return sentence, tuple(match[0].strip() for match in found)
+
+
+def without_rough_sizes(sentence: str, parts: frozenset[str]) -> tuple[str, tuple[str, ...]]:
+    """Leave out how large parts are where no number says it: `with two big drawers and a small door`.
+
+    Args:
+        sentence: What somebody asks for.
+        parts: Nouns, singular, of parts.
+
+    Returns:
+        What is left, and what was left out with the noun that it was said of; sizes of the whole stay.
+    """
+    whole, having, rest = _HAVING.split(sentence, maxsplit=1) if _HAVING.search(sentence) else (sentence, "", "")
+    found = [item for item in _ROUGH_PART.finditer(rest) if singular(item["noun"].lower(), parts) in parts]
+    for item in reversed(found):
+        rest = rest[: item.start("size")] + rest[item.start("noun") :]
+    return f"{whole}{having}{rest}", tuple(f"{item['size'].strip()} {item['noun']}" for item in found)
 
 
 def _overlap(one: re.Match[str], other: re.Match[str]) -> bool:
