@@ -352,11 +352,12 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, compose
 
 def _write_gallery(folder: Path) -> None:
     from kinematify.generate.composer.examples import SENTENCES
+    from kinematify.generate.described import known_families
     from kinematify.generate.procedural.families import FAMILIES
     from kinematify.pipeline.gallery import write_gallery
 
+    described = {name: family for name, family in known_families().items() if name not in FAMILIES}
+    command = f"kinematify generate --gallery {folder.as_posix()}"
     with progress_reporter() as progress:
-        page = write_gallery(
-            folder, FAMILIES, SENTENCES, command=f"kinematify generate --gallery {folder.as_posix()}", progress=progress
-        )
-    click.echo(f"{len(SENTENCES)} sentences, {len(FAMILIES)} categories: {page}")
+        page = write_gallery(folder, FAMILIES, SENTENCES, described, command=command, progress=progress)
+    click.echo(f"{len(SENTENCES)} sentences, {len(described)} described objects, {len(FAMILIES)} categories: {page}")

@@ -1,4 +1,4 @@
-"""A page with composed objects and every family of the generator: pictures at rest and moved, what can be asked for."""
+"""A page with all that the generator knows: pictures at rest and moved, and what can be asked for."""
 
 from __future__ import annotations
 
@@ -41,6 +41,7 @@ def write_gallery(
     folder: Path,
     families: Mapping[str, Family],
     sentences: Sequence[str],
+    described: Mapping[str, Family],
     *,
     command: str,
     progress: Callable[[str, float], None],
@@ -48,9 +49,11 @@ def write_gallery(
     """Write the page and its pictures; what an earlier call wrote is replaced.
 
     Args:
-        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per sentence and family, and one that moves.
+        folder: Gets ``gallery.md`` and ``gallery/`` with a WebP per sentence, family and described object, and one
+            that moves.
         families: What to show, in this order.
         sentences: Each becomes a picture, before the families.
+        described: What files describe: each a picture with its words, behind the sentences.
         command: What the reader types to make the page again.
         progress: Told the family and the share done.
 
@@ -68,21 +71,23 @@ def write_gallery(
         picture = draw_pair(true_model(blueprint, config), config.preview)
         picture.save(folder / PICTURES / f"{name}.webp", quality=_QUALITY, method=6)
 
+    pictures = len(sentences) + len(described) + len(families)
     try:
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
         for number, sentence in enumerate(sentences):
-            progress(sentence, 0.5 * number / len(sentences))
+            progress(sentence, number / pictures)
             blueprint = from_text(sentence).build()
             draw(blueprint, f"composed_{number + 1}")
             if number == 0:
                 _draw_opening(true_model(blueprint, config), folder / PICTURES / OPENING, config.preview)
-        for number, (name, family) in enumerate(families.items()):
-            progress(name, 0.5 + 0.5 * number / len(families))
+        for number, (name, family) in enumerate({**described, **families}.items()):
+            progress(name, (len(sentences) + number) / pictures)
             blueprint = build(family, {})
             draw(blueprint, name)
-            sections.append(_section(family, blueprint))
+            if name in families:
+                sections.append(_section(family, blueprint))
         page = folder / PAGE
-        page.write_text("\n".join([_head(families, sentences, command), *sections]), encoding="utf-8")
+        page.write_text("\n".join([_head(families, sentences, described, command), *sections]), encoding="utf-8")
     except OSError as error:
         raise OutputError(
             f"The gallery cannot be written to {folder} ({error.strerror or error}). Give a folder that you may write "
@@ -101,7 +106,11 @@ def _draw_opening(model: KinematicModel, path: Path, config: PreviewConfig) -> N
     first.save(path, save_all=True, append_images=others, duration=_STEP_MS, loop=0, quality=_QUALITY, method=6)
 
 
-def _head(families: Mapping[str, Family], sentences: Sequence[str], command: str) -> str:
+def _head(
+    families: Mapping[str, Family], sentences: Sequence[str], described: Mapping[str, Family], command: str
+) -> str:
+    composed = {f"composed_{number}": text for number, text in enumerate(sentences, start=1)}
+    asked = {name: f"a {', '.join(family.words[:4])}" for name, family in described.items()}
     return f"""# Gallery
 
 Made by `{command}`. All pictures show an object at rest and with every joint moved. Red arrows turn, blue ones slide.
@@ -111,7 +120,15 @@ Made by `{command}`. All pictures show an object at rest and with every joint mo
 A sentence asks for an object of a family with what is said of it, or for mechanisms on a body, which are then composed;
 every word is understood, or the sentence is refused; what asks for no shape and no motion is told.
 
-{_pictures(sentences)}
+{_pictures(composed, 2)}
+
+## Objects that files describe
+
+Each of these {len(described)} stands in a file of its own in `kinematify/generate/objects/`: parts made of primitives,
+the joints between them, and words. A sentence may say any of the words, count the parts, and say colour, material,
+size and how far it stands open. Under a picture stand the first words for it.
+
+{_pictures(asked, 3)}
 
 ## Families
 
@@ -128,13 +145,12 @@ Every family has these parameters:
 """
 
 
-def _pictures(sentences: Sequence[str]) -> str:
-    """Two sentences in a row of a table, each under its picture."""
-    cells = [
-        f"![{text}]({PICTURES}/composed_{number}.webp)<br>{text}" for number, text in enumerate(sentences, start=1)
-    ]
-    rows = [cells[k : k + 2] for k in range(0, len(cells), 2)]
-    return "\n".join(["| | |", "| --- | --- |", *(f"| {' | '.join(row)} |" for row in rows)])
+def _pictures(told: Mapping[str, str], columns: int) -> str:
+    """A table of pictures, by name, each above what is said."""
+    cells = [f"![{text}]({PICTURES}/{name}.webp)<br>{text}" for name, text in told.items()]
+    rows = [cells[k : k + columns] for k in range(0, len(cells), columns)]
+    head = (("",) * columns, ("---",) * columns)
+    return "\n".join(f"| {' | '.join(row)} |" for row in (*head, *rows))
 
 
 def _section(family: Family, blueprint: Blueprint) -> str:
