@@ -69,7 +69,13 @@ STOP_WORDS = frozenset(_STOP_TEXT.split()) | PLAIN_WORDS
 """Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
 _TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
-_WRITTEN = ((r"['’](?:m|re|ve|s)\b", ""), (r"\bw/o\b", "without"), (r"\bw/", "with"), ("&", "and"))
+_WRITTEN = (
+    (r"['’](?:m|re|ve|s)\b", ""),
+    (r"(?<=s)['’](?=\s)", ""),
+    (r"\bw/o\b", "without"),
+    (r"\bw/", "with"),
+    ("&", "and"),
+)
 """Signs that people write for words."""
 _PURPOSE = re.compile(
     r"(?<!look)(?<!looking)(?<!search)(?<!searching)(?<!asking)(?<!wish)\s(?:for (?!sliding|opening|turning|moving)"
