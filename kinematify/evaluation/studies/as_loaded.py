@@ -35,6 +35,7 @@ from kinematify.evaluation.study import Options, Study, among, explained
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.request import from_text
@@ -78,6 +79,7 @@ class AsLoadedOptions(Options):
         (), description="Only these families, separated by commas."
     )
     inferred: int = Field(0, ge=0, description="Objects per family of the generator that are inferred.")
+    described: int = Field(0, ge=0, description="Seeds of each object that a file describes.")
     composed: int = Field(0, ge=0, description="Objects composed of mechanisms on bodies.")
     told: int = Field(0, ge=0, description="Seeds of each of the sixty sentences for composed objects.")
     engines: Annotated[tuple[str, ...], among(ENGINES)] = Field(
@@ -117,6 +119,9 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
     for seed in range(options.inferred):
         for family in options.families or FAMILIES:
             cases[f"{family} {seed} inferred"] = case(made="inferred", family=family, seed=seed)
+    for seed in range(options.described):
+        for family in sorted(known_families().keys() - FAMILIES.keys()):
+            cases[f"{family} {seed}"] = case(made="exact", family=family, seed=seed)
     cases |= {f"composed {seed}": case(made="exact", seed=seed) for seed in range(options.composed)}
     for seed in range(options.told):
         for number, told in enumerate(load_sentences("composed"), start=1):
@@ -132,7 +137,9 @@ def tried_as_loaded(case: Case) -> Record:
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
     if case.item is None:
         kind = case.family or case.sentence or "composed"
-        made_by = "generated" if case.family else "composed as told" if case.sentence else "composed"
+        made_by = "composed as told" if case.sentence else "composed"
+        if case.family:
+            made_by = "generated" if case.family in FAMILIES else "described by files"
         facts = {"set": f"{made_by}, {case.made}", "object": f"{kind} {case.seed}"}
         blueprint = _generated(case)
         if case.made == "exact":
@@ -168,7 +175,7 @@ def _generated(case: Case) -> Blueprint:
     if case.sentence:
         return from_text(case.sentence).build(seed=case.seed)
     if case.family:
-        return build(FAMILIES[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
+        return build(known_families()[case.family], {}, seed=case.seed, name=f"{case.family}_{case.seed}")
     return compose(draw_composition(case.seed), seed=case.seed, name=f"composed_{case.seed}")
 
 
