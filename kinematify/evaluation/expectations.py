@@ -34,6 +34,7 @@ SETS = {
     "fresh": "sixty more, committed before they were tried",
     "visitors": "sixty in the styles of many visitors, committed before they were tried",
     "walked_in": "sixty of people who walk in, committed before they were tried",
+    "first_sight": "sixty more of people who walk in, committed before anything was added, tried after",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }

@@ -18,6 +18,7 @@ from kinematify.generate.procedural.language.parts import MOTIONS, PartRequireme
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, angle_at, length_at
 from kinematify.generate.procedural.language.words import (
     ARTICLES,
+    KINDS,
     OPENNESS,
     PURPOSES,
     STOP_WORDS,
@@ -273,7 +274,7 @@ class _Reader:
             Wanted(
                 mechanism=mechanism,
                 said=_unusual(words, mechanism.words),
-                count=look.count or (2 if plural else 1),
+                count=look.count or (_several(mechanism) if plural else 1),
                 side=side,
                 material=look.material,
                 color=look.color,
@@ -422,6 +423,8 @@ class _Reader:
         """`four`, `no`; a number that is not whole, or a second one, is not understood."""
         number = self._tokens[k].number
         of_article = self._words.text(k - 1) in ARTICLES  # a pair, a dozen
+        if self.body is None and self._words.text(k) in KINDS:
+            return 0
         if number is None or number != int(number) or (self._look.count is not None and not of_article):
             return 0
         self._look.count = int(number)
@@ -437,6 +440,11 @@ class _Reader:
             return "", 0
         skipped = words[1:].index(place[0])
         return _SIDES[place[0]], 2 + skipped + (len(place) > 1 and place[1] in _SIDE_NOUNS)
+
+
+def _several(mechanism: Mechanism) -> int:
+    """How many are meant that are not counted: what stands on wheels has four."""
+    return 4 if mechanism.arranged in ("axles", "corners") else 2
 
 
 def _unusual(words: tuple[str, ...], names: Sequence[str]) -> str:

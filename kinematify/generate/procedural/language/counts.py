@@ -9,7 +9,7 @@ from kinematify.errors import InputError
 from kinematify.generate.procedural.language.arrangement import Mention
 from kinematify.generate.procedural.language.reading import nouns_of
 from kinematify.generate.procedural.language.sizes import JOINING
-from kinematify.generate.procedural.language.words import ARTICLES, UNITS, singular
+from kinematify.generate.procedural.language.words import ARTICLES, KINDS, UNITS, singular
 from kinematify.generate.procedural.layout import CELLS
 
 if TYPE_CHECKING:
@@ -247,7 +247,7 @@ def read_counted_name(reading: Reading) -> None:
 def read_copies(reading: Reading) -> None:
     """`two nightstands`, `three identical nightstands next to each other`."""
     number, counting = _number_before(reading, min(reading.named))
-    if number is None or {reading.text(counting[-1]), reading.text(counting[-1] + 1)} & {*ARTICLES, *UNITS}:
+    if number is None or {reading.text(counting[-1]), reading.text(counting[-1] + 1)} & {*ARTICLES, *UNITS, *KINDS}:
         return
     if _whole(reading, number, max(reading.named)) <= 1:
         return

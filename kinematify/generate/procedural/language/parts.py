@@ -6,6 +6,7 @@ It is read against the parts that were built; what does not hold of them is not 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -181,13 +182,15 @@ class PartReader:
             self.reading.used.add(k - 1)
 
     def _movement_of_some_part(self) -> None:
-        """`a fan that oscillates`, `a swivel chair`: something of it moves so."""
+        """`a fan that oscillates`, `a swivel chair`: the one part of a name does; ribs do not tilt an umbrella."""
+        names = Counter(_stem(part.name) for part in self.made.parts)
         for k, token in enumerate(self.reading.tokens):
             of_whole = self.reading.text(k - 1) in ("that", "which") or k + 1 in self.reading.named
             if token.text not in MOTIONS or k in self.reading.used or not of_whole:
                 continue
             moves = MOTIONS[token.text]
             stems = {_stem(joint.child) for joint in self.made.joints if _MOVES[moves](joint)}
+            stems = {stem for stem in stems if names[stem] == 1}
             if stems:
                 self.require(PartRequirement(nouns=tuple(sorted(stems)), words=token.given, moves=moves), k)
 

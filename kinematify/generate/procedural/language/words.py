@@ -23,6 +23,8 @@ NUMBERS = {
 }  # fmt: skip
 """Number words; `a` and `an` count only before something that can be counted."""
 ARTICLES = ("a", "an")
+KINDS = ("double", "twin", "triple")
+"""Before the name of an object they say its kind, not how many: a double oven is no two ovens."""
 UNITS = {
     "mm": 1e-3, "millimetre": 1e-3, "millimeter": 1e-3, "cm": 1e-2, "centimetre": 1e-2, "centimeter": 1e-2,
     "dm": 0.1, "m": 1.0, "metre": 1.0, "meter": 1.0, "km": 1e3, "kilometre": 1e3, "kilometer": 1e3, "inch": 0.0254,
