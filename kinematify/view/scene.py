@@ -219,6 +219,14 @@ class ViewScene:
             poses[joint.child] = poses[joint.parent] @ joint.T_parent_child @ motion
         return poses
 
+    def prepare_collisions(self) -> None:
+        """Read the collision geometry, which `touches` does else when it is first asked.
+
+        Raises:
+            InputError: It cannot be read.
+        """
+        _ = self._collisions
+
     def touches(self, q: Mapping[str, float]) -> list[Touch]:
         """Pairs that meet in a configuration, those that are not tolerated first.
 

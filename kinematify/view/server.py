@@ -32,6 +32,8 @@ _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
 _FRAME = 1.0 / 30.0
 _SWEEP_SECONDS = 4.0
+_HEAD_START = 2.5
+"""That the page has before collisions are looked for, which keeps a processor busy for a second at first [s]."""
 _PICTURE = (1600, 1200)
 
 
@@ -115,7 +117,8 @@ class ModelViewer:
 
     def run(self, stop: threading.Event) -> None:
         """Sweep what is to be swept and look for collisions until told to stop."""
-        start, last = time.monotonic(), ""
+        begun = start = time.monotonic()
+        last = ""
         while not stop.wait(_FRAME):
             name = self._sweeping
             if name is not None:
@@ -125,7 +128,7 @@ class ModelViewer:
                 lower, upper = self._scene.range_of(self._scene.robot.joint_by_name[name])
                 self.set({name: float(lower + share * (upper - lower))})
             last = name or ""
-            if self._stale:
+            if self._stale and time.monotonic() - begun > _HEAD_START:
                 self._look_for_collisions()
 
     def choose(self, joint: str) -> None:
@@ -346,13 +349,15 @@ class ModelViewer:
         self._stale = True
 
     def _look_for_collisions(self) -> None:
+        try:
+            self._scene.prepare_collisions()  # not in the lock, for which sliders would wait
+        except KinematifyError as error:
+            self._stale = False
+            self._panel.show_status(f"Collisions cannot be looked for. {error}")
+            return
         with self._lock:
             self._stale = False
-            try:
-                touches = self._scene.touches(self._q)
-            except KinematifyError as error:
-                self._panel.show_status(f"Collisions cannot be looked for. {error}")
-                return
+            touches = self._scene.touches(self._q)
             self._colliding = frozenset(top for touch in touches if not touch.tolerated for top in touch.pair)
             self._panel.show_status(said_of_touches(touches))
             self._glow()

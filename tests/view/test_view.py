@@ -202,7 +202,7 @@ def test_a_model_whose_collision_mesh_is_missing_is_seen_all_the_same(urdf: Path
     window = Window(urdf, port=18085)
     window.run_aside()
     try:
-        for _ in range(200):
+        for _ in range(600):
             if "gone.obj" in (said := window.viewer.status):
                 break
             time.sleep(0.05)
