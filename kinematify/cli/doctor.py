@@ -53,6 +53,7 @@ MODULES = {
     "viser": ("viser", "viewer in the browser"),
     "example-robot-data": ("", "robots for `kinematify bench --data pip`"),
     "matplotlib": ("matplotlib", "plots of the benchmark"),
+    "playwright": ("playwright", "pages measured in a browser"),
     "fsspec": ("fsspec", "paths and URLs of `kinematify batch`"),
     "s3fs": ("s3fs", "`kinematify batch` from and to s3://"),
     "ray": ("ray", "`kinematify batch` on a cluster"),

@@ -29,7 +29,7 @@ def open_browser() -> Iterator[Browser]:
     try:
         from playwright.sync_api import sync_playwright  # noqa: PLC0415  # for tests and measurements of pages alone
     except ImportError as error:
-        raise EnvironmentFault("playwright is not installed. Run `pip install playwright`.") from error
+        raise EnvironmentFault("playwright is not installed. Run `pip install 'kinematify[bench]'`.") from error
     path = os.environ.get("KINEMATIFY_BROWSER") or next(filter(None, map(shutil.which, _NAMES)), None)
     if path is None:
         raise EnvironmentFault("There is no Chromium on this machine (Debian: apt-get install chromium).")

@@ -69,7 +69,7 @@ if TYPE_CHECKING:
 
     Likely = Mapping[str, Sequence[FloatArray]]
 
-_SEEDS, _NETWORK_SEEDS = (0, 1), (0, 1, 2)
+_SEEDS, _NETWORK_SEEDS = (0, 1, 2, 3), (0, 1, 2, 3, 4, 5)
 _LEAST = 10  # joints below which calibration says nothing
 _FEWEST_STYLES = 5  # ways of modelling, so that leaving some out leaves others
 _LEARNING = (0.25, 0.5, 1.0)
