@@ -48,7 +48,7 @@ def test_arms_come_back_exactly(name: str, count: int) -> None:
 
 
 def test_everyday_objects_come_back_with_their_joints() -> None:
-    """Trees and types of all; of ten lines nine, since a fitted choice may err where a door could turn about two edges."""
+    """All trees and types; nine lines of ten: the choice may err where a door has two edges to turn about."""
     right = 0
     for name, count in (("cabinet_41083", 4), ("dishwasher_12428", 5), ("box_100141", 1)):
         score = inferred_again(name).score
