@@ -57,8 +57,12 @@ def _floating_parts(assembly: Assembly, graph: ContactGraph, tree: KinematicTree
         edge = graph.by_pair.get(pair(parent, child))
         if edge is None or edge.bridge:
             gap = "" if edge is None else f" ({edge.gap / assembly.diagonal:.2%} of the object's diagonal apart)"
+            name, above = assembly.names[child], assembly.names[parent]
+            touched = [item for item in graph.edges if child in (item.a, item.b) and not item.bridge]
             warnings.append(
-                f"{assembly.names[child]} touches nothing; it hangs on {assembly.names[parent]}, the nearest part{gap}."
+                f"{name} hangs on {above}, which it does not touch{gap}, and not on what it touches."
+                if touched
+                else f"{name} touches nothing; it hangs on {above}, the nearest part{gap}."
             )
     return warnings
 
