@@ -97,7 +97,7 @@ def test_paper_search_finds_the_optimum_without_edges_inside_clusters(shapes: li
 def test_search_never_returns_less_than_its_warm_start(n: int, extra: int, seed: int, iterations: int) -> None:
     clusters = [(0, n - 1)] if n < 6 else [(1, 2), (3, 4, 5)]
     graph, stats, evidence = random_assembly(n, extra, seed, clusters)
-    for config in (DEFAULT, PAPER.model_copy(update={"cluster_edges": "penalise"})):
+    for config in (DEFAULT, PAPER.model_copy(update={"cluster_edges": "allow"})):
         small = config.model_copy(update={"iterations": iterations})
         found = rank_trees(graph, stats, evidence, small, seed=seed)[0]
         warm_mode = "bfs" if config.reward == "paper" else "mst"
@@ -166,7 +166,7 @@ def test_two_equal_parts_are_joined_even_when_forbidden() -> None:
 
 
 def test_the_default_keeps_congruent_neighbours_of_an_arm() -> None:
-    # A chain whose second and third link are congruent; the paper's ban cuts it, the soft penalty does not.
+    # A chain whose second and third link are congruent; the paper's ban cuts it, the default does not.
     graph = graph_of(4, {(0, 1): 0.5, (1, 2): 0.5, (2, 3): 0.5}, [(1, 2)])
     stats = [stat((0, 0, float(k)), 2.0 if k == 0 else 1.0) for k in range(4)]
     evidence = {key: EdgeEvidence(quality=0.3, axis=None) for key in graph.by_pair}

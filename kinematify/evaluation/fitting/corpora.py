@@ -173,12 +173,11 @@ def _key(source: Source, seed: int) -> str:
 
 def _measure(source: Source, path: Path, seed: int) -> None:
     """Measure one object; one that cannot be built or read gives no example."""
-    try:
-        opened = _generated(source, seed) if source.folder is None else _read(source.folder)
-    except (KinematifyError, ValueError):
+    opened = _opened(source, seed)
+    if opened is None:
         write_examples(path, [])
         return
-    name = f"{source.name}_{source.number}" if source.folder is None else source.name
+    name = _name(source)
     parts, truth = opened.parts, opened.truth
     if source.broken:
         parts, truth = with_pieces_broken_off(parts, truth, np.random.default_rng(zlib.crc32(name.encode())))
@@ -201,14 +200,12 @@ def _measure(source: Source, path: Path, seed: int) -> None:
 
 def _measure_tree(source: Source, path: Path, seed: int) -> None:
     """The same of the contacts of an object."""
-    try:
-        opened = _generated(source, seed) if source.folder is None else _read(source.folder)
-    except (KinematifyError, ValueError):
+    opened = _opened(source, seed)
+    if opened is None:
         write_tree_examples(path, [])
         return
-    name = f"{source.name}_{source.number}" if source.folder is None else source.name
     example = tree_example(
-        Assembly(parts=opened.parts, source=name),
+        Assembly(parts=opened.parts, source=_name(source)),
         opened.truth,
         load_config(),
         category=opened.category,
@@ -217,6 +214,19 @@ def _measure_tree(source: Source, path: Path, seed: int) -> None:
         fits=opened.fits,
     )
     write_tree_examples(path, [example])
+
+
+def _name(source: Source) -> str:
+    """Of an object, among those of its origin."""
+    return f"{source.name}_{source.number}" if source.folder is None else source.name
+
+
+def _opened(source: Source, seed: int) -> _Opened | None:
+    """The object; None where it cannot be built or read."""
+    try:
+        return _generated(source, seed) if source.folder is None else _read(source.folder)
+    except (KinematifyError, ValueError):
+        return None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
