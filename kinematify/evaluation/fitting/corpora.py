@@ -1,4 +1,4 @@
-"""What the choice is fitted to and judged on: families in ways of modelling, random mechanisms, and real objects."""
+"""What the choice is fitted to and judged on: generated objects in ways of modelling, random mechanisms, real ones."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from kinematify.evaluation.fitting.edges import read_tree_examples, tree_example
 from kinematify.evaluation.fitting.examples import content_key, examples_of, read_examples, write_examples
 from kinematify.evaluation.fitting.modelling import WAYS, remodelled
 from kinematify.evaluation.fitting.objects import OBJECTS, drawn_object
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.truth import ground_truth
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from kinematify.evaluation.fitting.examples import Example
     from kinematify.generate.blueprint import Blueprint
 
-FAMILY, PROGRAMMED, COMPOSED = GENERATED = "family", "programmed", "composed"
+FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
 """Words of licences under which an object judges and never enters weights that ship."""
 _MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
@@ -56,7 +57,7 @@ class Source:
     """One object to measure; small and picklable."""
 
     origin: str
-    """FAMILY, PROGRAMMED, COMPOSED, or the name of the folder of real objects."""
+    """One of `GENERATED`, or the name of the folder of real objects."""
     name: str
     number: int = 0
     """Of a generated object."""
@@ -68,7 +69,8 @@ class Source:
 
 def generated_sources(rounds: int, composed: int) -> list[Source]:
     """`rounds` objects of every family and recipe, each modelled in another way, and `composed` random mechanisms."""
-    named = [(FAMILY, name) for name in sorted(FAMILIES)] + [(PROGRAMMED, name) for name in sorted(OBJECTS)]
+    named = [(FAMILY if name in FAMILIES else DESCRIBED, name) for name in sorted(known_families())]
+    named += [(PROGRAMMED, name) for name in sorted(OBJECTS)]
     found = [Source(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
     return found + [Source(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
 
@@ -93,7 +95,7 @@ def broken_sources(sources: Sequence[Source]) -> list[Source]:
     return [
         replace(source, broken=True)
         for source in sources
-        if source.folder is not None or (source.origin == PROGRAMMED and source.number < _BROKEN_ROUNDS)
+        if source.folder is not None or (source.origin in (PROGRAMMED, DESCRIBED) and source.number < _BROKEN_ROUNDS)
     ]
 
 
@@ -102,7 +104,7 @@ def tree_sources(sources: Sequence[Source]) -> list[Source]:
     return [
         source
         for source in sources
-        if not source.broken and (source.origin not in (FAMILY, PROGRAMMED) or source.number < _TREE_ROUNDS)
+        if not source.broken and (source.number < _TREE_ROUNDS or source.origin == COMPOSED)
     ]
 
 
@@ -286,5 +288,5 @@ def _drawn(source: Source, number: int) -> Blueprint:
     rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
     ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
     drawn = int(rng.integers(2**31))
-    blueprint = build(FAMILIES[source.name], {"open": ajar}, seed=drawn, name=source.name)
+    blueprint = build(known_families()[source.name], {"open": ajar}, seed=drawn, name=source.name)
     return remodelled(blueprint, ways[(number + zlib.crc32(source.name.encode())) % len(ways)], rng=rng)

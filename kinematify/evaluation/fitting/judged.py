@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.evaluation.fitting.categories import category_of
-from kinematify.evaluation.fitting.corpora import COMPOSED, FAMILY, GENERATED, PROGRAMMED
+from kinematify.evaluation.fitting.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
 from kinematify.evaluation.fitting.edges import edges_row, fit_edges
 from kinematify.evaluation.fitting.trees import (
     fit_opening,
@@ -39,7 +39,12 @@ if TYPE_CHECKING:
 
 _Kind = TypeVar("_Kind", "Example", "TreeExample")
 _FOLDS = 5
-_GENERATED_SETS = {FAMILY: "families", PROGRAMMED: "objects as people program them", COMPOSED: "random mechanisms"}
+_GENERATED_SETS = {
+    FAMILY: "families",
+    DESCRIBED: "objects that files describe",
+    PROGRAMMED: "objects as people program them",
+    COMPOSED: "random mechanisms",
+}
 _RIGHT_DEG = 5.0
 _RIGHT = 0.2
 """A hypothesis is right from here on: 5 deg off, or a sixteenth of the part beside the line."""
