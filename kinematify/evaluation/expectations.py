@@ -35,6 +35,7 @@ SETS = {
     "visitors": "sixty in the styles of many visitors, committed before they were tried",
     "walked_in": "sixty of people who walk in, committed before they were tried",
     "first_sight": "sixty more of people who walk in, committed before anything was added, tried after",
+    "passers_by": "sixty more of people who walk in, committed before the parser was opened again, tried after",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
