@@ -64,6 +64,14 @@ def ends_of(joint):
         ("an oven with a door and a drawer", {JointType.REVOLUTE: 1, JointType.PRISMATIC: 1}),
         ("a folding table", {JointType.REVOLUTE: 4}),
         ("a truck", {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 3}),
+        ("a toy fire truck with six wheels and a ladder on top", {JointType.CONTINUOUS: 6, JointType.REVOLUTE: 1}),
+        ("a car with two doors, a hood and a trunk", {JointType.CONTINUOUS: 4, JointType.REVOLUTE: 4}),
+        ("a garage with a roll-up door", {JointType.PRISMATIC: 1}),
+        ("a workbench with a vise, a drawer and a towel rail", {JointType.PRISMATIC: 2}),
+        ("a wooden chest with a lid and two carrying handles", {JointType.REVOLUTE: 3}),
+        ("a toolbox with a drawer and a lid", {JointType.PRISMATIC: 1, JointType.REVOLUTE: 1}),
+        ("a printer on a cart with two drawers", {JointType.REVOLUTE: 1, JointType.PRISMATIC: 3, JointType.FIXED: 1}),
+        ("a lorry with six wheels and two doors", {JointType.CONTINUOUS: 6, JointType.REVOLUTE: 2}),
         ("a fridge of 180 cm with a sliding door on the right and three drawers", {JointType.PRISMATIC: 4}),
     ],
 )
@@ -105,6 +113,54 @@ def test_a_sliding_door_covers_the_half_that_is_said():
         blueprint = from_text(f"a cabinet with a sliding door on the {side}").build()
         assert sign * blueprint.parts[1].bounds.mean(axis=0)[0] > 0.1
         assert sign * blueprint.joints[0].axis[0] < 0.0, "it slides to the other half"
+
+
+def test_how_parts_move_is_read_against_what_is_built():
+    for said in (
+        "a flap that folds down",
+        "a flap that can be lowered",
+        "two flaps that open downwards",
+        "a lid that lifts",
+    ):
+        assert from_text(f"a printer with {said}").build().joints, said
+    for said in ("a flap that slides", "a flap that opens upwards", "a drawer that turns", "a lid that spins"):
+        with pytest.raises(InputError, match="Not understood"):
+            from_text(f"a printer with {said}")
+    flag = from_text("a mailbox with a flag that can be raised").build()
+    raised = next(part for part in flag.moved({"flag_1": 1.0}).parts if part.name == "flag_1")
+    assert raised.bounds[1, 2] > next(part for part in flag.parts if part.name == "flag_1").bounds[1, 2]
+
+
+def test_a_door_is_hinged_where_it_is_said():
+    for said in ("that opens to the {}", "with a door hinged on the {}", "with a door that opens to the {} side"):
+        for side, sign in (("left", -1.0), ("right", 1.0)):
+            blueprint = from_text(f"a medicine cabinet {said.format(side)}").build()
+            assert sign * blueprint.joints[0].pivot[0] > 0.1, (said, side)
+
+
+def test_what_stands_below_is_built_below():
+    for sentence in ("a kiosk with a drawer at the bottom and a door", "a kiosk with a door and a drawer below"):
+        parts = {part.name: part.bounds.mean(axis=0)[2] for part in from_text(sentence).build().parts}
+        assert parts["drawer_1"] < parts["door_1"], sentence
+
+
+def test_blades_are_counted():
+    few, many = (from_text(f"a windmill with {count} sails").build().parts[1] for count in ("three", "six"))
+    assert len(many.faces) > len(few.faces)
+    with pytest.raises(InputError, match="sails"):
+        from_text("a trailer with three sails")
+
+
+def test_one_object_stands_on_another_one_or_beside_it():
+    scope = from_text("a microscope on a table with two drawers").build()
+    assert scope.family == "microscope"
+    above = next(part for part in scope.parts if part.name == "microscope").bounds[0, 2]
+    assert above == pytest.approx(scope.parts[0].bounds[1, 2], abs=1e-3)
+    assert from_text("a desk with a lamp on top").build().family == "table"
+    seated = from_text("a table and two chairs").build()
+    assert len([part for part in seated.parts if "seat" in part.name]) == 2
+    with pytest.raises(InputError, match="elephant"):
+        from_text("a table and an elephant")
 
 
 def test_what_a_body_stands_on_may_come_last():

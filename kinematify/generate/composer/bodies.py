@@ -34,6 +34,8 @@ class Body:
     """If none is asked for."""
     build: Callable[[Workshop, Size, float], dict[str, Side]]
     """Adds the base link of a size with walls of a thickness [m] and returns its sides by name."""
+    roomy: Callable[[Workshop, Size, float], dict[str, Side]] | None = None
+    """The same of one that has room for more kinds of mechanisms, where the usual one has none."""
     material: str = "steel"
     always: Mapping[str, int] = field(default_factory=dict)
     """First word of a mechanism without which it would not be called so -> how many, if nothing else is said."""
@@ -140,8 +142,9 @@ def _bus(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         left=-0.1 * depth, right=0.1 * depth, bottom=0.2 * height, top=0.92 * height, depth=0.3 * width, wall=wall
     )
     flank = side_of("left", (-half, 0.5 * depth, 0), _area(depth, 0.5 * height, height, 0.1, wall), axles=_low(size))
-    right = _flank("right", size, doorway, _low(size), 0.3 * depth)
-    return {"left": replace(flank, hollow=False), "right": right}
+    right = replace(_flank("right", size, doorway, _low(size), 0.3 * depth), ahead=0.0)  # its doors are short
+    roof = side_of("top", (0, 0.15 * depth, height), _area(width, 0.0, 0.8 * depth, 0.1, wall), hollow=False)
+    return {"left": replace(flank, hollow=False), "right": right, "top": roof}
 
 
 def _low(size: Size) -> Opening:
@@ -327,6 +330,7 @@ def _truck(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
         "right": _flank("right", size, doorway, low, 0.5 * (cab + bed)),
         "back": side_of("back", (0, depth, 0), gate, is_open=True),
         "front": side_of("front", (0, 0, 0), _area(width, sill, 0.6 * height, 0.2, wall), hollow=False),
+        "hood": side_of("top", (0, 0, 0.6 * height), _area(0.9 * width, sheet, cab - sheet, 0.12 * height, wall)),
         "top": side_of("top", (0, cab, height), _area(width, 0.0, bed - cab, wall, wall), hollow=False),
     }
 
@@ -339,8 +343,14 @@ def _car(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
     cabin = box((-0.9 * half, front, rail - 0.01), (0.9 * half, back, height))
     workshop.body(BODY, box((-half, 0, sill), (half, depth, rail)), cabin)
     low = Opening(left=-0.32 * depth, right=0.32 * depth, bottom=sill, top=rail, depth=0.3 * width, wall=wall)
-    doorway = Opening(left=-0.2 * depth, right=0.2 * depth, bottom=sill, top=rail, depth=0.4 * width, wall=wall)
-    return {side: _flank(side, size, doorway, low, 0.5 * (front + back)) for side in ("left", "right")}
+    doorway = Opening(left=-0.18 * depth, right=0.18 * depth, bottom=sill, top=rail, depth=0.4 * width, wall=wall)
+    flanks = {side: _flank(side, size, doorway, low, 0.5 * depth) for side in ("left", "right")}
+    inside = 0.5 * (rail - sill)
+    return {
+        **flanks,
+        "hood": side_of("top", (0, 0, rail), _area(0.9 * width, 0.02 * depth, front - 0.02 * depth, inside, wall)),
+        "trunk": side_of("top", (0, 0, rail), _area(0.9 * width, back + 0.02 * depth, 0.98 * depth, inside, wall)),
+    }
 
 
 def _flank(name: str, size: Size, doorway: Opening, axles: Opening, middle: float) -> Side:
@@ -356,7 +366,7 @@ def _flank(name: str, size: Size, doorway: Opening, axles: Opening, middle: floa
         depth=axles.depth,
         wall=axles.wall,
     )
-    return side_of(name, (sign * 0.5 * width, middle, 0), doorway, axles=along)
+    return replace(side_of(name, (sign * 0.5 * width, middle, 0), doorway, axles=along), ahead=-sign)
 
 
 def _drum(workshop: Workshop, size: Size, wall: float) -> dict[str, Side]:
@@ -437,6 +447,7 @@ def _kinds(
     build: Callable[[Workshop, Size, float], dict[str, Side]],
     rows: str,
     *,
+    roomy: Callable[[Workshop, Size, float], dict[str, Side]] | None = None,
     material: str = "steel",
     always: Mapping[str, int] | None = None,
     usual: Mapping[str, int] | None = None,
@@ -446,18 +457,21 @@ def _kinds(
 ) -> Iterator[Body]:
     """Bodies that are built alike, one a line: width, depth and height [m], then the words for it.
 
-    Behind `has` stands what it usually has, a mechanism and how many, where nothing is asked for.
+    Behind `has` stands what it usually has, a mechanism and how many, where nothing is asked for; behind `always` what
+    it has whatever is asked for.
     """
     for row in rows.strip().splitlines():
-        width, depth, height, described = row.split(maxsplit=3)
-        words, _, had = described.partition(" has ")
-        kind, _, number = had.rpartition(" ")
+        width, depth, height, *described = row.split()
+        words, _, kept = " ".join(described).partition(" always ")
+        words, _, had = words.partition(" has ")
+        kind, _, number = (had or kept).rpartition(" ")
         yield Body(
-            words=phrases(words.rstrip()),
+            words=phrases(words),
             size=(float(width), float(depth), float(height)),
             build=build,
+            roomy=roomy,
             material=material,
-            always=always or {},
+            always={kind: int(number)} if kept else always or {},
             usual={kind: int(number)} if had else usual or {},
             says=says or {},
             details=details or {},
@@ -469,8 +483,8 @@ _FURNITURE = """
 0.7 0.45 0.9 cabinet, cupboard, locker, sideboard, kiosk, shoe cabinet, display cabinet, shoe rack has door 2
 0.9 0.45 0.8 aquarium stand, fish tank stand, media console, media cabinet, media unit, hi-fi stand, kitchen island \
     has door 2
-0.6 0.4 1.2 bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen cabinet \
-    has door 2
+0.6 0.4 1.2 bar cabinet, liquor cabinet, wine cabinet, curio cabinet, china cabinet, hutch, gun cabinet, linen \
+    cabinet has door 2
 0.5 0.2 0.6 medicine cabinet, key cabinet, first aid cabinet, wall cabinet, spice cabinet, spice rack has door 1
 0.7 0.5 0.85 vanity, vanity unit, washstand, sink unit, changing table, baby changing table, island, reception desk \
     has drawer 2
@@ -485,6 +499,17 @@ _FURNITURE = """
     has drawer 3
 0.9 0.9 2.1 phone booth, telephone booth, shower cabin, shower enclosure, sauna, elevator, elevator cabin, lift cabin \
     has door 1
+0.8 0.3 1.8 bookshelf, book shelf, shelving unit, display shelf, wall shelf, storage shelf has door 2
+0.9 0.45 0.9 buffet, storage cabinet, utility cabinet, base cabinet, sink cabinet, under sink cabinet, vanity \
+    cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet has \
+    door 2
+0.8 0.4 1.8 larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, display \
+    case, glass cabinet, gym locker, school locker, tool locker, parcel locker, pie safe has door 2
+0.35 0.25 0.25 desk organizer, desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery \
+    cabinet, advent calendar, tea cabinet, sewing cabinet, puzzle box, seed box has drawer 3
+2.0 2.0 2.2 greenhouse, hen house, henhouse, tree house, treehouse, tool shed, bike shed, outhouse, portable \
+    toilet, cottage, log cabin, summer house, summerhouse, ticket booth, photo booth, sauna cabin, wendy house, \
+    guard house, cat house has door 1
 """
 _MACHINES = """
 0.4 0.22 0.3 control box, console, housing, machine housing, lab box, instrument box, junction box, control unit \
@@ -494,8 +519,8 @@ _MACHINES = """
 0.45 0.6 1.1 filing cabinet, file cabinet has drawer 4
 0.7 0.45 0.9 tool chest, rolling tool chest, tool cabinet, rolling cabinet, tool storage cabinet has drawer 5
 0.6 0.8 2.0 server rack, rack cabinet, server cabinet, network cabinet, charging station, charging cabinet has door 1
-0.7 0.7 1.7 arcade machine, arcade cabinet, jukebox, slot machine, atm, cash machine, gumball machine, pinball machine \
-    has button 6
+0.7 0.7 1.7 arcade machine, arcade cabinet, jukebox, slot machine, atm, cash machine, gumball machine, pinball \
+    machine has button 6
 0.35 0.35 1.1 water dispenser, water cooler, fuel pump, gas pump, parking meter, hand sanitizer station \
     has button 2
 0.35 0.25 0.2 radio, amplifier, stereo, speaker, loudspeaker, hi-fi, receiver, oscilloscope, power supply, generator \
@@ -506,6 +531,21 @@ _MACHINES = """
 0.5 0.45 0.5 3d printer, incubator, autoclave, centrifuge, fume hood, glove box, kiln, air conditioner, heater \
     has door 1
 0.6 0.6 0.85 drum washer, tumble dryer, dryer, clothes dryer, compactor has door 1
+0.4 0.4 0.5 soda machine, soda fountain, coffee vending machine, slush machine, ice machine, ice maker, \
+    dehumidifier, air purifier, space heater, fan heater, electric heater, juice dispenser, cotton candy machine, \
+    foot massager has knob 2
+0.5 0.5 1.5 self checkout, parking ticket machine, info kiosk, photo kiosk, charging point, ev charger, voting \
+    machine, check in kiosk, claw machine has button 6
+0.4 0.3 0.15 cd player, dvd player, tape recorder, cassette player, boombox, guitar amp, guitar amplifier, game \
+    console, signal generator, function generator, multimeter, spectrum analyzer, hot plate, hotplate, magnetic \
+    stirrer, water bath, battery charger, answering machine, laminator, fax machine has knob 2
+0.5 0.5 0.6 spectrometer, lab oven, drying oven, muffle furnace, thermocycler, pcr machine, sterilizer, vacuum \
+    chamber, glovebox, biosafety cabinet, laminar flow cabinet, fume cupboard, laboratory balance, lab balance, \
+    analytical balance, sandblasting cabinet, dehydrator has door 1
+0.5 0.6 1.6 control cabinet, switchgear, plc cabinet, evidence locker, ice box, meat locker, \
+    proofing cabinet has door 1
+0.5 0.35 0.5 welder, welding machine, air compressor, compressor, power unit, inverter, pc, computer, desktop \
+    computer, pc tower, computer tower has button 2
 """
 BODIES = (
     *_kinds(_block, _FURNITURE, material="wood"),
@@ -531,6 +571,8 @@ BODIES = (
         0.6 0.6 0.85 dishwasher
         0.45 0.35 0.28 toaster oven, mini oven, pizza oven
         0.8 0.6 1.0 baking oven, fireplace, wood stove, pellet stove
+        0.8 0.7 0.9 electric oven, bread oven, stone oven, wood fired oven, wood burner, wood burning stove, electric \
+    cooker, gas stove oven, induction stove, masonry heater
         """,
         always={"flap": 1},
         says={"oven door": "flap", "door": "flap"},
@@ -545,13 +587,26 @@ BODIES = (
         always={"door": 1},
     ),
     *_kinds(
-        _block, "0.45 0.45 0.25 mobile robot, mobile base, robot base, delivery robot", usual={"wheel": 2, "caster": 1}
+        _block,
+        """
+        0.45 0.45 0.25 mobile robot, mobile base, robot base, delivery robot
+        0.5 0.5 0.25 agv, automated guided vehicle, amr, robot car, robot platform, wheeled robot, rover, mars rover, \
+    mobile platform, warehouse robot, line follower, line following robot, drive base, chassis, robot chassis, \
+    delivery bot, wheeled base, robot cart, transport robot, cleaning robot
+        """,
+        usual={"wheel": 2, "caster": 1},
     ),
     *_kinds(
         _block,
         """
         0.75 0.45 0.7 cart, trolley, tool cart, tool trolley, utility cart, serving cart, medical cart, bar cart
         0.6 0.45 0.9 kitchen trolley, kitchen cart, hospital cart, crash cart, cleaning cart, luggage trolley
+        0.75 0.45 0.8 workshop trolley, workshop cart, tool trolley cart, mechanic cart, tea trolley, tea cart, \
+    drinks trolley, dessert cart, food cart, hot dog cart, ice cream cart, mail cart, book cart, library cart, av \
+    cart, tv cart, projector cart, laptop cart, computer cart, instrument trolley, surgical trolley, surgical cart, \
+    medicine trolley, medication cart, janitor cart, housekeeping cart, linen cart, hotel cart, airline trolley, \
+    rolling cart, roll cart, craft cart, art cart, equipment cart, dish cart, drinks cart, service cart, service \
+    trolley, tool wagon
         """,
         usual={"caster": 4, "push handle": 1},
     ),
@@ -568,7 +623,8 @@ BODIES = (
         """
         0.55 0.35 0.32 crate, tub, toolbox, tool box, bin, wheelie bin, container, chest, trunk, treasure chest, box \
     has lid 1
-        1.1 0.45 0.5 storage bench, ottoman, hope chest, blanket chest, toy box, toy chest, window seat, bench has lid 1
+        1.1 0.45 0.5 storage bench, ottoman, hope chest, blanket chest, toy box, toy chest, window seat, bench has \
+    lid 1
         1.0 0.6 0.85 chest freezer, freezer chest, deep freezer, ice cream freezer, dumpster, compost bin, composter \
     has lid 1
         0.6 0.4 0.4 cooler, cool box, ice chest, esky, picnic basket, basket, laundry basket, hamper, laundry hamper \
@@ -576,8 +632,22 @@ BODIES = (
         0.25 0.15 0.1 lunch box, lunchbox, pencil case, pencil box, music box, tin, gift box, ring box, glasses case \
     has lid 1
         0.45 0.3 0.2 bread box, bread bin, briefcase, instrument case, record case, camera case, cash box, file box \
-    has lid 1
+    always lid 1
+        1.0 0.5 0.5 linen chest, dowry chest, blanket box, storage bin, recycling bin, recycling box, deck box, \
+    cushion box, coffer, sandbox, sand box, log box, coal box, feed bin, storage chest, storage trunk, pirate chest, \
+    steamer trunk always lid 1
+        0.4 0.3 0.25 sewing basket, wicker basket, bait box, fishing box, ammo box, ammunition box, first aid box, \
+    first aid kit, medicine box, shoe box, shoebox, hat box, cardboard box, packing box, moving box, shipping box, \
+    shipping crate, pet carrier, transport box, flight case, equipment case, road case, tool case, drill case, vanity \
+    case, beauty case, humidor, cooler box, litter box, picnic hamper, keepsake box, memory box, toy crate, tool \
+    crate always lid 1
+        0.9 0.35 0.15 violin case, guitar case, trumpet case, saxophone case, gun case, rifle case, keyboard case, \
+    poker case, chess box always lid 1
+        2.0 0.7 0.5 coffin, sarcophagus, cold frame, planter box, sleeping pod always lid 1
+        0.12 0.08 0.06 pill box, snuff box, trinket box, soap box, spice box, card box, seed tin, sardine tin, \
+    cigarette case, cufflink box, earbud case, charging case, contact lens case always lid 1
         """,
+        roomy=_coffer,
         material="plastic",
     ),
     *_kinds(
@@ -585,6 +655,8 @@ BODIES = (
         """
         0.7 0.5 0.9 grill, barbecue, bbq, barbecue grill, smoker, fire pit has lid 1
         1.0 2.0 0.5 bed, storage bed, daybed, platform bed, captain bed
+        1.4 2.0 0.5 single bed, double bed, twin bed, king bed, kids bed, child bed, children bed, guest bed, trundle \
+    bed, ottoman bed, cot, crib, doll bed, toddler bed, wooden bed
         """,
     ),
     *_kinds(
@@ -608,6 +680,8 @@ BODIES = (
         """
         1.2 2.2 0.8 trailer, cargo trailer, flatbed trailer, car trailer, utility trailer
         0.5 0.9 0.4 wagon, toy wagon, pull wagon, pull cart, handcart, hand cart, beach wagon, garden cart
+        1.0 1.6 0.7 hay wagon, hay cart, horse cart, bike trailer, bicycle trailer, dog trailer, boat trailer, farm \
+    trailer, farm cart, luggage wagon, pony cart, ox cart
         """,
         always={"wheel": 4},
         details={"drawbar": 1, "bed": 1, "pull handle": 1, "handle": 1},
@@ -617,6 +691,7 @@ BODIES = (
         """
         1.9 4.8 2.1 van, delivery van, cargo van, transporter, ambulance, minivan, camper, camper van, motorhome
         2.3 6.5 3.0 delivery truck, moving truck, fire truck, fire engine, garbage truck, ice cream truck
+        1.9 4.8 2.2 mail van, post van, police van, food truck, panel van, rv, bakery van, news van
         0.2 0.5 0.25 toy van, toy ambulance, toy fire truck
         """,
         material="plastic",
@@ -629,6 +704,7 @@ BODIES = (
         """
         2.5 9.0 3.0 bus, school bus, coach, city bus, tour bus
         2.6 12.0 3.4 tram, streetcar, train, railway carriage, subway car, train carriage, metro car
+        2.2 6.0 2.7 minibus, trolleybus, shuttle bus, airport shuttle, locomotive, tram car, cable car, monorail
         0.2 0.7 0.25 toy bus, toy train, toy tram
         """,
         material="plastic",
@@ -641,8 +717,16 @@ BODIES = (
         """
         1.2 0.6 0.75 table, desk, workbench, counter, writing desk, work table, dining table, lab bench
         1.1 0.6 0.5 coffee table, cocktail table, sofa table, tea table
-        1.0 0.4 0.8 console table, hallway table, entry table, dressing table, vanity table, sewing table, potting bench
+        1.0 0.4 0.8 console table, hallway table, entry table, dressing table, vanity table, sewing table, potting \
+    bench
         0.7 0.5 0.7 school desk, side table, card table, chess table, occasional table, picnic table
+        1.6 0.8 0.75 conference table, meeting table, kitchen table, breakfast table, bistro table, poker table, pool \
+    table, billiard table, ping pong table, lab table, laboratory table, operating table, massage table, \
+    examination table, packing table, welding table, prep table, butcher block, train table, play table, altar, \
+    laboratory bench, carpenter bench, woodworking bench, workshop bench, tool bench, work bench, garden table
+        1.2 0.6 0.75 computer desk, office desk, gaming desk, student desk, drawing table, drafting table, art desk, \
+    craft table, sewing desk, teacher desk, kids desk, children desk, kids table, reception table, nail table, makeup \
+    table, bathroom table
         """,
         material="wood",
         details={"leg": 4, "top": 1},
@@ -667,22 +751,53 @@ BODIES = (
         "0.9 0.5 0.15 scissor lift, lift table, scissor table, scissor lift platform, lifting table",
         always={"lifting platform": 1},
     ),
-    *_kinds(_block, "0.6 0.6 1.8 refrigerator, fridge, freezer, wine cooler", usual={"door": 2}, material="metal"),
+    *_kinds(
+        _block,
+        "0.6 0.6 1.8 refrigerator, fridge, freezer, wine cooler",
+        always={"door": 1},
+        usual={"door": 2},
+        material="metal",
+    ),
     *_kinds(
         _truck,
-        "1.8 4.6 1.75 pickup truck, pickup, truck, lorry, toy truck, toy pickup, ute",
+        """
+        1.8 4.6 1.75 pickup truck, pickup, truck, lorry, toy truck, toy pickup, ute
+        2.0 6.0 2.2 flatbed truck, flatbed, monster truck, pick up truck, toy lorry, cattle truck
+        """,
         material="plastic",
         always={"wheel": 4},
         usual={"door": 2, "flap": 1},
         details={"bed": 1, "cab": 1, "headlight": 2},
     ),
-    *_kinds(_car, "0.8 1.8 0.6 car, toy car, sedan, race car, sports car, golf cart, taxi", always={"wheel": 4}),
-    *_kinds(_drum, "0.5 0.5 0.7 drum, barrel, tank, oil drum, rain barrel, keg, boiler, water heater, water tank"),
+    *_kinds(
+        _car,
+        """
+        0.8 1.8 0.6 car, toy car, sedan, race car, sports car, golf cart, taxi
+        1.7 4.2 1.45 convertible, coupe, hatchback, suv, jeep, racing car, police car, station wagon, limousine, \
+    electric car, family car, race kart, kart, go kart, pedal car, rc car, remote control car, model car, vintage \
+    car, old car, muscle car, cab, hot rod, patrol car
+        """,
+        always={"wheel": 4},
+    ),
+    *_kinds(
+        _drum,
+        """
+        0.5 0.5 0.7 drum, barrel, tank, oil drum, rain barrel, keg, boiler, water heater, water tank
+        0.6 0.6 0.9 oil barrel, wine barrel, beer keg, water barrel, gas tank, fuel tank, propane tank, gas bottle, \
+    gas cylinder, fire hydrant, hydrant, pressure vessel, expansion tank, silo, water butt, fermenter, milk churn, \
+    pressure tank, chemical reactor, septic tank, diving bell
+        """,
+    ),
     *_kinds(
         _pot,
         """
-        0.26 0.26 0.18 pot, cooking pot, stock pot, stockpot, saucepan, casserole, dutch oven, pressure cooker, soup pot
+        0.26 0.26 0.18 pot, cooking pot, stock pot, stockpot, saucepan, casserole, dutch oven, pressure cooker, soup \
+    pot
         0.24 0.24 0.22 rice cooker, slow cooker, ice bucket, jar, cookie jar, sugar bowl, canister, tureen, urn
+        0.2 0.2 0.2 stew pot, crock pot, pasta pot, cauldron, fondue pot, bean pot, sauce pot, honey jar, jam jar, \
+    storage jar, ginger jar, tea caddy, tea tin, biscuit tin, cookie tin, biscuit barrel, candy jar, mason jar, \
+    coffee can, coffee canister, diaper pail, ash bucket, powder jar, sugar pot, butter dish, soup tureen, flour bin, \
+    biscuit jar, pickle jar, soup kettle, trash pail, steamer pot, rice pot
         """,
         always={"round lid": 1},
         says={"lid": "round lid"},
@@ -691,7 +806,12 @@ BODIES = (
     ),
     *_kinds(
         _kettle,
-        "0.18 0.18 0.2 kettle, tea kettle, teapot, water kettle, coffee pot, jug, pitcher, watering can, tankard",
+        """
+        0.18 0.18 0.2 kettle, tea kettle, teapot, water kettle, coffee pot, jug, pitcher, watering can, tankard
+        0.12 0.12 0.2 milk jug, cream jug, creamer, coffee jug, measuring jug, beer stein, stein, beer mug, carafe, \
+    thermos jug, moka pot, decanter, syrup jug, gravy boat, tea pot, oil can, water jug, milk pitcher, water pitcher, \
+    beer pitcher
+        """,
         always={"round lid": 1},
         says={"lid": "round lid"},
         details={"spout": 1, "handle": 1},
@@ -702,6 +822,9 @@ BODIES = (
         """
         0.36 0.36 1.0 column, post, pedestal, stand, pole, floor stand, microphone stand, music stand, lamp post
         0.4 0.4 1.7 coat rack, coat stand, hat stand, coat tree, hall tree, clothes stand, totem, signpost
+        0.3 0.3 1.5 street light, street lamp, flagpole, flag pole, camera stand, light stand, plinth, bollard, sign \
+    post, traffic light, parking pole, clothes tree, bus stop, telephone pole, charging pole, cat scratching post, \
+    scratching post, totem pole, lamp pole, maypole
         """,
     ),
     *_kinds(
@@ -716,6 +839,8 @@ BODIES = (
         """
         0.38 0.38 0.7 bar stool, stool, barstool, swivel stool, swivel bar stool, counter stool, pub stool
         0.34 0.34 0.45 piano stool, work stool, drafting stool, lab stool, vanity stool, saddle stool
+        0.36 0.36 0.6 kitchen stool, drum stool, drum throne, rotating stool, bar chair, artist stool, milking stool, \
+    massage stool, doctor stool, dentist stool, shop stool, revolving stool, spinning stool, cobbler stool
         """,
         always={"seat": 1},
         details={"footrest": 1, "foot ring": 1, "post": 1, "base": 1, "foot rest": 1},
@@ -724,13 +849,15 @@ BODIES = (
         _turbine,
         "0.1 0.1 1.2 wind turbine, windmill, wind generator, pinwheel, wind wheel",
         always={"rotor": 1},
-        details={"tower": 1, "mast": 1, "nacelle": 1, "blade": 3},
+        details={"tower": 1, "mast": 1, "nacelle": 1},
     ),
     *_kinds(
         _panel,
         """
         0.6 0.2 0.45 control panel, panel, board, switchboard, dashboard, instrument panel, pegboard, busy board
         0.8 0.2 0.4 wall panel, coat hook rack, key rack, wall rack, hook rail, key holder, coat hook board has hook 4
+        0.9 0.2 0.6 light switch panel board, instrument board, activity board, fuse panel, tool board, cockpit \
+    panel, operator panel, display board, notice board, sensory board, alarm board, game board
         """,
     ),
     *_kinds(
@@ -740,7 +867,13 @@ BODIES = (
         0.08 0.15 0.015 calculator, phone, mobile phone, cell phone, telephone, smartphone, pager, pocket calculator
         0.36 0.13 0.02 keyboard, computer keyboard, piano keyboard, synthesizer, label maker
         0.16 0.1 0.03 game controller, gamepad, joystick controller, video game controller
-        0.4 0.3 0.06 mixing desk, mixer console, sound mixer, mixing console, dj controller, drum machine, effects pedal
+        0.4 0.3 0.06 mixing desk, mixer console, sound mixer, mixing console, dj controller, drum machine, effects \
+    pedal
+        0.15 0.1 0.02 stopwatch, mp3 player, music player, walkman, handheld console, handheld game console, game \
+    boy, numpad, numeric keypad, key fob, midi keyboard, midi controller, launchpad, digital piano, electric piano, \
+    toy piano, electronic keyboard, card reader, card terminal, pos terminal, payment terminal, baby monitor, gps \
+    device, pocket radio, arcade stick, fight stick, tv controller, universal remote, graphing calculator, stage \
+    piano
         """,
         material="plastic",
         usual={"button": 12},
@@ -748,7 +881,17 @@ BODIES = (
     ),
     *_kinds(
         _frame,
-        "1.0 0.12 2.1 frame, portal, doorway, door frame, archway, gateway, serving hatch has door 1",
+        "2.6 0.15 2.2 garage door, roller shutter door, overhead garage door, roll up garage door",
+        always={"sash": 1},
+        says={"door": "sash"},
+    ),
+    *_kinds(
+        _frame,
+        """
+        1.0 0.12 2.1 frame, portal, doorway, door frame, archway, gateway, serving hatch has door 1
+        1.0 0.12 2.1 doorframe, wall opening, arch, portal frame, gate frame, shop front, shopfront, barn front, \
+    stable front
+        """,
         material="wood",
     ),
 )

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.parts import PartRequirement
     from kinematify.generate.procedural.pieces.fronts import Opening
 
+BANDS = ("grid", "row", "stack", "foot")
+"""How mechanisms are arranged that divide a side, from its top."""
 MOST = 60
 """Mechanisms of an object."""
 _WALL = 0.018  # [m]
@@ -57,6 +59,12 @@ class Wanted:
     count: int = 1
     side: str = ""
     """Of `FACING`; its usual one if empty."""
+    level: int = 0
+    """1: above all others on its side, -1: below them."""
+    hinge: str = ""
+    """``left`` or ``right``, of a door."""
+    members: int = 0
+    """Blades and the like of each; 0: as usual."""
     material: str | None = None
     color: str | None = None
 
@@ -101,7 +109,12 @@ class Composition:
 
 
 def compose(
-    composition: Composition, *, name: str = "", clearance: float = 0.001, seed: int | None = None
+    composition: Composition,
+    *,
+    name: str = "",
+    clearance: float = 0.001,
+    seed: int | None = None,
+    may_stand_still: bool = False,
 ) -> Blueprint:
     """Build an object with its exact joints.
 
@@ -110,11 +123,12 @@ def compose(
         name: Of the object; the first word of its body if empty.
         clearance: Gap between parts that move past each other [m].
         seed: Draws lengths of the body that are not asked for, about the usual ones; none takes these.
+        may_stand_still: It need not move, since something that does goes with it.
 
     Raises:
         InputError: Nothing moves, a side is not there or taken, or there is no room; the message names what.
     """
-    if not any(wanted.mechanism.moves for wanted in composition.wanted):
+    if not may_stand_still and not any(wanted.mechanism.moves for wanted in composition.wanted):
         raise InputError(f"Nothing of this {composition.title} would move. Ask for {_known()}.")
     layout = _laid_out(composition, seed)
     fitting = Fitting(clearance=clearance, grip="bar", rest=composition.rest)
@@ -132,6 +146,8 @@ def compose(
             fitting=fitting,
             side=name_of_side,
             half=item.side if item.mechanism.halves else "",
+            hinge=item.hinge,
+            members=item.members,
             index=here[name_of_side, word],
         )
         here[name_of_side, word] += 1
@@ -175,13 +191,11 @@ def _laid_out(composition: Composition, seed: int | None) -> _Layout:
     )
     size: Size = (width, depth, height)
     while True:
-        workshop = Workshop(
-            composition.title.replace(" ", "_"),
-            material=composition.material or body.material,
-            color=composition.color,
-            handles=(composition.handles[0] or "metal", composition.handles[1]),
-        )
-        sides = body.build(workshop, size, min(_WALL, 0.08 * min(size)))
+        workshop = _workshop(composition)
+        sides = body.build(workshop, size, wall := min(_WALL, 0.08 * min(size)))
+        if body.roomy and not all(_has_place(item, sides) for item in composition.wanted):
+            workshop = _workshop(composition)
+            sides = body.roomy(workshop, size, wall)
         try:
             placed = [
                 (side, item, area)
@@ -195,6 +209,19 @@ def _laid_out(composition: Composition, seed: int | None) -> _Layout:
                 raise InputError(f"There is no room for {error}. Ask for fewer, or for a larger body.") from None
         else:
             return _Layout(workshop=workshop, size=size, sides=sides, placed=placed)
+
+
+def _workshop(composition: Composition) -> Workshop:
+    return Workshop(
+        composition.title.replace(" ", "_"),
+        material=composition.material or composition.body.material,
+        color=composition.color,
+        handles=(composition.handles[0] or "metal", composition.handles[1]),
+    )
+
+
+def _has_place(wanted: Wanted, sides: dict[str, Side]) -> bool:
+    return any(side in sides and _fits(wanted.mechanism, sides[side]) for side in wanted.mechanism.sides)
 
 
 class _TooSmallError(Exception):
@@ -247,7 +274,8 @@ def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list
         )
         wanted = replace(asked, side="") if in_front and asked.mechanism.words[0] == "door" else asked
         kind, usual = wanted.mechanism, _usual_sides(wanted, sides, body)
-        if kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left"):
+        by_pairs = kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left")
+        if by_pairs or (kind.arranged == "over" and wanted.count == 2):
             if wanted.count % 2:
                 raise InputError(f"{wanted.count} {wanted.title}s are asked for; on a {body} they come in pairs.")
             for side in ("left", "right"):
@@ -323,8 +351,8 @@ def _arranged(name: str, side: Side, wanted: Sequence[Wanted], fine: float) -> l
     placed = []
     least = {item.mechanism.words: tuple(fine * length for length in item.mechanism.least) for item in wanted}
     on_axles = [item.count for item in wanted if item.mechanism.arranged == "axles"]
-    wheels = _axles(side.axles, sum(on_axles)) if side.axles is not None and on_axles else []
-    bands = _bands([item for item in wanted if item.mechanism.arranged in ("row", "stack", "grid", "foot")])
+    wheels = _axles(side, side.axles, sum(on_axles)) if side.axles is not None and on_axles else []
+    bands = _bands([item for item in wanted if item.mechanism.arranged in BANDS])
     for band, strip in zip(bands, rows(side.area, [weight for weight, _ in bands]) if bands else [], strict=True):
         free = _beside_wheels(strip, wheels) if band[1][0].mechanism.arranged == "grid" else strip
         if free.width <= 0.0 or free.height <= 0.0:
@@ -339,7 +367,7 @@ def _arranged(name: str, side: Side, wanted: Sequence[Wanted], fine: float) -> l
             placed.append((item, cell))
     for item in wanted:
         if item.mechanism.arranged == "axles" and side.axles is not None:
-            placed += [(item, cell) for cell in _axles(side.axles, item.count)]
+            placed += [(item, cell) for cell in _axles(side, side.axles, item.count)]
         elif item.mechanism.arranged == "corners":
             cells = _corners(side.area, item.count)
             if cells[0].width < least[item.mechanism.words][0]:
@@ -359,17 +387,18 @@ def _told(mechanism: Mechanism, wanted: Sequence[Wanted], side: str) -> str:
 
 def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
     """Strips of a side from the top, with their weights: controls, what stands in a row, stacks, what is trodden."""
-    controls = [item for item in wanted if item.mechanism.arranged == "grid"]
-    standing = [item for item in wanted if item.mechanism.arranged == "row"]
-    stacked = [item for item in wanted if item.mechanism.arranged == "stack"]
     found: list[tuple[float, list[Wanted]]] = []
-    if controls:
-        found.append((max(item.mechanism.weight for item in controls), controls))
-    if standing:
-        found.append((3.0, standing))
-    found += [(item.mechanism.weight, [replace(item, count=1)]) for item in stacked for _ in range(item.count)]
-    if trodden := [item for item in wanted if item.mechanism.arranged == "foot"]:
-        found.append((trodden[0].mechanism.weight, trodden))
+    for level in sorted({item.level for item in wanted}, reverse=True):
+        here = [item for item in wanted if item.level == level]
+        by_kind = {kind: [item for item in here if item.mechanism.arranged == kind] for kind in BANDS}
+        if controls := by_kind["grid"]:
+            found.append((max(item.mechanism.weight for item in controls), controls))
+        if standing := by_kind["row"]:
+            found.append((3.0, standing))
+        stacked = [replace(item, count=1) for item in by_kind["stack"] for _ in range(item.count)]
+        found += [(item.mechanism.weight, [item]) for item in stacked]
+        if trodden := by_kind["foot"]:
+            found.append((trodden[0].mechanism.weight, trodden))
     return found
 
 
@@ -384,11 +413,20 @@ def _divided(wanted: Sequence[Wanted], strip: Opening) -> list[tuple[Wanted, Ope
     return list(zip(each, cells, strict=False))
 
 
-def _axles(line: Opening, count: int) -> list[Opening]:
-    """Squares in which wheels stand, along the lower edge of a side."""
+def _axles(side: Side, line: Opening, count: int) -> list[Opening]:
+    """Squares in which wheels stand, along the lower edge of a side; on a vehicle they leave room for its doors."""
     pitch = line.width / max(count - 1, 1)
     radius = min(0.42 * pitch, 0.2 * line.width, max(2.0 * line.height, 0.04)) if count > 1 else 0.2 * line.width
-    places = np.linspace(line.left, line.right, count) if count > 1 else [0.5 * (line.left + line.right)]
+    places = np.linspace(line.left, line.right, count) if count > 1 else np.array([0.5 * (line.left + line.right)])
+    if side.ahead and count > 2:
+        leading = max(count // 2, 1) if count > 3 else 1
+        ends = (line.right, line.left) if side.ahead > 0.0 else (line.left, line.right)
+        doors = (side.area.right, side.area.left) if side.ahead > 0.0 else (side.area.left, side.area.right)
+        numbers = np.array([leading, count - leading])
+        pitch = 2.1  # radii
+        radius = min(radius, *(np.abs(np.subtract(ends, doors)) / (pitch * (numbers - 1) + 1.1)))
+        steps = pitch * radius * side.ahead
+        places = np.concatenate([ends[0] - steps * np.arange(numbers[0]), ends[1] + steps * np.arange(numbers[1])])
     middle = line.bottom + 0.5 * line.height
     return [
         replace(line, left=x - radius, right=x + radius, bottom=middle - radius, top=middle + radius)

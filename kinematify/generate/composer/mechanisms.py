@@ -41,6 +41,7 @@ def _door(place: Place) -> None:
     place.hollowed()
     # Doors of a front open from the middle of each pair; those beside are hinged at their front edge, as cars have it.
     side = {"left": "right", "right": "left"}.get(place.side, "left" if place.index % 2 == 0 else "right")
+    side = place.hinge or side
     add_door(place.workshop, place.name, BODY, place.area, place.fitting, side=side, outermost=False, hinge="edge")
 
 
@@ -89,6 +90,74 @@ def _shutter(place: Place) -> None:
     workshop.body(place.name, panel, grip)
     travel = 0.95 * 0.5 * area.width
     workshop.slides(place.name, BODY, (way, 0, 0), place.middle, (0.0, travel), rest=place.fitting.rest)
+
+
+def _sash(place: Place) -> None:
+    """A shutter that is pushed up; in a frame, what is above it stays closed."""
+    area = place.area
+    upwards = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    about = replace(area, left=area.bottom, right=area.top, bottom=-area.right, top=-area.left)
+    if not place.hollow:
+        above = replace(area, bottom=place.middle[2])
+        place.workshop.add(BODY, box((area.left, 1e-3, above.bottom), (area.right, area.wall, above.top)))
+    _shutter(replace(place, workshop=place.workshop.turned(upwards, (0, 0, 0)), area=about, half=""))
+
+
+def _trunk(place: Place) -> None:
+    place.hollowed()
+    add_flap(place.workshop, place.name, BODY, place.area, place.fitting, hinge="edge")
+
+
+def _ladder(place: Place) -> None:
+    """Two rails with rungs that lie on a roof and are raised about their rear end."""
+    area, gap = place.area, place.clearance
+    half = min(0.3 * area.width, 0.3)
+    bar, long = 0.08 * half, 0.9 * area.height
+    frame = place.workshop.turned(OUTWARD, (place.middle[0], 0.0, area.top - 3.0 * bar))
+    level, pin = 3.0 * bar, 0.6 * bar
+    for sign in (-1.0, 1.0):
+        low, high = sorted((sign * (half + gap), sign * (half + gap + 2.0 * bar)))
+        cheek = box((low, -2.0 * bar, -1e-3), (high, 2.0 * bar, level + 2.0 * bar))
+        frame.add(BODY, cheek - bore(pin, gap, (low - 1e-3, 0, level), (high + 1e-3, 0, level)))
+    low, high = sorted((-half, half))
+    rails = [box((x, -long, level - bar), (x + 2.0 * bar, bar, level + bar)) for x in (low, high - 2.0 * bar)]
+    rungs = [
+        cylinder(0.7 * bar, (low + bar, y, level), (high - bar, y, level))
+        for y in np.linspace(-0.95 * long, -0.1 * long, 10)
+    ]
+    axle = cylinder(pin, (low - gap - bar, 0, level), (high + gap + bar, 0, level))
+    frame.body(place.name, *rails, *rungs, axle, material="metal")
+    frame.turns(place.name, BODY, (-1, 0, 0), (0, 0, level), (0.0, 1.2), rest=place.fitting.rest)
+
+
+def _vise(place: Place) -> None:
+    """A fixed jaw, and one on a bar through it that is drawn away."""
+    x, _, z = place.middle
+    size, gap = min(place.radius, 0.12), place.clearance
+    high, bar = 0.9 * size, 0.16 * size
+    level = -0.55 * high
+    workshop = place.workshop
+    fixed = box((x - 0.5 * size, -high, z - 0.5 * size), (x - 0.1 * size, 1e-3, z + 0.5 * size))
+    workshop.add(BODY, fixed - bore(bar, gap, (x - size, level, z), (x + size, level, z)))
+    jaw = box((x, -high, z - 0.5 * size), (x + 0.3 * size, -gap - 1e-3, z + 0.5 * size))
+    workshop.body(place.name, jaw, cylinder(bar, (x - 0.95 * size, level, z), (x + 0.2 * size, level, z)))
+    workshop.slides(place.name, BODY, (1, 0, 0), (x, level, z), (0.0, 0.4 * size), rest=place.fitting.rest)
+
+
+def _rail(place: Place) -> None:
+    """A bar on two posts; it belongs to the body."""
+    x, _, z = place.middle
+    half, out = min(0.42 * place.area.width, 0.4), 0.05
+    for end in (x - half, x + half):
+        place.workshop.add(BODY, *place.workshop.as_handle(rod(0.008, (end, 0.002, z), (end, -out, z))))
+    place.workshop.add(BODY, *place.workshop.as_handle(rod(0.01, (x - half, -out, z), (x + half, -out, z))))
+
+
+def _mirror(place: Place) -> None:
+    """A plate that stands at the rear edge; it belongs to the body."""
+    area, half = place.area, 0.35 * place.area.width
+    plate = box((-half, -2.0 * half, area.top - 0.02), (half, 1e-3, area.top))
+    place.workshop.add(BODY, *place.workshop.painted(plate, material="mirror"))
 
 
 def _shelf(place: Place) -> None:
@@ -168,13 +237,13 @@ def _hand_wheel(place: Place) -> None:
 
 def _rotor(place: Place) -> None:
     """Blades on a hub."""
-    radius, gap, count = min(0.95 * place.radius, 0.4), place.clearance, 3
-    hub = 0.16 * radius
+    radius, gap = min(0.95 * place.radius, 0.4), place.clearance
+    hub, wide = 0.16 * radius, (0.12 if place.members < 5 else 0.09) * radius
     blades = [
-        box((0, -0.12 * radius, -0.02 * radius), (radius, 0.12 * radius, 0.02 * radius))
+        box((0, -wide, -0.02 * radius), (radius, wide, 0.02 * radius))
         .rotate((25.0, 0, 0))
         .rotate((0, 0, math.degrees(angle)))
-        for angle in _angles(count)
+        for angle in _angles(place.members or 3)
     ]
     x, _, z = place.middle
     body = cylinder(hub, (x, -gap, z), (x, -gap - 2.4 * hub, z))
@@ -252,7 +321,8 @@ def _bail(place: Place) -> None:
     x, _, z = place.middle
     gap, ear, pin, rise = place.clearance, 0.008, 0.005, 0.022
     on_rim = 0.5 * (place.area.width + place.area.wall + ear) + 2.0 * pin + gap
-    half = min(0.42 * place.area.width, 0.2) if place.hollow else on_rim
+    on_edge = place.side == "top" and not place.hollow
+    half = on_rim if on_edge else min(0.42 * place.area.width, 0.2)
     high = rise + 0.8 * half
     solids = [rod(pin, (x - half, -high, z), (x + half, -high, z))]
     for sign in (-1.0, 1.0):
@@ -341,7 +411,7 @@ def _screen(place: Place) -> None:
 def _flag(place: Place) -> None:
     """A small plate on a stick that is turned up."""
     width = min(0.03, 0.8 * place.radius)
-    frame = place.workshop.turned(OUTWARD, place.middle)
+    frame = place.workshop.turned(OUTWARD @ np.diag([-1.0, -1.0, 1.0]), place.middle)  # the other way than a lever
     plate = box((-0.1 * width, -0.1 * width, -width), (0.1 * width, 2.0 * width, 0))
     stick(BODY, frame, place.name, width, place.clearance, long=5.0 * width, limits=(0.0, 1.3), head=plate)
 
@@ -408,6 +478,8 @@ class Mechanism:
     moves: bool = True
     has_grip: bool = False
     """A handle of its own, which may be of another look."""
+    members: tuple[str, ...] = ()
+    """What it has several of, which may be counted: the blades of a rotor."""
     halves: bool = False
     """On the left or the right is said of the half of a side that it covers."""
 
@@ -464,6 +536,58 @@ MECHANISMS = (
         least=(0.2, 0.12),
         needs="opening",
         halves=True,
+    ),
+    Mechanism(
+        words=phrases(
+            "sash, roll-up door, roll up door, roller door, roller shutter, rolling shutter, rolling door, "
+            "overhead door, up and over door, vertical sliding door, guillotine door"
+        ),
+        sides=("front",),
+        build=_sash,
+        arranged="stack",
+        weight=3.0,
+        least=(0.12, 0.2),
+        needs="opening",
+    ),
+    Mechanism(
+        words=phrases("hood, bonnet, engine hood, engine cover"),
+        sides=("hood",),
+        build=_lid,
+        arranged="alone",
+        needs="room",
+        most=1,
+    ),
+    Mechanism(
+        words=phrases("trunk, boot, trunk lid, boot lid"),
+        sides=("trunk",),
+        build=_trunk,
+        arranged="alone",
+        needs="room",
+        most=1,
+    ),
+    Mechanism(
+        words=phrases("ladder, turntable ladder, rescue ladder"),
+        sides=("top",),
+        build=_ladder,
+        arranged="alone",
+        most=1,
+    ),
+    Mechanism(
+        words=phrases("vise, vice, bench vise, clamping vise"),
+        sides=("top",),
+        build=_vise,
+        least=(0.2, 0.14),
+        weight=2.0,
+    ),
+    Mechanism(
+        words=phrases("towel rail, towel bar, towel rack, towel holder, rail, guard rail, handrail, grab bar"),
+        sides=("right", "left", "front", "back"),
+        build=_rail,
+        least=(0.2, 0.06),
+        moves=False,
+    ),
+    Mechanism(
+        words=phrases("mirror, looking glass"), sides=("top",), build=_mirror, arranged="edge", most=1, moves=False
     ),
     Mechanism(
         words=phrases("tray, paper tray, pull-out shelf, pull out shelf, keyboard tray, pull-out tray"),
@@ -536,6 +660,7 @@ MECHANISMS = (
     ),
     Mechanism(
         words=phrases("rotor, fan, propeller, impeller, ventilator, cooling fan"),
+        members=phrases("blade, sail, wing, vane, rotor blade"),
         sides=("front", "top", "back", "left", "right"),
         build=_rotor,
         least=(0.12, 0.12),
@@ -559,10 +684,10 @@ MECHANISMS = (
     ),
     Mechanism(
         words=phrases("carrying handle, handle, carry handle, bail, swing handle, folding handle"),
-        sides=("top",),
+        sides=("top", "left", "right"),
         build=_bail,
         arranged="over",
-        most=1,
+        most=2,
     ),
     Mechanism(
         words=phrases("cantilever tray, cantilever compartment"),

@@ -43,6 +43,10 @@ class Place:
     """Name of the side."""
     half: str = ""
     """``left`` or ``right`` where that is said of a half of the side."""
+    hinge: str = ""
+    """``left`` or ``right`` where that is said of a door."""
+    members: int = 0
+    """How many blades and the like are asked for; 0: as usual."""
     index: int
     """Among those of its kind on the side, from 0."""
 

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, TypeVar
 
 from kinematify.errors import InputError
 from kinematify.generate.composer.bodies import BODIES, Body
-from kinematify.generate.composer.compose import Composition, Wanted
+from kinematify.generate.composer.compose import BANDS, Composition, Wanted, compose
 from kinematify.generate.composer.mechanisms import MECHANISMS, Mechanism
 from kinematify.generate.composer.side import FACING
+from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.language.counts import MOST_COPIES
-from kinematify.generate.procedural.language.openness import OUT, share_at
-from kinematify.generate.procedural.language.parts import MOTIONS, PartRequirement
+from kinematify.generate.procedural.language.openness import OUT, VERBS, share_at
+from kinematify.generate.procedural.language.parts import MOTIONS, PartReader, PartRequirement
+from kinematify.generate.procedural.language.reading import Reading
 from kinematify.generate.procedural.language.sizes import DIMENSIONS, SIZE_WORDS, angle_at, length_at
 from kinematify.generate.procedural.language.words import (
     ARTICLES,
@@ -38,12 +40,23 @@ _PLACED = ("on", "at", "in")
 _REPEATING = ("each", "every", "per", "both")
 """Words that count what was named before, which is not built."""
 _SIDE_NOUNS = ("side", "face")
-_UNDER = ("underneath", "below")
+_LEVELS = {
+    "underneath": "bottom",
+    "below": "bottom",
+    "above": "top",
+    "beneath": "bottom",
+    "under": "bottom",
+    "overhead": "top",
+}
 _MOVING = ("opening", "movable", "moving", "working")
 _OPENNESS = {("half", "open"): 0.5, ("open",): 1.0, ("closed",): 0.0}
 _AXES = {"width": 0, "length": 0, "depth": 1, "height": 2}
 _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word in material.words}
 _HANDLES = ("handle",)
+_DROPPED = ("up", "down")
+"""Behind a part at the end they say that it stands open there."""
+_SWINGS = ("hinged", "hinge", "hinges", "open", "opens", "opening", "swings", "swinging")
+_BETWEEN = ("to", "on", "at", "the", "its", "from", "towards")
 _GOES = (
     ("goes", "up", "and", "down"), ("go", "up", "and", "down"), ("goes", "up"), ("moves", "up", "and", "down"),
 )  # fmt: skip
@@ -53,6 +66,7 @@ _SHAPES = tuple({body.build: body.words[0] for body in reversed(BODIES)}.values(
 """One body of each shape, for messages."""
 _ENDS = ("front", "back", "rear")
 """Sides that are said before a noun; a left door is the left one of two."""
+_MOST_MEMBERS = 12  # blades
 _LARGER = 1.3  # times as long in all directions is large
 _BARE = 2  # words of a length: number and unit
 _SCALES = 3.5  # times as long as usual a body may be
@@ -83,7 +97,8 @@ def read_composition(sentence: str) -> Composition:
         NoBodyError: It names no body of the composer.
         InputError: It has words that are not understood; the message names them.
     """
-    reader = _Reader(tokens_of(sentence, _vocabulary(), mend=False))
+    tokens = tokens_of(sentence, _vocabulary(), mend=False)
+    reader = _Reader(tokens)
     reader.read()
     if reader.body is None:
         raise NoBodyError(
@@ -95,12 +110,10 @@ def read_composition(sentence: str) -> Composition:
     wanted = (*reader.wanted, *_taken_for_granted(reader))
     if reader.rises and not any(item.mechanism.words[0] in _RISING for item in wanted):
         reader.left.append(reader.rises)
+    if reader.hinge and not any(item.hinge for item in wanted):
+        reader.left.append(f"opens to the {reader.hinge}")
     if reader.left:
-        raise InputError(
-            f"Not understood: {', '.join(map(repr, reader.left))}. Nothing else is built in its place. Bodies are "
-            f"{', '.join(_SHAPES)}; on them go "
-            f"{', '.join(mechanism.words[0] for mechanism in MECHANISMS)}."
-        )
+        raise _not_understood([*_phrases_of(tokens, reader.unread), *reader.left])
     for mechanism in reader.excluded:
         if any(wanted.mechanism is mechanism for wanted in reader.wanted):
             raise InputError(f"The text asks for a {mechanism.words[0]} and for none. Say one of both.")
@@ -113,7 +126,7 @@ def read_composition(sentence: str) -> Composition:
         if metres is not None and metres > _SCALES * usual:
             raise InputError(f"A {reader.body.words[0]} of {metres:g} m is too large; usual is {usual:g} m there.")
     width, depth, height = reader.size
-    return Composition(
+    composition = Composition(
         body=reader.body,
         said=reader.said,
         wanted=wanted,
@@ -126,6 +139,51 @@ def read_composition(sentence: str) -> Composition:
         copies=reader.copies,
         scale=reader.scale,
     )
+    return _with_what_parts_say(composition, tokens, reader) if reader.unread else composition
+
+
+def _with_what_parts_say(composition: Composition, tokens: tuple[Token, ...], reader: _Reader) -> Composition:
+    """Read words that name no mechanism against the parts that are built: `a flap that folds down`.
+
+    Raises:
+        InputError: They do not hold of them.
+    """
+    try:
+        made = compose(composition)
+    except InputError as error:
+        raise InputError(f"{_not_understood(_phrases_of(tokens, reader.unread))} {error}") from error
+    family = Family(
+        name=made.family,
+        title=composition.title,
+        words=(composition.title,),
+        parameters=(),
+        build=lambda values, workshop: None,
+        part_words={item.stem: item.mechanism.words for item in composition.wanted},
+    )
+    used = set(range(len(tokens))) - set(reader.unread)
+    parts = PartReader(reading=Reading(tokens=tokens, family=family, used=used, named=reader.named), made=made)
+    parts.read()
+    if left := _phrases_of(tokens, [k for k in reader.unread if k not in parts.reading.used]):
+        raise _not_understood(left)
+    return replace(composition, requirements=(*composition.requirements, *parts.requirements))
+
+
+def _phrases_of(tokens: tuple[Token, ...], places: Sequence[int]) -> list[str]:
+    """What stands at some places as it was written, neighbours together; articles alone say nothing."""
+    phrases: list[list[int]] = []
+    for k in places:
+        if phrases and k == phrases[-1][-1] + 1:
+            phrases[-1].append(k)
+        elif tokens[k].text not in ARTICLES:
+            phrases.append([k])
+    return [" ".join(tokens[k].given for k in phrase) for phrase in phrases]
+
+
+def _not_understood(left: Sequence[str]) -> InputError:
+    return InputError(
+        f"Not understood: {', '.join(map(repr, left))}. Nothing else is built in its place. Bodies are "
+        f"{', '.join(_SHAPES)}; on them go {', '.join(mechanism.words[0] for mechanism in MECHANISMS)}."
+    )
 
 
 def _taken_for_granted(reader: _Reader) -> list[Wanted]:
@@ -135,9 +193,16 @@ def _taken_for_granted(reader: _Reader) -> list[Wanted]:
         return []
     named = [*reader.excluded, *(item.mechanism for item in reader.wanted)]
     granted = {**body.always, **({} if reader.wanted else body.usual)}
+    if any(item.mechanism.needs == "opening" for item in reader.wanted):
+        granted.pop("door", None)  # something else closes it
     called = {kind: word for word, kind in body.says.items()}
     return [
-        Wanted(mechanism=kind, said=called.get(kind.words[0], ""), count=granted[kind.words[0]])
+        Wanted(
+            mechanism=kind,
+            said=called.get(kind.words[0], ""),
+            count=granted[kind.words[0]],
+            hinge=reader.hinge if kind.words[0] == "door" else "",
+        )
         for kind in MECHANISMS
         if kind.words[0] in granted and kind not in named
     ]
@@ -191,25 +256,38 @@ class _Reader:
         self.requirements: list[PartRequirement] = []
         self.copies = 1
         self.scale = 1.0
+        self.hinge = ""
+        """Side of the doors that nobody named."""
         self.rises = ""
         """Words that say that something of it goes up."""
         self.left: list[str] = []
-        """Words that were not understood, as they were written."""
+        """Words that cannot be understood here, as they were written."""
+        self.unread: list[int] = []
+        """Words that name no mechanism; what they say of parts is read when these are there."""
+        self.named: frozenset[int] = frozenset()
+        """Words of the body's name."""
+        self._looking: list[int] = []
+        """Words of what was said of the noun to come."""
 
     def read(self) -> None:
         """Take up every word."""
         k = 0
         while k < len(self._tokens):
             steps = (
-                self._length, self._opened, self._detail, self._mechanism, self._named_body, self._openness,
-                self._look_of_body, self._described, self._counted, self._purpose, self._roughly, self._rises,
+                self._length, self._hinged, self._opened, self._detail, self._mechanism, self._named_body,
+                self._openness, self._look_of_body, self._described, self._counted,
+                self._purpose, self._roughly, self._rises,
             )  # fmt: skip
             taken = next((words for step in steps if (words := step(k))), 0)
             if not taken and not self._says_nothing(self._tokens[k]):
-                self.left.append(self._tokens[k].given)
+                self._described_so_far()  # of a noun that is not known here
+                self.unread += [*self._looking, k]
+            if self._look == _Look():
+                self._looking = []
+            elif taken:
+                self._looking += range(k, k + taken)
             k += max(taken, 1)
-        if self._look != _Look():
-            self.left.append(self._tokens[-1].given)  # it describes nothing that follows
+        self.unread += self._looking  # it describes nothing that follows
 
     @staticmethod
     def _says_nothing(token: Token) -> bool:
@@ -270,12 +348,15 @@ class _Reader:
             return len(words)
         side, taken = self._side(end)
         side = side or look.side
+        # What goes on the front alone is at its top or bottom there.
+        banded = mechanism.arranged in BANDS and side in ("top", "bottom") and side not in mechanism.sides
         self.wanted.append(
             Wanted(
                 mechanism=mechanism,
                 said=_unusual(words, mechanism.words),
                 count=look.count or (_several(mechanism) if plural else 1),
-                side=side,
+                side="" if banded else side,
+                level=(1 if side == "top" else -1) if banded else 0,
                 material=look.material,
                 color=look.color,
             )
@@ -302,9 +383,17 @@ class _Reader:
         return 0
 
     def _detail(self, k: int) -> int:
-        """`with two handles`, which this body has anyway."""
+        """`with two handles`, which this body has anyway; `with five blades`, of the rotor that it has or just got."""
         if self.body is None:
             return 0
+        here = self.wanted[-1:] or [Wanted(mechanism=kind) for kind in MECHANISMS if kind.words[0] in self.body.always]
+        count = self._look.count or 0
+        for item in here if 2 <= count <= _MOST_MEMBERS and self._look == _Look(count=count) else []:
+            member = _longest(self._texts(k), {_words_of(word): word for word in item.mechanism.members})
+            if member is not None:
+                self.wanted[-1:] = [replace(item, members=count)]
+                self._look = _Look()
+                return len(member[0])
         named = _longest(self._texts(k), {tuple(word.split()): n for word, n in self.body.details.items()})
         if named is None or self._look not in (_Look(count=named[1]), *([_Look()] if named[1] == 1 else [])):
             return 0
@@ -331,6 +420,12 @@ class _Reader:
         amount = share_at(self._words, at)
         at = amount[1] if amount else at
         state, out = self._words.text(at), (self._words.text(at), self._words.text(at + 1)) in OUT
+        if at < len(self._tokens) and self._tokens[at].given in VERBS:
+            return 0
+        if state in _DROPPED and at + 1 == len(self._tokens):
+            said = " ".join((*words, state))
+            self.requirements.append(PartRequirement(nouns=(item.stem,), words=said, way=state, opened=("share", 1.0)))
+            return at + 1 - k
         if state not in OPENNESS and not out:
             return 0
         opened, end = ("share", amount[0] if amount else 1.0 if out else OPENNESS[state]), at + 1 + out
@@ -358,6 +453,7 @@ class _Reader:
         if named is None:
             return 0
         words, self.body = named
+        self.named = frozenset(range(k, k + len(words)))
         self.said = _unusual(words, self.body.words)
         self.of_body = self._described_so_far()
         self.copies = 1 if self.of_body.count is None else self.of_body.count
@@ -373,7 +469,11 @@ class _Reader:
         texts = self._texts(k)
         for words, share in _OPENNESS.items():
             # Amid a sentence it would be said of one mechanism alone.
-            if texts[: len(words)] == words and (self.body is None or k + len(words) == len(self._tokens)):
+            if (
+                self._look == _Look()
+                and texts[: len(words)] == words
+                and (self.body is None or k + len(words) == len(self._tokens))
+            ):
                 self.rest = share
                 return len(words)
         return 0
@@ -402,7 +502,7 @@ class _Reader:
         texts = self._texts(k)
         for length in (2, 1):
             words = " ".join(texts[:length])
-            if words in COLOR_WORDS and self._look.color is None:
+            if len(texts) >= length and words in COLOR_WORDS and self._look.color is None:
                 self._look.color = COLOR_WORDS[words]
                 return length
         if texts and texts[0] in _MATERIAL_WORDS and self._look.material is None:
@@ -433,13 +533,32 @@ class _Reader:
     def _side(self, k: int) -> tuple[str, int]:
         """The side that is named from word k on, and how many words that takes."""
         words = self._texts(k)
-        if words and words[0] in _UNDER:
-            return "bottom", 1
+        if words and words[0] in _LEVELS and words[1:2] not in (("the",), ("a",), ("an",)):
+            return _LEVELS[words[0]], 1
         place = [word for word in words[1:] if word not in ("the", "its")]
+        if place[:2] == ["one", "side"] and words[0] == "on":
+            return "", 1 + words.index("side")  # all on the same
         if not place or words[0] not in _PLACED or place[0] not in _SIDES:
             return "", 0
         skipped = words[1:].index(place[0])
-        return _SIDES[place[0]], 2 + skipped + (len(place) > 1 and place[1] in _SIDE_NOUNS)
+        noun = place[1:3] if place[1:2] == ["hand"] else place[1:2]
+        return _SIDES[place[0]], 2 + skipped + (len(noun) if noun and noun[-1] in _SIDE_NOUNS else 0)
+
+    def _hinged(self, k: int) -> int:
+        """`hinged on the left`, `opens to the right`, of the doors that were named last, or that it has."""
+        if self._words.text(k) not in _SWINGS or self._look != _Look():
+            return 0
+        at = k + 1
+        while self._words.text(at) in _BETWEEN:
+            at += 1
+        side = self._words.text(at)
+        if side not in ("left", "right") or (self.wanted and self.wanted[-1].mechanism.words[0] != "door"):
+            return 0
+        if self.wanted:
+            self.wanted[-1] = replace(self.wanted[-1], hinge=side)
+        else:
+            self.hinge = side
+        return at + 1 - k + (self._words.text(at + 1) in _SIDE_NOUNS)
 
 
 def _several(mechanism: Mechanism) -> int:
@@ -486,7 +605,8 @@ def nouns_of_mechanisms() -> frozenset[str]:
 @cache
 def _vocabulary() -> frozenset[str]:
     details = [tuple(word.split()) for body in BODIES for word in (*body.details, *body.says)]
-    nouns = {word for words in (*_bodies(), *_mechanisms(), *details) for word in words}
+    members = [_words_of(word) for kind in MECHANISMS for word in kind.members]
+    nouns = {word for words in (*_bodies(), *_mechanisms(), *details, *members) for word in words}
     sizes = {word for words in DIMENSIONS.values() for word in words}
     looks = {word for phrase in (*COLOR_WORDS, *_MATERIAL_WORDS) for word in phrase.split()}
     opens = {word for words in _OPENNESS for word in words}
@@ -496,5 +616,5 @@ def _vocabulary() -> frozenset[str]:
         | set(SIZE_WORDS)
         | looks
         | opens
-        | {*MOTIONS, *OPENNESS, *_SIDES, *_SIDE_NOUNS, *_UNDER, *_MOVING}
+        | {*MOTIONS, *OPENNESS, *_SIDES, *_SIDE_NOUNS, *_LEVELS, *_MOVING}
     )

@@ -42,6 +42,8 @@ class Side:
     """What it is the end of, for what needs just that: a ``round mouth``, a ``post``, or ``legs``."""
     axles: Opening | None = None
     """Where wheels stand: their height is its bottom, they are spread between left and right."""
+    ahead: float = 0.0
+    """Where a vehicle goes: 1 or -1 along x. Wheels between the first and the last one then stand by the last one."""
 
 
 def side_of(

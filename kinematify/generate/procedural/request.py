@@ -16,23 +16,40 @@ from kinematify.generate.described import known_families
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.language.parts import PartRequirement
 from kinematify.generate.procedural.language.sizes import OVERALL
-from kinematify.generate.procedural.language.understand import NotUnderstoodError, understand
+from kinematify.generate.procedural.language.understand import NoFamilyError, NotUnderstoodError, understand
 from kinematify.generate.procedural.language.words import PLAIN_WORDS, without_purposes, without_rough_sizes
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from kinematify.assembly.part import Part
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.composer.compose import Composition
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Value
+    from kinematify.robot.arrays import FloatArray
 
 _SCALES = 3.0  # to so many times the usual size and as much smaller, walls and gaps stay those of such an object
 _DRAWS, _NEXT_DRAW = 20, 1_000_003
 _GAP = 0.05  # between several [m]
 _HOLDS = re.compile(r"[,\s]+(?:that is |which is )?(holding)\s+", re.IGNORECASE)
+_ON_TOP = re.compile(
+    r"^(?P<other>.*\S),?\s+(?:with|and|carrying)\s+(?P<one>an?\s.*\S)\s+on\s+(?:top|it|top of it|its top)\W*$",
+    re.IGNORECASE,
+)
+_ON = re.compile(
+    r"^(?P<one>.*?\S)\s+(?:(?:that is |which is )?(?:mounted|standing|sitting|placed|stands|sits)\s+)?on\s+"
+    r"(?:top of )?(?P<other>(?:an?|the|its)\s.*)$",
+    re.IGNORECASE,
+)
+_AND = re.compile(
+    r"^(?P<one>(?:(?!\b(?:with|having|has|whose|that)\b).)*?\S),?\s+(?:and|next to|beside)\s+"
+    r"(?P<other>(?:an?|one|two|three|four|five|six)\s.*)$",
+    re.IGNORECASE,
+)
+_BESIDE = 0.3  # between what stands side by side [m]
+_LEVEL = 2e-3  # of a surface that something stands on [m]
 _HANDS = ("right_hand", "left_hand", "palm")
 _GRASP = 5e-4  # between a hand and what it holds [m]
 
@@ -57,8 +74,10 @@ class Request:
     """A size of the whole [m] that it is scaled to."""
     copies: int = 1
     """How many, side by side."""
-    held: Request | None = None
-    """What is in its hand."""
+    other: Request | None = None
+    """What it holds, stands on or stands beside."""
+    how: str = ""
+    """``holding``, ``on``, ``carrying`` or ``beside`` the other one."""
 
     def build(self, *, seed: int | None = None) -> Blueprint:
         """Build the object; a seed draws what was not asked for.
@@ -66,13 +85,16 @@ class Request:
         Raises:
             InputError: A value is out of its bounds, or the parts are not as they are asked for.
         """
-        blueprint = self._as_required(seed) if self.composition is None else compose(self.composition, seed=seed)
-        if self.held is not None:
-            blueprint = _holding(blueprint, self.held.build(seed=seed))
-        if self.copies == 1:
-            return blueprint
-        width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
-        return blueprint.repeated(self.copies, width + _GAP)
+        blueprint = self._single(seed)
+        if self.copies > 1:
+            width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
+            blueprint = blueprint.repeated(self.copies, width + _GAP)
+        return blueprint if self.other is None else _JOINED[self.how](blueprint, self.other.build(seed=seed))
+
+    def _single(self, seed: int | None) -> Blueprint:
+        if self.composition is None:
+            return self._as_required(seed)
+        return compose(self.composition, seed=seed, may_stand_still=bool(self.how))
 
     def _as_required(self, seed: int | None) -> Blueprint:
         """The object as its parts are asked for; where what a seed draws has no such parts, the next draw is taken."""
@@ -110,30 +132,64 @@ def from_text(sentence: str, *, lenient: bool = False) -> Request:
 
 
 def _read(sentence: str, *, lenient: bool) -> Request:
-    holder, verb, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
+    holder, _, held = _HOLDS.split(sentence, maxsplit=1) if _HOLDS.search(sentence) else (sentence, "", "")
     if held.strip():
         holding, thing = _read(holder, lenient=lenient), _read(held, lenient=lenient)
         # What a seed draws may have hands that are one with the arms.
         wanted = PartRequirement(nouns=(_hand(holding.build()).name,), words="a hand")
-        return replace(
-            holding,
-            held=thing,
-            understood=(*holding.understood, f"{verb} {', '.join(thing.understood)}"),
-            ignored=(*holding.ignored, *thing.ignored),
-            requirements=(*holding.requirements, wanted),
-        )
+        return replace(_joined(holding, "holding", thing), requirements=(*holding.requirements, wanted))
+    try:
+        return _read_one(sentence, lenient=False)
+    except InputError as reason:
+        several = _read_several(sentence)
+        if several is not None:
+            return several
+        if lenient:
+            return _read_one(sentence, lenient=True)
+        raise reason from None
+
+
+def _joined(one: Request, how: str, other: Request) -> Request:
+    return replace(
+        one,
+        how=how,
+        other=other,
+        understood=(*one.understood, f"{how} {', '.join(other.understood)}"),
+        ignored=(*one.ignored, *other.ignored),
+    )
+
+
+def _read_several(sentence: str) -> Request | None:
+    """Read `a printer on a cart with four casters`, `a table and two chairs`: two objects, each of which is known."""
+    for pattern, how in ((_ON_TOP, "carrying"), (_ON, "on"), (_AND, "beside")):
+        found = pattern.search(sentence)
+        try:
+            if found is not None:
+                one, other = (_read_one(found[name], lenient=False, alone=False) for name in ("one", "other"))
+                request = _joined(one, how, other) if how != "carrying" else _joined(other, how, one)
+                if request.build().joints:
+                    return request
+        except InputError:
+            continue
+    return None
+
+
+def _read_one(sentence: str, *, lenient: bool, alone: bool = True) -> Request:
+    """Read one object; what is not alone need not move."""
     body = names_a_body(sentence)
     if body and not any(body in family.words for family in known_families().values()) and not lenient:
-        return _composed(sentence)  # a luggage trolley is no luggage
+        return _composed(sentence, alone)  # a luggage trolley is no luggage
     try:
         meant = understand(sentence, known_families())
     except NotUnderstoodError as error:
         try:
-            return _composed(sentence)
+            return _composed(sentence, alone)
         except InputError as reason:
             if not lenient:
                 if isinstance(reason, NoBodyError):
                     raise error from None
+                if isinstance(error, NoFamilyError):
+                    raise reason from None
                 raise InputError(f"{error} Nor can it be composed of mechanisms: {reason}") from error
         meant = understand(sentence, known_families(), lenient=True)
     return Request(
@@ -147,10 +203,10 @@ def _read(sentence: str, *, lenient: bool) -> Request:
     )
 
 
-def _composed(sentence: str) -> Request:
+def _composed(sentence: str, alone: bool) -> Request:
     """Read a sentence as mechanisms on a body, and see that they can be built."""
     composition = read_composition(sentence)
-    compose(composition)
+    compose(composition, may_stand_still=not alone)
     told = [
         f"{item.count} {item.title}{'s' if item.count > 1 else ''}{f' on the {item.side}' if item.side else ''}"
         for item in composition.wanted
@@ -198,6 +254,48 @@ def _holding(blueprint: Blueprint, held: Blueprint) -> Blueprint:
     return blueprint.carrying(held, hand.name, place)
 
 
+def _standing_on(blueprint: Blueprint, carrier: Blueprint) -> Blueprint:
+    """Return an object on the middle of another one.
+
+    Raises:
+        InputError: There is no level place of its size.
+    """
+    bounds, below = blueprint.assembly.bounds, carrier.parts[0].bounds
+    middle = below.mean(axis=0)[:2]
+    half = 0.4 * np.minimum(np.ptp(bounds, axis=0)[:2], np.ptp(below, axis=0)[:2])
+    places = middle + half * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
+    heights = np.array([max(_height(part, place) for part in carrier.parts) for place in places])
+    level = _height(carrier.parts[0], middle)
+    if not (np.isfinite(heights).all() and np.ptp([*heights, level]) < _LEVEL):
+        raise InputError(
+            f"There is no level place for a {blueprint.family.replace('_', ' ')} on a "
+            f"{carrier.family.replace('_', ' ')}. Ask for them apart."
+        )
+    place = np.eye(4)
+    place[:3, 3] = [*(middle - bounds.mean(axis=0)[:2]), level - bounds[0, 2] + _GRASP]
+    on = carrier.carrying(blueprint, carrier.root, place)
+    return replace(on, name=blueprint.name, family=blueprint.family)
+
+
+def _height(part: Part, place: FloatArray) -> float:
+    """Highest point of a part above a place x, y; minus infinity where there is none."""
+    corners = part.vertices[part.faces]
+    a, b, c = (corners[:, k, :2] - place for k in range(3))
+    shares = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((b, c), (c, a), (a, b))], axis=1)
+    total = shares.sum(axis=1)
+    inside = (np.abs(total) > 1e-12) & ((shares * np.sign(total)[:, None]) >= 0.0).all(axis=1)
+    z = (shares[inside] * corners[inside, :, 2]).sum(axis=1) / total[inside]
+    return float(z.max(initial=-np.inf))
+
+
+def _beside(blueprint: Blueprint, other: Blueprint) -> Blueprint:
+    """Return an object with another one on its right, on the same floor."""
+    here, there = blueprint.assembly.bounds, other.assembly.bounds
+    place = np.eye(4)
+    place[:3, 3] = [here[1, 0] + _BESIDE - there[0, 0], (here - there).mean(axis=0)[1], here[0, 2] - there[0, 2]]
+    return blueprint.carrying(other, blueprint.root, place)
+
+
 def _hand(blueprint: Blueprint) -> Part:
     """Its hand.
 
@@ -212,6 +310,14 @@ def _hand(blueprint: Blueprint) -> Part:
 
 def _closed(blueprint: Blueprint) -> Blueprint:
     return blueprint.moved({joint.child: -joint.value for joint in blueprint.joints})
+
+
+_JOINED: Mapping[str, Callable[[Blueprint, Blueprint], Blueprint]] = {
+    "holding": _holding,
+    "on": _standing_on,
+    "carrying": lambda carrier, other: replace(_standing_on(other, carrier), name=carrier.name, family=carrier.family),
+    "beside": _beside,
+}
 
 
 def from_category(name: str, settings: Mapping[str, str]) -> Request:

@@ -18,11 +18,12 @@ if TYPE_CHECKING:
 
 FRACTIONS = {
     "half": 0.5, "halfway": 0.5, "quarter": 0.25, "quarters": 0.25, "third": 1.0 / 3.0, "thirds": 1.0 / 3.0,
-    "slightly": 0.15, "partly": 0.4, "partially": 0.4, "fully": 1.0, "completely": 1.0, "wide": 1.0,
+    "all": 1.0, "slightly": 0.15, "partly": 0.4, "partially": 0.4, "fully": 1.0, "completely": 1.0, "wide": 1.0,
 }  # fmt: skip
 """Words for a share of the way."""
 OUT = (("pulled", "out"), ("pull", "out"), ("swung", "out"), ("slid", "out"))  # as good as opened
-_VERBS = ("opens", "opening")  # say where something goes, not that it stands open
+VERBS = ("opens", "opening")
+"""They say where something goes, not that it stands open."""
 _NOT_A_STATE = ("shelf", "compartment", "front", "field")  # an open shelf is no state
 _CLAUSE_ENDS = (",", ";", ".", ":", "with", "and")
 _FILLING = (
@@ -54,8 +55,9 @@ def read_openness(reading: Reading, parts: PartReader) -> None:
     """Take up `half open`, `ajar`, `opened by 30 degrees`, `the top drawer pulled out 20 cm`, `open 30 %`."""
     for k, token in enumerate(reading.tokens):
         out = (token.text, reading.text(k + 1)) in OUT
-        state = token.text in OPENNESS and token.given not in _VERBS and reading.text(k + 1) not in _NOT_A_STATE
+        state = token.text in OPENNESS and token.given not in VERBS and reading.text(k + 1) not in _NOT_A_STATE
         if k in reading.used or not (out or state):
+            _dropped(reading, parts, k)
             continue
         share = 1.0 if out else OPENNESS[token.text]
         clause = _clause(reading, k)
@@ -66,6 +68,16 @@ def read_openness(reading: Reading, parts: PartReader) -> None:
         opened = (_HOW[name], float(value))
         if not _open_parts(reading, parts, clause, opened, words):
             reading.take(name, value, said, *words)
+
+
+def _dropped(reading: Reading, parts: PartReader, k: int) -> None:
+    """`its tailgate down`, at the end of a statement: it stands open there."""
+    way = reading.text(k)
+    if way in ("up", "down") and reading.text(k + 1) in ("", *_CLAUSE_ENDS):
+        for first, end, stems in parts.nouns():
+            if end == k:
+                said = parts.said(*range(first, k + 1))
+                parts.require(PartRequirement(nouns=stems, words=said, way=way, opened=("share", 1.0)), k)
 
 
 def _open_parts(

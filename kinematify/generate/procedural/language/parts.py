@@ -29,24 +29,53 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.language.reading import Reading
     from kinematify.robot.arrays import FloatArray
 
+_VERBS = {
+    "slides": "slide extend retract", "turns": "turn rotate swivel pivot", "swings": "hinge swing oscillate",
+    "tilts": "tilt recline tip", "flips": "flip", "spins": "spin revolve", "folds": "fold", "moves": "move adjust",
+    "rises": "lift raise rise", "sinks": "lower",
+}  # fmt: skip
+"""How a part may move -> verbs that say so."""
+
+
+_DOUBLED = ("flip", "tip", "spin", "swivel")
+"""Verbs whose last letter may be doubled: flipping."""
+
+
+def _forms(verb: str, ends: tuple[str, ...]) -> set[str]:
+    stems = [verb.removesuffix("e"), *([verb + verb[-1]] if verb in _DOUBLED else [])]
+    return {stem + end for stem in stems for end in ends}
+
+
+def _said_of(*ends: str) -> dict[str, str]:
+    return {form: moves for moves, verbs in _VERBS.items() for verb in verbs.split() for form in _forms(verb, ends)}
+
+
 MOTIONS = {
-    **dict.fromkeys(("sliding", "slide", "telescopic", "telescoping", "extendable"), "slides"),
-    **dict.fromkeys(("turning", "turn", "rotating", "rotate", "swivelling", "swiveling", "swivel"), "turns"),
-    **dict.fromkeys(("hinged", "swinging", "swing", "oscillating", "oscillate", "oscillates"), "swings"),
-    **dict.fromkeys(("tilting", "tilt"), "tilts"),
-    **dict.fromkeys(("spinning", "spin", "revolving", "revolve"), "spins"),
-}
+    **{verb + end: moves for moves, verbs in _VERBS.items() for verb in verbs.split() for end in ("", "s")},
+    **_said_of("ing", "able"), "telescopic": "slides", "extendable": "slides", "hinged": "swings", "rotary": "turns",
+    "telescoping": "slides", "rolls": "slides", "roll": "slides",
+}  # fmt: skip
 """Words for how a part moves, before its noun or behind it."""
-_MOVES: dict[str, Callable[[BlueprintJoint], bool]] = {
-    "slides": lambda joint: joint.kind is JointType.PRISMATIC,
-    "turns": lambda joint: joint.kind.turns,
-    "swings": lambda joint: joint.kind is JointType.REVOLUTE,
-    "tilts": lambda joint: joint.kind is JointType.REVOLUTE and abs(joint.axis[2]) < _SLANT,
-    "spins": lambda joint: joint.kind is JointType.CONTINUOUS,
+_DONE = _said_of("ed")
+"""The same behind `can be`."""
+_OF_PARTS_ALONE = ("folds", "moves")
+"""Said of the whole they are about another kind of object: a bicycle that folds has more than a handlebar."""
+_MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
+    "slides": lambda made, joint: joint.kind is JointType.PRISMATIC,
+    "turns": lambda made, joint: joint.kind.turns,
+    "swings": lambda made, joint: joint.kind is JointType.REVOLUTE,
+    "tilts": lambda made, joint: joint.kind is JointType.REVOLUTE and abs(joint.axis[2]) < _SLANT,
+    "flips": lambda made, joint: joint.kind.turns and abs(joint.axis[2]) < _SLANT and "wheel" not in joint.child,
+    "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
+    "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
+    "moves": lambda made, joint: joint.kind is not JointType.FIXED,
+    "rises": lambda made, joint: _goes(made, joint, "up"),
+    "sinks": lambda made, joint: _goes(made, joint, "down"),
 }
 _WAYS = {
     "left": (-1, 0, 0), "right": (1, 0, 0), "up": (0, 0, 1), "upward": (0, 0, 1), "down": (0, 0, -1),
-    "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0),
+    "downward": (0, 0, -1), "out": (0, -1, 0), "outward": (0, -1, 0), "forward": (0, -1, 0), "inward": (0, 1, 0),
+    "back": (0, 1, 0), "backward": (0, 1, 0),
 }  # fmt: skip
 """Words for where a part goes when it opens; fronts look along -y."""
 PLACES = {
@@ -57,7 +86,10 @@ _HANDLES = ("handle", "knob", "pull", "grip")
 """Words for handles, which are no parts of their own."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
-_LINKS = ("that", "which", "whose", "is", "are", "to", "can", "the", "in", "on", "at")  # between a noun and its verb
+_LINKS = ("that", "which", "whose", "is", "are", "to", "can", "be", "the", "in", "on", "at")  # between noun and verb
+_ANYHOW = ("over", "open", "apart", "around", "round", "freely", "away", "together", "aside")
+"""Behind a verb they say nothing about where to."""
+_GOING = ("open", "opens", "opening", "go", "goes", "going", "come", "comes")
 _OF = ("of", "in", "made", "from", "is", "are")  # between a noun and what it is made of
 
 
@@ -102,7 +134,7 @@ class PartRequirement:
         joints = [blueprint.joint_above[name] for name in names if name in blueprint.joint_above]
         moved = self.moves or self.way or self.opened
         fits = fits and not (moved and len(joints) < len(names))
-        fits = fits and (not self.moves or all(map(_MOVES[self.moves], joints)))
+        fits = fits and (not self.moves or all(_MOVES[self.moves](blueprint, joint) for joint in joints))
         fits = fits and all(_goes(blueprint, joint, self.way) for joint in joints if self.way)
         if not fits:
             raise InputError(f"Asked for is {self.words!r}, but {_described(blueprint, names)}.")
@@ -185,14 +217,40 @@ class PartReader:
         """`a fan that oscillates`, `a swivel chair`: the one part of a name does; ribs do not tilt an umbrella."""
         names = Counter(_stem(part.name) for part in self.made.parts)
         for k, token in enumerate(self.reading.tokens):
-            of_whole = self.reading.text(k - 1) in ("that", "which") or k + 1 in self.reading.named
-            if token.text not in MOTIONS or k in self.reading.used or not of_whole:
+            behind = self.reading.text(k - 1) in ("that", "which", "be")
+            said = self._verb(k)
+            if said is None or not (behind or k + 1 in self.reading.named):
                 continue
-            moves = MOTIONS[token.text]
-            stems = {_stem(joint.child) for joint in self.made.joints if _MOVES[moves](joint)}
-            stems = {stem for stem in stems if names[stem] == 1}
-            if stems:
-                self.require(PartRequirement(nouns=tuple(sorted(stems)), words=token.given, moves=moves), k)
+            moves, ways, where = said
+            if moves in _OF_PARTS_ALONE:
+                continue
+            for way in ways:
+                stems = {
+                    _stem(joint.child)
+                    for joint in self.made.joints
+                    if (not moves or _MOVES[moves](self.made, joint)) and (not way or _goes(self.made, joint, way))
+                }
+                stems = {stem for stem in stems if names[stem] == 1}
+                wanted = PartRequirement(nouns=tuple(sorted(stems)), words=token.given, moves=moves, way=way)
+                if stems and self.require(wanted, *where):
+                    break
+
+    def _verb(self, k: int) -> tuple[str, list[str], list[int]] | None:
+        """How something moves by the verb at word k, where to (what goes up and down does one of both), and words."""
+        verb = self.reading.text(k)
+        moves = MOTIONS.get(verb, _DONE.get(verb, "") if self.reading.text(k - 1) == "be" else "")
+        if k in self.reading.used or not (moves or verb in _GOING):
+            return None
+        to = k + 1
+        while self.reading.text(to) in ("to", "the", "on", "at", "towards"):
+            to += 1
+        way, back = (self.reading.text(i).removesuffix("s") for i in (to, to + 2))
+        if way not in _WAYS:  # it may have said the hinge's side already
+            anyhow = [to] if self.reading.text(to) in _ANYHOW else []
+            moves = moves or ("moves" if verb.startswith("open") else "")
+            return (moves, [""], [k, *anyhow]) if moves else None
+        both = self.reading.text(to + 1) == "and" and back in _WAYS
+        return moves, [way, back] if both else [way], [k, to, *([to + 2] if both else [])]
 
     def _movement_behind(self, k: int, end: int, stems: tuple[str, ...]) -> None:
         """`a handle that turns`, `whose door opens downwards`, `a door hinged on the left`."""
@@ -200,21 +258,13 @@ class PartReader:
         at = end
         while self.reading.text(at) in _LINKS:
             at += 1
-        verb = self.reading.text(at)
-        if at in self.reading.used or verb not in (*MOTIONS, "open", "opens", "go", "goes"):
+        if (found := self._verb(at)) is None:
             return
-        to = at + 1
-        while self.reading.text(to) in ("to", "the", "on", "at", "towards"):
-            to += 1
-        way = self.reading.text(to).removesuffix("s")  # it may have said the hinge's side already
-        where = [at, to] if way in _WAYS else [at]
-        if way not in _WAYS and verb not in MOTIONS:
-            return
+        moves, ways, where = found
         said = self.said(*range(k, max(where) + 1))
-        wanted = PartRequirement(
-            nouns=stems, words=said, place=place, moves=MOTIONS.get(verb, ""), way=way if way in _WAYS else ""
-        )
-        self.require(wanted, *where)
+        for way in ways:
+            if self.require(PartRequirement(nouns=stems, words=said, place=place, moves=moves, way=way), *where):
+                return
 
     def _presence(self, k: int, end: int, stems: tuple[str, ...]) -> None:
         """`with seat and lid`, `two temples`, `a bucket`."""

@@ -54,6 +54,7 @@ _PLACES = {
     *("column", "row", "grid", "lower", "upper"),
 }
 _NOT = ("no", "without")
+_SWINGS = {"hinged", "hinge", "hinges", "opens", "opening", "swings"}
 _JOINS = ("and", "with")  # what stands on either side is told apart
 _MEANING_SIGNS = ("%", "°", "/", "+")
 _SUGGESTED = 3  # words at most, of those that are not known
@@ -61,6 +62,10 @@ _SUGGESTED = 3  # words at most, of those that are not known
 
 class NotUnderstoodError(InputError):
     """A sentence names nothing that is known, or has words that are not understood."""
+
+
+class NoFamilyError(NotUnderstoodError):
+    """It names nothing that is known."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -277,7 +282,7 @@ def _family(
     having = next((k for k, token in enumerate(tokens) if token.text in _HAVING), len(tokens))
     found = _named(tokens[:end], names) or _named(tokens[:having], names)[:1]
     if not found:
-        raise NotUnderstoodError(_names_nothing(sentence, tokens, names))
+        raise NoFamilyError(_names_nothing(sentence, tokens, names))
     family, where = next((item for item in found if _counts_parts(tokens, item[0], found[-1][1])), found[0])
     for other, behind in found:
         if behind.start == where.stop:
@@ -387,7 +392,11 @@ def _arrangement(reading: Reading) -> None:
     """Doors above drawers, columns, what is on the left: for families that have a layout."""
     if reading.parameter("layout") is None or "layout" in reading.values:
         return
-    layout, used = layout_of([token.text for token in reading.tokens], reading.mentions)
+    words = [token.text for token in reading.tokens]
+    for k, word in enumerate(words):
+        if word in ("left", "right") and _SWINGS & set(words[max(k - 4, 0) : k]):
+            words[k] = ""  # the side of a hinge
+    layout, used = layout_of(words, reading.mentions)
     if layout:
         reading.take("layout", layout, f"arranged as {layout}", *used)
     if reading.mentions:

@@ -35,6 +35,8 @@ OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0
 """Words for a state, and the share of the way that they mean by themselves."""
 _PURPOSE_TEXT = """
     burner cash crisper cutlery detergent emergency freezer glove main power soap start stop storage vegetable volume
+    battery mail coin card ticket cable cup bottle spice fuse inspection service access charging dust filter ash crumb
+    drip bread laundry trash book wine toy cat dog pet side engine water paper tool food feed
 """
 PURPOSES = frozenset(_PURPOSE_TEXT.split())
 """What a part is for, right before its noun; it asks for nothing that could be built differently."""
@@ -63,6 +65,8 @@ _PLAIN_TEXT = """
     designed look looking kind type sort brand brushed polished matte glossy shiny painted lacquered varnished worn
     weathered dusty clean well built good great best high quality lightweight portable electric electrical electronic
     manual home family professional commercial domestic sized size motorized motorised hydraulic pneumatic digital
+    outdoor indoor garden patio hallway entryway hotel restaurant shop library basement attic nursery playroom workshop
+    wireless smart colorful colourful comfy stackable bright japanese swedish danish german british italian chinese
     automatic cordless rechargeable insulated waterproof washable foam padded upholstered handmade custom original
 """
 PLAIN_WORDS = frozenset(_PLAIN_TEXT.split())
@@ -71,12 +75,19 @@ STOP_WORDS = frozenset(_STOP_TEXT.split()) | PLAIN_WORDS
 """Words that ask for nothing that could be built differently; every other word is understood or refused."""
 
 _TOKEN = re.compile(r"\d+(?:[.,]\d+)?(?:e\d+)?|[a-z]+|[,;:.]|[^\sa-z0-9]")
+_BODY_CM = {
+    "ankle": 15, "knee": 50, "hip": 90, "waist": 100, "chest": 130, "shoulder": 145, "head": 175, "man": 175,
+    "ceiling": 240, "floor to ceiling": 240, "desk": 75, "table": 75, "counter": 90,
+}  # fmt: skip
+"""What people measure heights by."""
 _WRITTEN = (
     (r"['’](?:m|re|ve|s)\b", ""),
     (r"(?<=s)['’](?=\s)", ""),
     (r"\bw/o\b", "without"),
     (r"\bw/", "with"),
     ("&", "and"),
+    *((rf"\b{body}[ -](?:high|tall)\b", f"{cm} cm tall") for body, cm in _BODY_CM.items()),
+    (r"\b(doors?|panels?|windows?|lids?|shutters?) (?:that|which) (?:can )?slides?(?: open)?\b", r"sliding \1"),
 )
 """Signs that people write for words."""
 _PURPOSE = re.compile(
@@ -111,7 +122,7 @@ _ROUGHLY = (
 _ROUGH_PART = re.compile(
     rf"(?<![\d.])(?<!\bcm )(?<!\bmm )(?<!\bm )\b(?P<size>(?:{'|'.join(_ROUGHLY)})\s+)(?P<noun>[a-z]+)\b", re.IGNORECASE
 )
-_HAVING = re.compile(r"(\b(?:with|having|has|featuring|including|plus)\b)", re.IGNORECASE)
+_HAVING = re.compile(r"(\b(?:with|having|has|featuring|including|plus)\b|,)", re.IGNORECASE)
 _IRREGULAR = {"leaves": "leaf", "shelves": "shelf", "knives": "knife", "feet": "foot", "axes": "axis", "dice": "die"}
 
 
