@@ -237,11 +237,14 @@ def _is_last_word(word: str, name: str) -> bool:
 
 
 def _count(made: Blueprint, closed: Blueprint, wanted: int) -> list[str]:
-    base = made.parts[0]
-    bodies, _ = connected_components(
-        coo_array((np.ones(len(base.faces) * 2), _edges(base)), shape=2 * (len(base.vertices),))
-    )
+    standing = [part for part in made.parts[1:] if made.joint_above[part.name].kind is JointType.FIXED]
+    bodies = sum(_pieces(part) for part in (made.parts[0], *standing))
     return [] if bodies == wanted else [f"{bodies} of them"]
+
+
+def _pieces(part: Part) -> int:
+    edges = coo_array((np.ones(len(part.faces) * 2), _edges(part)), shape=2 * (len(part.vertices),))
+    return int(connected_components(edges)[0])
 
 
 def _edges(part: Part) -> tuple[np.ndarray, np.ndarray]:

@@ -24,6 +24,7 @@ _WHEEL = 0.02  # radius [m]
 _FORK = 0.056  # height of a wheel with its fork [m]
 _HINGE = 0.004  # radius [m]
 _TUBE = 0.006  # radius of the drawn handle's tubes [m]
+_GRIP = 0.021  # height of the grip above the shells when it is pushed in [m]
 _OPENS = 1.7  # [rad]
 
 
@@ -43,6 +44,11 @@ def _bottom(values: Values) -> float:
     return _FORK + values.number("clearance")
 
 
+def _top(values: Values) -> float:
+    """Upper side of the shells, below the grip where there is one [m]."""
+    return values.number("height") - (_GRIP if values.choice("handle") == "trolley" else 0.0)
+
+
 def _shell(values: Values, mouth: float, back: float) -> Manifold:
     """One half, open at y = `mouth`, with grooves in its broad face."""
     sign = 1.0 if back > mouth else -1.0
@@ -59,7 +65,7 @@ def _shell(values: Values, mouth: float, back: float) -> Manifold:
 
 def _plate(values: Values, inset: float, start: float, end: float) -> Manifold:
     """The outline of the front, rounded at its corners, between two depths."""
-    half, bottom, top = 0.5 * values.number("width") - inset, _bottom(values) + inset, values.number("height") - inset
+    half, bottom, top = 0.5 * values.number("width") - inset, _bottom(values) + inset, _top(values) - inset
     radius = _ROUND - inset
     places = [(x, z) for x in (radius - half, half - radius) for z in (bottom + radius, top - radius)]
     return hull(*(cylinder(radius, (x, start, z), (x, end, z), segments=32) for x, z in places))
@@ -68,7 +74,7 @@ def _plate(values: Values, inset: float, start: float, end: float) -> Manifold:
 def _side_handle(values: Values) -> list[Manifold]:
     """A grip on the right side of the half that stays."""
     x, y = 0.5 * values.number("width"), 0.25 * values.number("depth")
-    level = 0.5 * (_bottom(values) + values.number("height"))
+    level = 0.5 * (_bottom(values) + _top(values))
     ends = [(y, level - 0.06), (y, level + 0.06)]
     posts = [rod(0.006, (x - 1e-3, *end), (x + 0.022, *end)) for end in ends]
     return [
@@ -79,7 +85,7 @@ def _side_handle(values: Values) -> list[Manifold]:
 
 def _add_hinges(values: Values, workshop: Workshop) -> tuple[float, float, float]:
     """Barrels at the left side of both halves; returns a point on the pins."""
-    clearance, bottom, top = values.number("clearance"), _bottom(values), values.number("height")
+    clearance, bottom, top = values.number("clearance"), _bottom(values), _top(values)
     face, reach = _HINGE + clearance, 3.0 * _HINGE
     deep = (face - 1e-4, face + 2e-4)
     on_body = (*deep, clearance + 0.2 * reach, clearance + reach)
@@ -94,7 +100,7 @@ def _add_hinges(values: Values, workshop: Workshop) -> tuple[float, float, float
 
 def _add_trolley(values: Values, workshop: Workshop) -> None:
     """Two tubes in sleeves at the back, with a grip above the top."""
-    clearance, top, bottom = values.number("clearance"), values.number("height"), _bottom(values)
+    clearance, top, bottom = values.number("clearance"), _top(values), _bottom(values)
     x, y = 0.22 * values.number("width"), 0.5 * values.number("depth") - 0.022
     low, grip = bottom + 0.05, top + 0.012
     tubes = []
@@ -153,7 +159,7 @@ FAMILY = Family(
     parameters=(
         length("width", 0.4, (0.3, 0.7), "Of the shells.", usual=(0.34, 0.5)),
         length("depth", 0.24, (0.18, 0.45), "Of both shells.", usual=(0.2, 0.3)),
-        length("height", 0.62, (0.4, 1.0), "With the wheels.", usual=(0.52, 0.75)),
+        length("height", 0.62, (0.4, 1.0), "With the wheels, the handle pushed in.", usual=(0.52, 0.75)),
         counted(
             "wheels", 4, (2, 4), "Castors; two of them only roll.", usual=(2, 4), words="wheel, roller, castor, caster"
         ),
