@@ -275,7 +275,7 @@ def _by_side(composition: Composition, sides: dict[str, Side]) -> dict[str, list
         wanted = replace(asked, side="") if in_front and asked.mechanism.words[0] == "door" else asked
         kind, usual = wanted.mechanism, _usual_sides(wanted, sides, body)
         by_pairs = kind.arranged == "axles" or (kind.words[0] == "door" and not wanted.side and usual[0] == "left")
-        if by_pairs or (kind.arranged == "over" and wanted.count == 2):
+        if by_pairs or (kind.arranged == "over" and wanted.count == 2 and {"left", "right"} <= sides.keys()):
             if wanted.count % 2:
                 raise InputError(f"{wanted.count} {wanted.title}s are asked for; on a {body} they come in pairs.")
             for side in ("left", "right"):

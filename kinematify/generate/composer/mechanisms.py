@@ -684,7 +684,7 @@ MECHANISMS = (
     ),
     Mechanism(
         words=phrases("carrying handle, handle, carry handle, bail, swing handle, folding handle"),
-        sides=("top", "left", "right"),
+        sides=("top",),
         build=_bail,
         arranged="over",
         most=2,
