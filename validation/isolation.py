@@ -2,31 +2,36 @@
 
 Their limits count processor time, so that a busy machine changes no verdict.
 
-Workers are forked from a server that has the heavy imports done, so that one costs milliseconds. A worker sends each
-result through a pipe at once; what it sent before it died is kept.
+Workers are forked from a process that has the heavy imports done, so that one costs milliseconds: from the caller's own
+where no library has started threads in it, whose locks a copy might inherit in any state, and else from a server. A
+worker sends each result through a pipe at once; what it sent before it died is kept.
 """
 
 from __future__ import annotations
 
+import faulthandler
 import gc
+import importlib
 import math
 import multiprocessing
 import os
 import resource
 import signal
 import sys
+import threading
 import time
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from multiprocessing import connection, forkserver, resource_tracker
+from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from multiprocessing.connection import Connection
+    from multiprocessing.context import ForkContext, ForkServerContext
     from multiprocessing.process import BaseProcess
-    from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.stage import Recorder, StageRequest
@@ -42,23 +47,14 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 """Variables of workers: one thread per library, as there are as many workers as cores."""
 _VARIABLES = {**ONE_THREAD, "MUJOCO_GL": "disable"}
 """Of the workers: one thread, and no search for a display."""
-_PRELOADED = (
+_EVERY_STAGE = (
+    "numpy",
     "kinematify.validation.isolation",
     "kinematify.validation.stage",
     "kinematify.config.validation",
     "kinematify.manipulation.request",
-    "kinematify.validation.asset.bodies",
-    "kinematify.validation.asset.mesh_look",
-    "kinematify.simulation.prepare",
-    "kinematify.validation.geometry.look",
-    "kinematify.validation.geometry.exact_contacts",
-    "kinematify.validation.evidence.case",
-    "kinematify.validation.evidence.measure",
-    "kinematify.validation.engine_context",
-    "kinematify.validation.engine_results",
-    "kinematify.validation.as_loaded_context",
 )
-"""What requests hold and stages need, imported once for all of them; not the libraries of engines, one for each."""
+"""Modules that all stages need."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +68,8 @@ class Stage:
     """Every (id, engine) that it tells if nothing goes wrong."""
     after: tuple[str, ...] = ()
     """Names of the stages that must have ended without a crash before."""
+    imports: tuple[str, ...] = ()
+    """Modules that it needs, loaded once for all stages; not the libraries of engines, one for each."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,12 +98,53 @@ class _Running:
     told: list[CheckResult | Summary]
 
 
-def start_server() -> None:
-    """Start the server that workers are forked from; returns at once, the imports go on beside the caller's work."""
-    multiprocessing.get_context("forkserver").set_forkserver_preload(list(_PRELOADED))
-    resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
-    with environment_variables(_VARIABLES), _without_main(), _deaf():
-        forkserver.ensure_running()
+class _Server:
+    """The server that workers are forked from where the caller's process cannot be."""
+
+    runs = False
+
+    def start(self, imports: Iterable[str]) -> None:
+        """Start it, if it does not run; its imports go on beside the caller's work."""
+        multiprocessing.get_context("forkserver").set_forkserver_preload([*_EVERY_STAGE, *imports])
+        resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
+        with environment_variables(_VARIABLES), _without_main(), _deaf():
+            forkserver.ensure_running()
+        self.runs = True
+
+
+_SERVER = _Server()
+
+
+def worker_context() -> ForkContext | ForkServerContext:
+    """Return what starts processes: the server once it runs, and this process as long as its threads are Python's."""
+    if _SERVER.runs or not _only_threads_of_python():
+        return multiprocessing.get_context("forkserver")
+    return multiprocessing.get_context("fork")
+
+
+def start_server(stages: Iterable[Stage]) -> None:
+    """Start a server that workers are forked from, with the imports of stages; returns at once."""
+    _SERVER.start(name for stage in stages for name in stage.imports)
+
+
+def load_imports(stages: Iterable[Stage] = ()) -> None:
+    """Load what stages need once for all of them: into this process if workers are forked from it, else into a server.
+
+    Called before NumPy is loaded, it keeps the process one that workers can be forked from.
+    """
+    if worker_context().get_start_method() == "forkserver":
+        start_server(stages)
+        return
+    with environment_variables(_VARIABLES):
+        for name in (*_EVERY_STAGE, *(name for stage in stages for name in stage.imports)):
+            importlib.import_module(name)
+
+
+def _only_threads_of_python() -> bool:
+    try:
+        return sum(1 for _ in Path("/proc/self/task").iterdir()) == threading.active_count()
+    except OSError:
+        return False  # not Linux: who knows
 
 
 def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> Iterator[StageEnd]:
@@ -116,7 +155,7 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
         request: What each of them is given; what those before it took is taken off the time of a stage.
         workers: Processes at a time.
     """
-    start_server()
+    load_imports(stages)
     waiting, ended = list(stages), dict[str, StageEnd]()
     active: dict[Connection, _Running] = {}
     try:
@@ -144,7 +183,7 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
 
 def _start(stage: Stage, request: StageRequest, before: float) -> tuple[Connection, _Running]:
     request = replace(request, deadline=max(0.0, request.deadline - before))
-    context = multiprocessing.get_context("forkserver")
+    context = worker_context()
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_work, args=(sender, stage, request), daemon=True)
     with _without_main(), _deaf():  # an interrupt amid the request would make the server print a traceback
@@ -159,7 +198,10 @@ def _start(stage: Stage, request: StageRequest, before: float) -> tuple[Connecti
 def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     """Body of a worker. Ctrl-C reaches the whole process group; the parent alone answers it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    gc.freeze()  # what the server imported is looked through no more, and stays shared with it
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    faulthandler.disable()  # the parent tells of a crash
+    os.environ.update(_VARIABLES)
+    gc.freeze()  # what was imported before is looked through no more, and stays shared with it
     limit = request.settings.budget.stage_bytes
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -170,7 +212,7 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
         _silence(_log(stage, request))
     except FileNotFoundError:
         return  # the run was stopped meanwhile, and its folder is gone
-    # Imported here, and by the server: the sooner the caller starts that, the sooner everything ends.
+    # Imported here, and by a server: the sooner the caller starts that, the sooner everything ends.
     from kinematify.validation.stage import Recorder  # noqa: PLC0415
 
     with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped

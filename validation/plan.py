@@ -20,19 +20,38 @@ CheckKey = tuple[str, str | None]
 
 def asset_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
-    return Stage(name="asset", run=asset.run, checks=keys(checks_of("KV15", "KV2")))
+    imports = ("kinematify.validation.asset.bodies", "kinematify.validation.asset.mesh_look")
+    return Stage(name="asset", run=asset.run, checks=keys(checks_of("KV15", "KV2")), imports=imports)
 
 
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
     """Everything that moves the model, the longest first; engines that were not chosen are left out."""
     stages = [
-        Stage(name="prepare", run=prepare.run, checks=()),
-        Stage(name="geometry", run=geometry.run, checks=keys(checks_of("KV30", "KV31", "KV32", "KV33"))),
-        Stage(name="evidence", run=evidence.run, checks=keys(checks_of("KV34", "KV35"))),
+        Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepare",)),
+        Stage(
+            name="geometry",
+            run=geometry.run,
+            checks=keys(checks_of("KV30", "KV31", "KV32", "KV33")),
+            imports=("kinematify.validation.geometry.look", "kinematify.validation.geometry.exact_contacts"),
+        ),
+        Stage(
+            name="evidence",
+            run=evidence.run,
+            checks=keys(checks_of("KV34", "KV35")),
+            imports=("kinematify.validation.evidence.case", "kinematify.validation.evidence.measure"),
+        ),
     ]
     for name in chosen:
         checks = tuple(key for key in keys(CHECKS.values()) if key[1] == name and not key[0].startswith(("KV7", "KV8")))
-        stages.append(Stage(name=name, run=partial(engine.run, engine=name), checks=checks, after=("prepare",)))
+        stages.append(
+            Stage(
+                name=name,
+                run=partial(engine.run, engine=name),
+                checks=checks,
+                after=("prepare",),
+                imports=("kinematify.validation.engine_context",),
+            )
+        )
     return stages
 
 
@@ -43,6 +62,7 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
             name=f"{name} as loaded",
             run=partial(as_loaded.run, engine=name),
             checks=tuple(key for key in keys(checks_of("KV8")) if key[1] == name),
+            imports=("kinematify.validation.as_loaded_context",),
         )
         for name in chosen
         if any(name in check.engines for check in checks_of("KV8"))
@@ -52,7 +72,8 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
 def agreement_stage() -> Stage:
     """Compares what the engines left; it comes after all of them, whether they ended well or not."""
     checks = tuple(key for key in keys(checks_of("KV6")) if key[1] is None)
-    return Stage(name="agreement", run=agreement.run, checks=checks)
+    imports = ("kinematify.validation.engine_results",)
+    return Stage(name="agreement", run=agreement.run, checks=checks, imports=imports)
 
 
 def task_stage() -> Stage:

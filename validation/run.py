@@ -24,7 +24,7 @@ from kinematify.validation.checks import CHECKS
 from kinematify.validation.environment import environment
 from kinematify.validation.finding import Blame, CheckResult, Finding, Severity, Status, not_finished
 from kinematify.validation.inferred import inferred_beside, with_next_best
-from kinematify.validation.isolation import run_stages, start_server
+from kinematify.validation.isolation import load_imports, run_stages
 from kinematify.validation.opinions import evidence_before_blame
 from kinematify.validation.plan import (
     agreement_stage,
@@ -167,7 +167,7 @@ class _Run:
 
     def all(self, request: StageRequest, workers: int) -> None:
         """Run everything that can run."""
-        start_server()
+        load_imports()
         asset_request = replace(request, selected=request.selected | _GUARDS)
         usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)

@@ -20,10 +20,12 @@ from kinematify.model.preview import render_preview
 from kinematify.pipeline import infer
 from kinematify.pipeline.generate import INFERRED_FOLDER, PARTS_FOLDER, write_blueprint, write_parts
 from kinematify.pipeline.record import PREVIEW_FILE, write_inference_files
+from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.finding import Severity
 from kinematify.validation.formats.picture import scene_of
 from kinematify.validation.isolation import start_server
 from kinematify.validation.outcome import severity_counts
+from kinematify.validation.plan import as_loaded_stages, asset_stage, later_stages
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
@@ -101,7 +103,8 @@ class Generation:
         check_output(self.out, overwrite=overwrite)
         self.blueprint = self.build(progress)
         if self.validated:
-            start_server()  # its imports take seconds, on another core than the inference
+            # Its imports take a second, on another core than the inference.
+            start_server([asset_stage(), *later_stages(DEFAULT_ENGINES), *as_loaded_stages(DEFAULT_ENGINES)])
         config = with_collision(load_config(), self.collision)
         if self.inferred:
             self.inference = infer(

@@ -10,13 +10,14 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.help import examples
-from kinematify.cli.inferred import as_loaded, confidences, describe
+from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded
 from kinematify.cli.options import collision_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from concurrent.futures import Executor, Future
 
     from kinematify.config import Config
     from kinematify.pipeline import Inference
@@ -124,19 +125,26 @@ def command(
 
     With --refine it ends with 1 if the model that is kept still has an error about its motion.
     """
-    if not no_validation:
-        from kinematify.validation.isolation import start_server
+    from concurrent.futures import ProcessPoolExecutor
+    from contextlib import ExitStack
 
-        start_server()  # its imports go on beside the inference
-    from kinematify.assembly.load import load_assembly
-    from kinematify.config import load_config
-    from kinematify.model.output import check_output
-    from kinematify.pipeline import infer
+    from kinematify.validation.isolation import ONE_THREAD, environment_variables, worker_context
+
+    with environment_variables(ONE_THREAD):
+        from kinematify.assembly.load import load_assembly
+        from kinematify.config import load_config
+        from kinematify.model.output import check_output
+        from kinematify.pipeline import infer
 
     check_output(out, overwrite=force)
     settings = load_config(config) if seed is None else load_config(config, seed=seed)
     settings = with_collision(settings, collision)
-    with progress_reporter() as progress:
+    with ExitStack() as stack:
+        beside = None
+        if not no_validation:
+            beside = stack.enter_context(ProcessPoolExecutor(1, mp_context=worker_context()))
+            beside.submit(load_as_loaded)  # beside the inference
+        progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
         given = load_assembly(assembly, config=settings.assembly, up=up, scale=scale, labels=labels)
@@ -148,7 +156,7 @@ def command(
             inference, status = _refined(inference, rounds, tier, base, _share(progress, _INFERRED, _REFINED))
         inference = _with_hints(inference, told)
         progress("writing the model", _REFINED)
-        loaded = _written(inference, out, overwrite=force, preview=not no_preview, validated=not no_validation)
+        loaded = _written(inference, out, overwrite=force, preview=not no_preview, beside=beside)
         progress("done", 1.0)
     if json_to:
         write_answer({**_as_answer(inference, out), "as_loaded": loaded or None}, json_to)
@@ -212,9 +220,9 @@ def use_one_thread(config: Config) -> None:
         torch.set_num_threads(1)
 
 
-def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, validated: bool) -> str:
+def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: Executor | None) -> str:
     """Write the model folder, its picture while engines load the model, and return what `as_loaded` says."""
-    from concurrent.futures import Future, ThreadPoolExecutor, wait
+    from concurrent.futures import wait
 
     from kinematify.model.output import MODEL_FILE, write_model_folder
     from kinematify.pipeline.record import write_inference_files, write_preview
@@ -223,14 +231,13 @@ def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool,
 
     def write(folder: Path) -> None:
         write_inference_files(inference, folder, preview=False)
-        if validated:
+        if beside is not None:
             loading.append(beside.submit(as_loaded, folder / MODEL_FILE))
         if preview:
             write_preview(inference, folder)
         wait(loading)
 
-    with ThreadPoolExecutor(1) as beside:
-        write_model_folder(out, write, overwrite=overwrite)
+    write_model_folder(out, write, overwrite=overwrite)
     return loading[0].result() if loading else ""
 
 

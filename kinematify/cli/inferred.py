@@ -49,11 +49,29 @@ def describe_joints(joints: Sequence[Joint], confidence_of: Mapping[str, float] 
 
 def as_loaded(urdf: Path) -> str:
     """Return how many joints move in the written file by engine, measured; empty if no engine could be asked."""
-    from kinematify.validation.checks import checks_of
     from kinematify.validation.run import validate
 
+    return validate(urdf, selected=_as_loaded_checks()).as_loaded
+
+
+def load_as_loaded() -> None:
+    """Load what `as_loaded` needs, in a process that is asked for it later; Ctrl-C is answered by the one that asks."""
+    import signal
+
+    from kinematify.simulation.engines import DEFAULT_ENGINES
+    from kinematify.validation.isolation import load_imports
+    from kinematify.validation.plan import as_loaded_stages, asset_stage, later_stages, needed
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    later = needed(later_stages(DEFAULT_ENGINES), _as_loaded_checks())
+    load_imports([asset_stage(), *later, *as_loaded_stages(DEFAULT_ENGINES)])
+
+
+def _as_loaded_checks() -> set[str]:
+    from kinematify.validation.checks import checks_of
+
     free_travel = "KV310"  # its stage measures how far every joint is free
-    return validate(urdf, selected={free_travel, *(check.id for check in checks_of("KV8"))}).as_loaded
+    return {free_travel, *(check.id for check in checks_of("KV8"))}
 
 
 def _range(joint: Joint) -> str:

@@ -143,9 +143,9 @@ def command(
     with 3 if there is no error and something that was asked for was not finished (the report says what finishes it).
     Ctrl-C ends with 130 and leaves valid reports of what is known by then.
     """
-    from kinematify.validation.isolation import start_server
+    from kinematify.validation.isolation import load_imports
 
-    start_server()  # its imports go on beside those that follow
+    load_imports()  # before anything loads NumPy
     from kinematify.cli.task_options import TaskOptions
     from kinematify.cli.validation_run import ValidationRun
     from kinematify.validation.models import find_models

@@ -12,7 +12,7 @@ from kinematify.simulation.engines import ENGINES
 from kinematify.validation.check import ENGINE_FAMILIES, REGISTRY, FeedbackRow, OpenCheck, check, engine_check
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.finding import Blame, Severity, Status
-from kinematify.validation.isolation import _PRELOADED
+from kinematify.validation.isolation import _EVERY_STAGE
 from kinematify.validation.plan import agreement_stage, as_loaded_stages, asset_stage, keys, later_stages, task_stage
 from kinematify.validation.stage import Recorder
 from tests.places import ROOT
@@ -120,7 +120,9 @@ def test_the_example_of_contributing_is_the_code() -> None:
 
 
 def test_what_workers_have_imported_beforehand_is_there() -> None:
-    assert [name for name in _PRELOADED if importlib.util.find_spec(name) is None] == []  # the server would not say so
+    stages = [asset_stage(), *later_stages(list(ENGINES)), *as_loaded_stages(list(ENGINES)), agreement_stage()]
+    names = {*_EVERY_STAGE, *(name for stage in stages for name in stage.imports)}
+    assert [name for name in names if importlib.util.find_spec(name) is None] == []  # the server would not say so
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 import signal
+import subprocess
+import sys
 import time
 from typing import TYPE_CHECKING
 
@@ -14,7 +16,7 @@ from kinematify.cli.app import run
 from kinematify.config.validation import load_settings
 from kinematify.validation import run as validation
 from kinematify.validation.checks import checks_of
-from kinematify.validation.isolation import Stage, StageEnd, run_stages
+from kinematify.validation.isolation import ONE_THREAD, Stage, StageEnd, run_stages
 from kinematify.validation.plan import keys
 from kinematify.validation.stage import StageRequest
 from tests.validation.engine_models import cabinet
@@ -83,6 +85,19 @@ def test_time_on_the_clock_alone_stops_nothing(tmp_path: Path) -> None:
 def test_a_crash_is_not_late(tmp_path: Path) -> None:
     first, second = ends(tmp_path, crash, seconds=1.0)
     assert (first.failure, first.late, second.late) == ("crashed with SIGSEGV", False, False)
+
+
+def test_the_command_needs_no_server_beside_it(tmp_path: Path) -> None:
+    script = """
+import sys
+from kinematify.cli.app import run
+from kinematify.validation.isolation import worker_context
+assert run(["validate", sys.argv[1], "--engines", "none"]) == 0
+assert worker_context().get_start_method() == "fork", "a library was loaded that keeps threads"
+"""
+    environment = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
+    words = [sys.executable, "-c", script, str(cabinet().write(tmp_path))]
+    subprocess.run(words, env=environment, check=True, capture_output=True)
 
 
 @pytest.mark.parametrize(("work", "status"), [(spin, 3), (crash, 0)])
