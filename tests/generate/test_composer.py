@@ -115,6 +115,16 @@ def test_a_sliding_door_covers_the_half_that_is_said():
         assert sign * blueprint.joints[0].axis[0] < 0.0, "it slides to the other half"
 
 
+def test_two_sliding_doors_pass_each_other():
+    blueprint = from_text("a kiosk with two sliding doors").build()
+    left, right = (part.bounds for part in blueprint.parts[1:])
+    assert left[:, 2] == pytest.approx(right[:, 2]), "side by side"
+    assert left[1, 0] < right[0, 0]
+    for values in ({"sliding_door_1": 0.9}, {"sliding_door_2": 0.9}, {"sliding_door_1": 0.5, "sliding_door_2": 0.5}):
+        reach = {joint.child: joint.upper for joint in blueprint.joints}
+        assert not overlaps(blueprint.moved({name: share * reach[name] for name, share in values.items()}))
+
+
 def test_how_parts_move_is_read_against_what_is_built():
     for said in (
         "a flap that folds down",

@@ -148,6 +148,7 @@ def compose(
             half=item.side if item.mechanism.halves else "",
             hinge=item.hinge,
             members=item.members,
+            beside=item.count if item.mechanism.halves else 1,
             index=here[name_of_side, word],
         )
         here[name_of_side, word] += 1
@@ -395,8 +396,11 @@ def _bands(wanted: Sequence[Wanted]) -> list[tuple[float, list[Wanted]]]:
             found.append((max(item.mechanism.weight for item in controls), controls))
         if standing := by_kind["row"]:
             found.append((3.0, standing))
-        stacked = [replace(item, count=1) for item in by_kind["stack"] for _ in range(item.count)]
-        found += [(item.mechanism.weight, [item]) for item in stacked]
+        for item in by_kind["stack"]:
+            in_a_row = item.mechanism.halves and not item.side
+            found += [(item.mechanism.weight, [replace(item, count=item.count if in_a_row else 1)])] * (
+                1 if in_a_row else item.count
+            )
         if trodden := by_kind["foot"]:
             found.append((trodden[0].mechanism.weight, trodden))
     return found

@@ -66,30 +66,41 @@ def _lid(place: Place) -> None:
 
 
 def _shutter(place: Place) -> None:
-    """A panel between two rails covers the left half of its area, or the right one if so said, and slides aside."""
-    area, gap, workshop = place.area, place.clearance, place.workshop
+    """A panel between two rails covers the left half of its area, or the right one if so said, and slides aside.
+
+    Several cover one area each, on two tracks one behind the other, and slide before or behind their neighbours.
+    """
+    area, gap, workshop, several = place.area, place.clearance, place.workshop, place.beside > 1
     thick, rail = min(area.wall, 0.02), min(0.012, 0.1 * area.height)
-    middle = 0.5 * (area.left + area.right)
+    middle, track = 0.5 * (area.left + area.right), place.index % 2
     way, side = (-1.0, area.right) if place.half == "right" else (1.0, area.left)
     low, high = sorted((side, middle))
+    if several:
+        way, low, high = 1.0 if place.index == 0 else -1.0, area.left, area.right
     if place.hollow:
         behind = replace(area, left=low, right=high, bottom=area.bottom + rail, top=area.top - rail)
         place.workshop.cut(BODY, room(behind))
-    front = -2.0 * gap - thick
+    deep = thick + 2.0 * gap  # of a track
+    front = -deep * (1 + several)
     for edge, sign in ((area.bottom, 1.0), (area.top, -1.0)):
         inner, lip = edge + sign * 0.5 * rail, edge + sign * rail
         for start, end, level in ((front - 0.006, 1e-3, inner), (front - 0.006, front, lip)):
             under, over = sorted((edge, level))
             workshop.add(BODY, box((area.left, start, under), (area.right, end, over)))
     bottom, top = area.bottom + 0.5 * rail + gap, area.top - 0.5 * rail - gap
-    panel = box((low, -gap - thick, bottom), (high, -gap, top))
-    x, z = middle - way * min(0.05, 0.2 * area.width), place.middle[2]
-    grip = box((x - 0.008, front - 0.03, z - 0.06), (x + 0.008, -gap - 1e-3, z + 0.06))
-    if area.height < 0.25:
-        grip = cylinder(0.15 * area.height, (x, -gap - 1e-3, z), (x, front - 0.02, z))
-    workshop.body(place.name, panel, grip)
-    travel = 0.95 * 0.5 * area.width
-    workshop.slides(place.name, BODY, (way, 0, 0), place.middle, (0.0, travel), rest=place.fitting.rest)
+    back = -gap - deep * track
+    panel = box((low + 0.5 * gap, back - thick, bottom), (high - 0.5 * gap, back, top))
+    x, z = (high if way > 0.0 else low) - way * min(0.05, 0.2 * area.width), place.middle[2]
+    if several:  # what stands out would stop its neighbour
+        x = low + high - x
+        panel -= cylinder(min(0.02, 0.1 * area.width), (x, back - 2.0 * thick, z), (x, back - 0.6 * thick, z))
+        workshop.body(place.name, panel)
+    else:
+        grip = box((x - 0.008, front - 0.03, z - 0.06), (x + 0.008, -gap - 1e-3, z + 0.06))
+        if area.height < 0.25:
+            grip = cylinder(0.15 * area.height, (x, -gap - 1e-3, z), (x, front - 0.02, z))
+        workshop.body(place.name, panel, grip)
+    workshop.slides(place.name, BODY, (way, 0, 0), place.middle, (0.0, 0.95 * (high - low)), rest=place.fitting.rest)
 
 
 def _sash(place: Place) -> None:

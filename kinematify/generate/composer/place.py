@@ -47,6 +47,8 @@ class Place:
     """``left`` or ``right`` where that is said of a door."""
     members: int = 0
     """How many blades and the like are asked for; 0: as usual."""
+    beside: int = 1
+    """How many sliding doors stand in its row."""
     index: int
     """Among those of its kind on the side, from 0."""
 
