@@ -36,6 +36,7 @@ SETS = {
     "walked_in": "sixty of people who walk in, committed before they were tried",
     "first_sight": "sixty more of people who walk in, committed before anything was added, tried after",
     "passers_by": "sixty more of people who walk in, committed before the parser was opened again, tried after",
+    "drop_ins": "sixty more of people who walk in, committed after that was mended and before they were tried",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }

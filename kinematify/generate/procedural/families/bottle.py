@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box, cylinder, turned
 
@@ -110,22 +110,11 @@ def _flip(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="bottle",
     title="bottle with a cap",
-    words=(
-        "bottle",
-        "water bottle",
-        "wine bottle",
-        "drinking bottle",
-        "flask",
-        "milk bottle",
-        "bottle of water",
-        "thermos",
-        "thermos flask",
-        "vacuum flask",
-        "perfume bottle",
-        "sports bottle",
-        "shampoo bottle",
-        "ketchup bottle",
-        "medicine bottle",
+    words=phrases(
+        "bottle, water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, "
+        "thermos flask, vacuum flask, perfume bottle, sports bottle, shampoo bottle, ketchup bottle, "
+        "medicine bottle, baby bottle, oil bottle, glass bottle, beer bottle, vinegar bottle, vial, "
+        "soda bottle, juice bottle"
     ),
     material="plastic",
     parameters=(

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, share
+from kinematify.generate.procedural.parameter import choice, length, phrases, share
 from kinematify.generate.procedural.solids import bore, cylinder, ring, turned, union
 
 if TYPE_CHECKING:
@@ -78,7 +78,10 @@ def _vessel(values: Values) -> Manifold:
 FAMILY = Family(
     name="bucket",
     title="bucket",
-    words=("bucket", "pail", "water bucket", "paint bucket", "cleaning bucket", "mop bucket"),
+    words=phrases(
+        "bucket, pail, water bucket, paint bucket, cleaning bucket, mop bucket, sand bucket, "
+        "champagne bucket, feed bucket, milk pail, beach bucket, toy bucket, slop bucket"
+    ),
     material="plastic",
     parameters=(
         length(

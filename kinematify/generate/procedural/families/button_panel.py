@@ -62,6 +62,7 @@ FAMILY = Family(
     words=phrases(
         "button panel, keypad, control panel, push button panel, number pad, elevator panel, key pad, "
         "remote control, calculator"
+        ", numeric pad, lift panel, elevator button panel, call panel"
     ),
     material="plastic",
     parameters=(

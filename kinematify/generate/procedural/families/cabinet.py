@@ -97,6 +97,7 @@ FAMILY = Family(
         "bedside table, drawer unit, commode, locker, bookcase, shelf, pantry, credenza, kitchen unit, base unit, "
         "wall unit, tv stand, tv unit, tallboy, storage unit, filing cabinet, file cabinet, bureau, chiffonier, "
         "vitrine, armoire"
+        ", drawer cabinet, tool drawer cabinet, shoe cupboard, toy shelf, book cabinet"
     ),
     material="wood",
     kinds=_KINDS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, share
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases, share
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, off
 
 if TYPE_CHECKING:
@@ -77,15 +77,9 @@ def _hand(dial: float, kind: int, hub: float, level: float) -> Manifold:
 FAMILY = Family(
     name="clock",
     title="clock",
-    words=(
-        "clock",
-        "wall clock",
-        "kitchen clock",
-        "station clock",
-        "table clock",
-        "analog clock",
-        "watch",
-        "alarm clock",
+    words=phrases(
+        "clock, wall clock, kitchen clock, station clock, table clock, analog clock, watch, alarm clock, "
+        "wristwatch, pocket watch, desk clock, office clock, school clock, hallway clock, mantel clock"
     ),
     material="plastic",
     parameters=(

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, room
@@ -156,14 +156,9 @@ def _add_buttons(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="coffee_machine",
     title="coffee machine",
-    words=(
-        "coffee machine",
-        "coffee maker",
-        "espresso machine",
-        "coffeemaker",
-        "coffee brewer",
-        "coffee pot",
-        "espresso maker",
+    words=phrases(
+        "coffee machine, coffee maker, espresso machine, coffeemaker, coffee brewer, coffee pot, "
+        "espresso maker, filter coffee machine, drip coffee maker, coffee brewing machine"
     ),
     material="plastic",
     parameters=(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, off, rod, union
@@ -168,7 +168,10 @@ def _tube(half: float, start: float, end: float, inner: float, deep: float) -> M
 FAMILY = Family(
     name="crane",
     title="crane",
-    words=("crane", "tower crane", "mobile crane", "construction crane", "hoist", "toy crane"),
+    words=phrases(
+        "crane, tower crane, mobile crane, construction crane, hoist, toy crane, harbor crane, dock crane, "
+        "truck crane, toy tower crane, building crane"
+    ),
     material="steel",
     parameters=(
         choice(

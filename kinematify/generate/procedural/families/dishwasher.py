@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, share
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases, share
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
@@ -95,7 +95,7 @@ def _basket(lower: tuple[float, float, float], upper: tuple[float, float, float]
 FAMILY = Family(
     name="dishwasher",
     title="dishwasher",
-    words=("dishwasher", "dish washer", "dish washing machine"),
+    words=phrases("dishwasher, dish washer, dish washing machine"),
     material="metal",
     parameters=(
         length("width", 0.6, (0.4, 1.0), "Outer width.", usual=(0.45, 0.62)),

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob, add_lever
 from kinematify.generate.procedural.pieces.handles import handle
@@ -160,18 +160,10 @@ def _add_folding_barrels(
 FAMILY = Family(
     name="door",
     title="door",
-    words=(
-        "door",
-        "doorway",
-        "gate",
-        "garden gate",
-        "front door",
-        "house door",
-        "interior door",
-        "room door",
-        "baby gate",
-        "safety gate",
-        "yard gate",
+    words=phrases(
+        "door, doorway, gate, garden gate, front door, house door, interior door, room door, baby gate, "
+        "safety gate, yard gate, fence gate, cellar door, closet door, shower door, entrance door, "
+        "back door, office door, cell door, side gate, picket gate"
     ),
     material="wood",
     parameters=(

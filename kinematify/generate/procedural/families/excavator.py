@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import bent_fork, room
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
@@ -109,7 +109,10 @@ def _scoop(values: Values, radius: float, start: float) -> Manifold:
 FAMILY = Family(
     name="excavator",
     title="excavator",
-    words=("excavator", "digger", "backhoe", "mini excavator", "power shovel", "toy excavator"),
+    words=phrases(
+        "excavator, digger, backhoe, mini excavator, power shovel, toy excavator, backhoe loader, "
+        "toy digger, trencher, crawler excavator"
+    ),
     material="steel",
     parameters=(
         length("length", 2.6, (1.5, 5.0), "Of the tracks.", usual=(1.6, 4.0)),

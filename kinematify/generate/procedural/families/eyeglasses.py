@@ -126,6 +126,7 @@ FAMILY = Family(
     words=phrases(
         "eyeglasses, glasses, pair of glasses, pair of eyeglasses, spectacles, pair of spectacles, sunglasses, "
         "pair of sunglasses, reading glasses"
+        ", safety glasses, 3d glasses, ski glasses"
     ),
     material="plastic",
     parameters=(

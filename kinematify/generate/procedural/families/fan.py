@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.controls import FRONT, TOP, Mount, add_button, add_knob
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
@@ -149,7 +149,10 @@ def _add_controls(values: Values, workshop: Workshop, place: tuple[float, float,
 FAMILY = Family(
     name="fan",
     title="fan",
-    words=("fan", "ventilator", "blower", "table fan", "floor fan", "desk fan"),
+    words=phrases(
+        "fan, ventilator, blower, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, "
+        "usb fan, electric fan"
+    ),
     material="plastic",
     parameters=(
         choice(

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import fork, room, stub
 from kinematify.generate.procedural.solids import box, cylinder, off, rod, union
 
@@ -101,17 +101,9 @@ def _swivel(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="faucet",
     title="faucet",
-    words=(
-        "faucet",
-        "tap",
-        "water tap",
-        "kitchen tap",
-        "kitchen faucet",
-        "mixer tap",
-        "spigot",
-        "basin tap",
-        "bathroom faucet",
-        "sink faucet",
+    words=phrases(
+        "faucet, tap, water tap, kitchen tap, kitchen faucet, mixer tap, spigot, basin tap, bathroom faucet, "
+        "sink faucet, bath tap, garden tap, sink tap, outdoor tap, shower tap, bathtub faucet, lab tap"
     ),
     material="steel",
     parameters=(

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.solids import bore, box, cylinder
 
 if TYPE_CHECKING:
@@ -87,17 +87,10 @@ def _hang(values: Values, workshop: Workshop, name: str, *, solids: list[Manifol
 FAMILY = Family(
     name="folding_chair",
     title="folding chair",
-    words=(
-        "folding chair",
-        "foldable chair",
-        "camping chair",
-        "collapsible chair",
-        "garden chair",
-        "deck chair",
-        "beach chair",
-        "lawn chair",
-        "patio chair",
-        "director chair",
+    words=phrases(
+        "folding chair, foldable chair, camping chair, collapsible chair, garden chair, deck chair, "
+        "beach chair, lawn chair, patio chair, director chair, fishing chair, garden deck chair, "
+        "picnic chair, folding stool, folding seat"
     ),
     material="wood",
     parameters=(

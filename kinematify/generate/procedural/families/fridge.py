@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
 from kinematify.generate.procedural.solids import box, tray
 
@@ -85,16 +85,8 @@ def _bins(opening: Opening, clearance: float) -> list[Manifold]:
 FAMILY = Family(
     name="fridge",
     title="fridge",
-    words=(
-        "fridge",
-        "refrigerator",
-        "freezer",
-        "fridge freezer",
-        "icebox",
-        "cooler",
-        "minibar",
-        "mini fridge",
-        "kitchen fridge",
+    words=phrases(
+        "fridge, refrigerator, freezer, fridge freezer, icebox, cooler, minibar, mini fridge, kitchen fridge"
     ),
     material="metal",
     parameters=(

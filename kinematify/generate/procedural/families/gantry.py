@@ -64,6 +64,7 @@ FAMILY = Family(
     title="three-axis gantry",
     words=phrases(
         "gantry, three axis gantry, gantry robot, cartesian robot, portal, 3d printer, cnc machine, milling machine"
+        ", cnc router, laser cutter, laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
     ),
     material="metal",
     parameters=(

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import angle, choice, length
+from kinematify.generate.procedural.parameter import angle, choice, length, phrases
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import ball, bore, cylinder, ring, union
 
@@ -76,7 +76,7 @@ def _latitude(radius: float, angle: float) -> Manifold:
 FAMILY = Family(
     name="globe",
     title="globe",
-    words=("globe", "world globe", "earth globe", "desk globe", "terrestrial globe"),
+    words=phrases("globe, world globe, earth globe, desk globe, terrestrial globe"),
     material="plastic",
     part_words={"base": ("stand",)},
     parameters=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def _build(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="gripper",
     title="gripper",
-    words=("gripper", "parallel gripper", "parallel jaw gripper", "claw", "robot gripper", "grasper"),
+    words=phrases("gripper, parallel gripper, parallel jaw gripper, claw, robot gripper, grasper"),
     material="metal",
     parameters=(
         counted("fingers", 2, (2, 6), "Two are parallel jaws.", usual=(2, 4), words="finger, jaw"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import fork, room
 from kinematify.generate.procedural.solids import box, cylinder
 
@@ -51,7 +51,10 @@ def _build(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="hand",
     title="robot hand",
-    words=("hand", "robot hand", "robotic hand", "dexterous hand"),
+    words=phrases(
+        "hand, robot hand, robotic hand, dexterous hand, humanoid hand, prosthetic hand, "
+        "anthropomorphic hand, hand prosthesis, bionic hand"
+    ),
     material="plastic",
     parameters=(
         counted("fingers", 4, (1, 8), "Side by side.", usual=(2, 5), words="finger"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import at
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import ball, cylinder, off
@@ -68,7 +68,10 @@ def _add_leg(values: Values, workshop: Workshop, leg: str, place: FloatArray) ->
 FAMILY = Family(
     name="hexapod",
     title="robot on six legs",
-    words=("hexapod", "six legged robot", "spider robot", "robot spider", "spider", "hexapod robot", "insect robot"),
+    words=phrases(
+        "hexapod, six legged robot, spider robot, robot spider, spider, hexapod robot, insect robot, "
+        "robot ant, robot insect, robotic spider, ant robot, beetle robot, toy spider"
+    ),
     material="plastic",
     parameters=(
         counted("legs", 6, (4, 8), "Around the trunk.", usual=(6, 8), words="leg"),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.limbs import leg_solids, limb_solids
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod
@@ -159,16 +159,10 @@ def _add_arm(values: Values, workshop: Workshop, name: str, sy: int, shoulder: F
 FAMILY = Family(
     name="humanoid",
     title="robot with arms and legs",
-    words=(
-        "humanoid",
-        "humanoid robot",
-        "android",
-        "biped",
-        "bipedal robot",
-        "person shaped robot",
-        "toy robot",
-        "robot toy",
-        "wind up robot",
+    words=phrases(
+        "humanoid, humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, "
+        "wind up robot, robot figure, action figure, wooden mannequin, mannequin, articulated doll, "
+        "robot man, toy humanoid"
     ),
     material="plastic",
     parameters=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.controls import grid
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box
@@ -46,7 +46,10 @@ def _build(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="laptop",
     title="laptop",
-    words=("laptop", "notebook", "notebook computer", "laptop computer", "portable computer"),
+    words=phrases(
+        "laptop, notebook, notebook computer, laptop computer, portable computer, macbook, chromebook, "
+        "netbook, ultrabook, toy laptop"
+    ),
     material="metal",
     part_words={"screen": ("lid", "display")},
     parameters=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
@@ -78,7 +78,7 @@ def _add_controls(values: Values, workshop: Workshop, x: float, front: float) ->
 FAMILY = Family(
     name="microwave",
     title="microwave oven",
-    words=("microwave", "microwave oven"),
+    words=phrases("microwave, microwave oven"),
     material="plastic",
     parameters=(
         length("width", 0.5, (0.4, 0.8), "Outer width.", usual=(0.42, 0.6)),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
@@ -113,7 +113,11 @@ def _armrest(x: float, level: float) -> list[Manifold]:
 FAMILY = Family(
     name="office_chair",
     title="office chair",
-    words=("office chair", "swivel chair", "desk chair", "computer chair", "chair", "task chair", "gaming chair"),
+    words=phrases(
+        "office chair, swivel chair, desk chair, computer chair, chair, task chair, gaming chair, "
+        "drafting chair, conference chair, executive chair, student chair, kids desk chair, revolving chair, "
+        "spinning chair"
+    ),
     material="plastic",
     parameters=(
         counted(

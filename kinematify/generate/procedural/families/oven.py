@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
 from kinematify.generate.procedural.solids import box, cylinder
@@ -73,18 +73,9 @@ def _window(opening: Opening, clearance: float) -> Manifold:
 FAMILY = Family(
     name="oven",
     title="oven or stove",
-    words=(
-        "oven",
-        "stove",
-        "cooker",
-        "range",
-        "kitchen stove",
-        "range cooker",
-        "gas stove",
-        "gas oven",
-        "electric stove",
-        "cooking range",
-        "gas cooker",
+    words=phrases(
+        "oven, stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, "
+        "cooking range, gas cooker"
     ),
     material="metal",
     parameters=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import bore, box, cylinder, ring, turned, union
 
@@ -107,17 +107,9 @@ def _twist(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="pen",
     title="pen",
-    words=(
-        "pen",
-        "ballpoint pen",
-        "ballpoint",
-        "ball pen",
-        "biro",
-        "fountain pen",
-        "felt pen",
-        "marker",
-        "click pen",
-        "retractable pen",
+    words=phrases(
+        "pen, ballpoint pen, ballpoint, ball pen, biro, fountain pen, felt pen, marker, click pen, "
+        "retractable pen, gel pen, rollerball pen, mechanical pencil"
     ),
     material="plastic",
     parameters=(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
 from kinematify.generate.procedural.solids import box, hull, union
 
@@ -70,19 +70,10 @@ def _grooves(values: Values, gap: float, jaw: float) -> list[Manifold]:
 FAMILY = Family(
     name="pliers",
     title="pair of pliers",
-    words=(
-        "pliers",
-        "pair of pliers",
-        "combination pliers",
-        "pincers",
-        "pair of pincers",
-        "wire cutters",
-        "wire cutter",
-        "side cutter",
-        "nippers",
-        "wire stripper",
-        "crimping pliers",
-        "cutting pliers",
+    words=phrases(
+        "pliers, pair of pliers, combination pliers, pincers, pair of pincers, wire cutters, wire cutter, "
+        "side cutter, nippers, wire stripper, crimping pliers, cutting pliers, bolt cutter, bolt cutters, "
+        "cable cutter, lineman pliers, long nose pliers, electrician pliers"
     ),
     material="steel",
     parameters=(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import box, cylinder, off
 
@@ -81,7 +81,10 @@ def _add_leg(
 FAMILY = Family(
     name="quadruped",
     title="robot on four legs",
-    words=("quadruped", "robot dog", "dog robot", "dog", "four legged robot", "quadruped robot"),
+    words=phrases(
+        "quadruped, robot dog, dog robot, dog, four legged robot, quadruped robot, robot cat, robotic dog, "
+        "robot horse, mechanical dog, toy dog"
+    ),
     material="metal",
     parameters=(
         counted("joints", 3, (2, 3), "Of every leg.", usual=(2, 3), words="joint, joint per leg, dof"),

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
 from kinematify.generate.procedural.solids import bore, cylinder, rod
@@ -60,7 +60,9 @@ def _add_lever(values: Values, workshop: Workshop, mount: Mount, length: float) 
 FAMILY = Family(
     name="safe",
     title="safe",
-    words=("safe", "strongbox", "strong box", "vault", "safe box", "money safe"),
+    words=phrases(
+        "safe, strongbox, strong box, vault, safe box, money safe, bank safe, office safe, home safe, hotel room safe"
+    ),
     material="steel",
     parameters=(
         length("width", 0.35, (0.2, 1.2), "Outer width.", usual=(0.28, 0.6)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import length
+from kinematify.generate.procedural.parameter import length, phrases
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
@@ -60,7 +60,7 @@ def _build(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="scara",
     title="SCARA robot",
-    words=("scara", "scara robot", "scara arm"),
+    words=phrases("scara, scara robot, scara arm"),
     material="metal",
     parameters=(
         length("upper_arm", 0.3, (0.15, 1.0), "First link.", usual=(0.2, 0.4)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, share
+from kinematify.generate.procedural.parameter import choice, length, phrases, share
 from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
 from kinematify.generate.procedural.solids import box, hull
 
@@ -70,21 +70,11 @@ def _lever(values: Values, span: Span, *, large: bool) -> Manifold:
 FAMILY = Family(
     name="scissors",
     title="pair of scissors",
-    words=(
-        "scissors",
-        "pair of scissors",
-        "shears",
-        "pair of shears",
-        "kitchen scissors",
-        "garden shears",
-        "pruning shears",
-        "hedge shears",
-        "hedge clippers",
-        "secateurs",
-        "tin snips",
-        "paper scissors",
-        "nail scissors",
-        "poultry shears",
+    words=phrases(
+        "scissors, pair of scissors, shears, pair of shears, kitchen scissors, garden shears, "
+        "pruning shears, hedge shears, hedge clippers, secateurs, tin snips, paper scissors, nail scissors, "
+        "poultry shears, grass shears, bandage scissors, surgical scissors, sewing scissors, hair scissors, "
+        "craft scissors, kids scissors, herb scissors"
     ),
     material="steel",
     parameters=(

@@ -72,6 +72,7 @@ FAMILY = Family(
     title="robot arm",
     words=phrases(
         "robot arm, arm, manipulator, robotic arm, serial arm, articulated arm, industrial robot, axis robot"
+        ", cobot, collaborative robot, welding robot, painting robot, robot manipulator, assembly robot"
     ),
     material="metal",
     parameters=(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length
+from kinematify.generate.procedural.parameter import counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import fork, room
 from kinematify.generate.procedural.solids import cylinder, rod
 
@@ -58,7 +58,10 @@ def _hinge(workshop: Workshop, k: int, x: float, radius: float, clearance: float
 FAMILY = Family(
     name="snake",
     title="snake robot",
-    words=("snake", "snake robot", "worm robot", "chain robot"),
+    words=phrases(
+        "snake, snake robot, worm robot, chain robot, snake arm, caterpillar robot, inchworm robot, "
+        "tentacle, tentacle robot, toy snake"
+    ),
     material="plastic",
     parameters=(
         counted("segments", 8, (2, 40), "In a row.", usual=(4, 10), words="segment, module, link"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _arm(values: Values, half: float, blade: float, axis: tuple[float, float]) -
 FAMILY = Family(
     name="stapler",
     title="stapler",
-    words=("stapler", "desk stapler", "office stapler"),
+    words=phrases("stapler, desk stapler, office stapler, toy stapler, booklet stapler"),
     material="metal",
     parameters=(
         length("length", 0.15, (0.08, 0.3), "Of the base.", usual=(0.11, 0.2)),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
@@ -144,16 +144,9 @@ def _add_wheels(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="suitcase",
     title="suitcase",
-    words=(
-        "suitcase",
-        "trolley case",
-        "luggage",
-        "travel case",
-        "roller suitcase",
-        "carry on",
-        "carry on suitcase",
-        "cabin bag",
-        "rolling suitcase",
+    words=phrases(
+        "suitcase, trolley case, luggage, travel case, roller suitcase, carry on, carry on suitcase, "
+        "cabin bag, rolling suitcase, wheeled suitcase, hand luggage, travel suitcase, travel trolley"
     ),
     material="plastic",
     parameters=(

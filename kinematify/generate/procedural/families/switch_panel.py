@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
 
@@ -81,7 +81,10 @@ def _toggle(half: float, clearance: float) -> tuple[Manifold, Manifold]:
 FAMILY = Family(
     name="switch_panel",
     title="switch panel",
-    words=("switch panel", "light switch", "wall switch", "switch plate", "switch", "switchboard", "dimmer switch"),
+    words=phrases(
+        "switch panel, light switch, wall switch, switch plate, switch, switchboard, dimmer switch, "
+        "toggle switch, rocker switch, double switch plate, lamp switch"
+    ),
     material="plastic",
     parameters=(
         counted(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kinematify.errors import InputError
 from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.layout import parse_layout
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
 from kinematify.generate.procedural.pieces.handles import HANDLES
 from kinematify.generate.procedural.solids import box, union
@@ -107,7 +107,10 @@ def _leg(x: float, y: float, height: float) -> Manifold:
 FAMILY = Family(
     name="table",
     title="table or desk with drawers",
-    words=("table", "desk", "writing desk", "workbench", "console table", "vanity", "side table", "bench table"),
+    words=phrases(
+        "table, desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, "
+        "writing table, school table, reading desk, entrance table"
+    ),
     material="wood",
     parameters=(
         length("width", 1.2, (0.4, 4.0), "Outer width.", usual=(0.8, 1.8)),

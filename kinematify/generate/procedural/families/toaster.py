@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
@@ -82,7 +82,7 @@ def _add_tray(values: Values, workshop: Workshop) -> None:
 FAMILY = Family(
     name="toaster",
     title="toaster",
-    words=("toaster", "bread toaster", "pop up toaster"),
+    words=phrases("toaster, bread toaster, pop up toaster, retro toaster, toy toaster"),
     material="metal",
     parameters=(
         length("width", 0.19, (0.14, 0.5), "Outer width.", usual=(0.16, 0.32)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length
+from kinematify.generate.procedural.parameter import choice, length, phrases
 from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
 
@@ -126,7 +126,7 @@ def _add_flush(values: Values, workshop: Workshop, corner: tuple[float, float]) 
 FAMILY = Family(
     name="toilet",
     title="toilet",
-    words=("toilet", "water closet", "loo", "lavatory", "toilet bowl", "commode toilet"),
+    words=phrases("toilet, water closet, loo, lavatory, toilet bowl, commode toilet, wc, toilet seat, kids toilet"),
     material="ceramic",
     parameters=(
         length("width", 0.4, (0.3, 0.6), "Outer width.", usual=(0.35, 0.45)),

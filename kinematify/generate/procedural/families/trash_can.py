@@ -119,6 +119,7 @@ FAMILY = Family(
     words=phrases(
         "trash can, garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, "
         "pedal bin, wastebasket"
+        ", kitchen bin, recycling can, waste basket, step bin, office bin, litter bin, bathroom bin"
     ),
     material="plastic",
     parameters=(

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.bearings import fork
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, ring, rod
 
@@ -90,15 +90,9 @@ def _add_runner(values: Values, workshop: Workshop, top: float) -> None:
 FAMILY = Family(
     name="umbrella",
     title="umbrella",
-    words=(
-        "umbrella",
-        "parasol",
-        "sunshade",
-        "patio umbrella",
-        "garden umbrella",
-        "beach umbrella",
-        "sun umbrella",
-        "market umbrella",
+    words=phrases(
+        "umbrella, parasol, sunshade, patio umbrella, garden umbrella, beach umbrella, sun umbrella, "
+        "market umbrella, rain umbrella, pocket umbrella, golf umbrella, cocktail umbrella, cafe umbrella"
     ),
     material="metal",
     parameters=(

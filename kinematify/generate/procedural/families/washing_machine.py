@@ -101,6 +101,7 @@ FAMILY = Family(
     words=phrases(
         "washing machine, washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, "
         "front loading washing machine, front loader"
+        ", toy washing machine, laundry washer"
     ),
     material="metal",
     part_words={"door": ("round door", "porthole")},

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length
+from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_lever
 from kinematify.generate.procedural.pieces.leaves import (
     Field,
@@ -135,7 +135,10 @@ def _add_handle(
 FAMILY = Family(
     name="window",
     title="window",
-    words=("window", "skylight", "roof window", "house window", "basement window"),
+    words=phrases(
+        "window, skylight, roof window, house window, basement window, casement window, attic window, "
+        "bathroom window, kitchen window"
+    ),
     material="wood",
     parameters=(
         length("width", 1.0, (0.6, 4.0), "Outer width.", usual=(0.6, 1.6)),
