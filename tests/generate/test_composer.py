@@ -115,6 +115,18 @@ def test_a_sliding_door_covers_the_half_that_is_said():
         assert sign * blueprint.joints[0].axis[0] < 0.0, "it slides to the other half"
 
 
+def test_a_toy_is_small():
+    shed, toy = (from_text(f"{article} shed with a door").build() for article in ("a", "a toy"))
+    assert np.ptp(toy.assembly.bounds, axis=0).max() < 0.3 * np.ptp(shed.assembly.bounds, axis=0).max()
+    assert not overlaps(toy)
+
+
+def test_what_opens_is_not_taken_for_what_is_open():
+    with pytest.raises(InputError, match="open"):
+        from_text("a shed with a door and two windows that open")
+    assert from_text("a shed with a window and a door, half open").build().joints[0].value > 0.0
+
+
 def test_two_sliding_doors_pass_each_other():
     blueprint = from_text("a kiosk with two sliding doors").build()
     left, right = (part.bounds for part in blueprint.parts[1:])

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -162,6 +163,14 @@ def _rail(place: Place) -> None:
     for end in (x - half, x + half):
         place.workshop.add(BODY, *place.workshop.as_handle(rod(0.008, (end, 0.002, z), (end, -out, z))))
     place.workshop.add(BODY, *place.workshop.as_handle(rod(0.01, (x - half, -out, z), (x + half, -out, z))))
+
+
+def _plate(place: Place, material: str, color: str | None = None) -> None:
+    """Something flat on the surface; it belongs to the body."""
+    x, _, z = place.middle
+    wide, high = (min(0.4 * length, 0.3) for length in (place.area.width, place.area.height))
+    plate = box((x - wide, -0.003, z - high), (x + wide, 1e-3, z + high))
+    place.workshop.add(BODY, *place.workshop.painted(plate, material=material, color=color))
 
 
 def _mirror(place: Place) -> None:
@@ -555,7 +564,7 @@ MECHANISMS = (
         ),
         sides=("front",),
         build=_sash,
-        arranged="stack",
+        arranged="row",
         weight=3.0,
         least=(0.12, 0.2),
         needs="opening",
@@ -595,6 +604,26 @@ MECHANISMS = (
         sides=("right", "left", "front", "back"),
         build=_rail,
         least=(0.2, 0.06),
+        moves=False,
+    ),
+    Mechanism(
+        words=phrases("display, digital display, lcd, lcd display, touchscreen, touch screen"),
+        sides=_CONTROLS,
+        build=partial(_plate, material="plastic", color="dark grey"),
+        moves=False,
+    ),
+    Mechanism(
+        words=phrases("window, viewing window, pane, porthole"),
+        sides=("front", "right", "left", "back"),
+        build=partial(_plate, material="mirror"),
+        least=(0.08, 0.08),
+        weight=2.0,
+        moves=False,
+    ),
+    Mechanism(
+        words=phrases("lock, keyhole, letter slot, mail slot, coin slot, sign, label, nameplate"),
+        sides=_CONTROLS,
+        build=partial(_plate, material="metal"),
         moves=False,
     ),
     Mechanism(

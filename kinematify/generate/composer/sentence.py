@@ -55,6 +55,7 @@ _MATERIAL_WORDS = {word: name for name, material in MATERIALS.items() for word i
 _HANDLES = ("handle",)
 _DROPPED = ("up", "down")
 """Behind a part at the end they say that it stands open there."""
+_FLANKS = ("left", "right")
 _SWINGS = ("hinged", "hinge", "hinges", "open", "opens", "opening", "swings", "swinging")
 _BETWEEN = ("to", "on", "at", "the", "its", "from", "towards")
 _GOES = (
@@ -348,6 +349,8 @@ class _Reader:
             return len(words)
         side, taken = self._side(end)
         side = side or look.side
+        if side == "side":
+            side = "" if mechanism.arranged == "axles" else next((s for s in mechanism.sides if s in _FLANKS), "right")
         # What goes on the front alone is at its top or bottom there.
         banded = mechanism.arranged in BANDS and side in ("top", "bottom") and side not in mechanism.sides
         self.wanted.append(
@@ -467,13 +470,10 @@ class _Reader:
     def _openness(self, k: int) -> int:
         """`half open`."""
         texts = self._texts(k)
-        for words, share in _OPENNESS.items():
+        says_that_it_can = self._words.text(k - 1) in ("that", "which", "can")
+        for words, share in _OPENNESS.items() if self._look == _Look() and not says_that_it_can else ():
             # Amid a sentence it would be said of one mechanism alone.
-            if (
-                self._look == _Look()
-                and texts[: len(words)] == words
-                and (self.body is None or k + len(words) == len(self._tokens))
-            ):
+            if texts[: len(words)] == words and (self.body is None or texts == words):
                 self.rest = share
                 return len(words)
         return 0
@@ -538,6 +538,8 @@ class _Reader:
         place = [word for word in words[1:] if word not in ("the", "its")]
         if place[:2] == ["one", "side"] and words[0] == "on":
             return "", 1 + words.index("side")  # all on the same
+        if place[:1] == ["side"] and words[0] in ("on", "at"):
+            return "side", 1 + words.index("side")
         if not place or words[0] not in _PLACED or place[0] not in _SIDES:
             return "", 0
         skipped = words[1:].index(place[0])

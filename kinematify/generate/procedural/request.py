@@ -48,6 +48,8 @@ _AND = re.compile(
     r"(?P<other>(?:an?|one|two|three|four|five|six)\s.*)$",
     re.IGNORECASE,
 )
+_TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
+_TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
 _BESIDE = 0.3  # between what stands side by side [m]
 _LEVEL = 2e-3  # of a surface that something stands on [m]
 _HANDS = ("right_hand", "left_hand", "palm")
@@ -76,6 +78,8 @@ class Request:
     """How many, side by side."""
     other: Request | None = None
     """What it holds, stands on or stands beside."""
+    is_toy: bool = False
+    """It is small: all of it is scaled."""
     how: str = ""
     """``holding``, ``on``, ``carrying`` or ``beside`` the other one."""
 
@@ -89,6 +93,9 @@ class Request:
         if self.copies > 1:
             width = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0)[0])
             blueprint = blueprint.repeated(self.copies, width + _GAP)
+        if self.is_toy:
+            longest = float(np.ptp(_closed(blueprint).assembly.bounds, axis=0).max())
+            blueprint = blueprint.scaled(min(max(_TOY_LENGTH / longest, _TOY_SCALE), 1.0))
         return blueprint if self.other is None else _JOINED[self.how](blueprint, self.other.build(seed=seed))
 
     def _single(self, seed: int | None) -> Blueprint:
@@ -141,9 +148,14 @@ def _read(sentence: str, *, lenient: bool) -> Request:
     try:
         return _read_one(sentence, lenient=False)
     except InputError as reason:
-        several = _read_several(sentence)
-        if several is not None:
+        if (several := _read_several(sentence)) is not None:
             return several
+        if _TOY.search(sentence) and not lenient:
+            try:
+                small = _read(_TOY.sub(" ", sentence, count=1), lenient=False)
+            except InputError:
+                raise reason from None
+            return replace(small, is_toy=True, understood=(*small.understood, "small as a toy"))
         if lenient:
             return _read_one(sentence, lenient=True)
         raise reason from None

@@ -85,8 +85,9 @@ FAMILY = Family(
     name="desk_lamp",
     title="desk lamp",
     words=phrases(
-        "desk lamp, lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light"
-        ", study lamp, bedside lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, anglepoise lamp, workshop lamp"
+        "desk lamp, lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, "
+        "study lamp, bedside lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, "
+        "anglepoise lamp, workshop lamp"
     ),
     material="metal",
     part_words={"arm": ("arm segment", "segment")},

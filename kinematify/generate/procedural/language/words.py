@@ -36,7 +36,7 @@ OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0
 _PURPOSE_TEXT = """
     burner cash crisper cutlery detergent emergency freezer glove main power soap start stop storage vegetable volume
     battery mail coin card ticket cable cup bottle spice fuse inspection service access charging dust filter ash crumb
-    drip bread laundry trash book wine toy cat dog pet side engine water paper tool food feed
+    drip bread laundry trash book wine toy cat dog pet side engine water paper tool food feed paint letter
 """
 PURPOSES = frozenset(_PURPOSE_TEXT.split())
 """What a part is for, right before its noun; it asks for nothing that could be built differently."""
@@ -65,9 +65,10 @@ _PLAIN_TEXT = """
     designed look looking kind type sort brand brushed polished matte glossy shiny painted lacquered varnished worn
     weathered dusty clean well built good great best high quality lightweight portable electric electrical electronic
     manual home family professional commercial domestic sized size motorized motorised hydraulic pneumatic digital
-    outdoor indoor garden patio hallway entryway hotel restaurant shop library basement attic nursery playroom workshop
-    wireless smart colorful colourful comfy stackable bright japanese swedish danish german british italian chinese
-    automatic cordless rechargeable insulated waterproof washable foam padded upholstered handmade custom original
+    outdoor indoor garden patio playground hallway entryway hotel restaurant shop library basement attic nursery
+    playroom workshop wireless smart colorful colourful comfy stackable bright japanese swedish danish german british
+    italian chinese automatic cordless rechargeable insulated waterproof washable foam padded upholstered handmade
+    custom original
 """
 PLAIN_WORDS = frozenset(_PLAIN_TEXT.split())
 """What something is like, where that asks for no shape and no motion; told as of no effect."""
@@ -87,6 +88,8 @@ _WRITTEN = (
     (r"\bw/", "with"),
     ("&", "and"),
     *((rf"\b{body}[ -](?:high|tall)\b", f"{cm} cm tall") for body, cm in _BODY_CM.items()),
+    (r"\b(?<!garage )(doors?|shutters?) (?:that|which) (?:can )?rolls? up\b", r"roll up \1"),
+    (r"\b(?:that|which) stays? open\b", ""),
     (r"\b(doors?|panels?|windows?|lids?|shutters?) (?:that|which) (?:can )?slides?(?: open)?\b", r"sliding \1"),
 )
 """Signs that people write for words."""
