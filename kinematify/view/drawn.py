@@ -47,7 +47,7 @@ class DrawnModel:
         chains: Sequence[ClosedChain],
         clicked: Callable[[str], None],
     ) -> None:
-        """Draw everything in place of what was there.
+        """Draw the bodies in their light, in place of what was there; `add_marks` draws the rest.
 
         Args:
             server: Running.
@@ -60,10 +60,18 @@ class DrawnModel:
         self._glows: dict[str, Any] = {}
         self._axes: dict[str, Any] = {}
         self._dashes: list[Any] = []
+        self._shows_axes = True
+        self.complete = False
+        """Whether everything is drawn."""
         server.scene.reset()
-        self._add_surroundings()
+        self._set_up_view()
         self._add_bodies()
-        for joint in scene.leaders:
+
+    def add_marks(self) -> None:
+        """Draw what the first picture does not need, and would wait for: ground, axes, and where chains close."""
+        self.complete = True
+        self._add_ground()
+        for joint in self._scene.leaders:
             self.draw_axis(joint)
 
     @property
@@ -83,9 +91,10 @@ class DrawnModel:
             for top, frame in self._frames.items():
                 offset = apart.get(top, np.zeros(3))
                 frame.wxyz, frame.position = quaternion_of(poses[top][:3, :3]), poses[top][:3, 3] + offset
-            for joint in self._scene.leaders:
-                self._place_axis(joint, poses, apart)
-            self._draw_chains(poses)
+            for name in self._axes:
+                self._place_axis(self._scene.robot.joint_by_name[name], poses, apart)
+            if self.complete:
+                self._draw_chains(poses)
 
     def show_part(self, top: str, visible: bool) -> None:  # the value of a box
         """Show or hide a part."""
@@ -93,6 +102,7 @@ class DrawnModel:
 
     def show_axes(self, visible: bool) -> None:  # the value of a box
         """Show or hide the axes of all joints."""
+        self._shows_axes = visible
         for handle in self._axes.values():
             handle.visible = visible
 
@@ -100,9 +110,8 @@ class DrawnModel:
         """Draw the axis with the range; it stays with the parent while the joint moves."""
         points = self._scene.glyph(joint)
         color = _AXIS if self._scene.kind_of(joint).turns else _SLIDE
-        self._axes[joint.name] = self._add_lines(
-            f"/axes/{joint.name}", points, color, visible=self._scene.kind_of(joint) is not JointType.FIXED
-        )
+        visible = self._shows_axes and self._scene.kind_of(joint) is not JointType.FIXED
+        self._axes[joint.name] = self._add_lines(f"/axes/{joint.name}", points, color, visible=visible)
 
     def add_gizmo(self, axis: FloatArray, pivot: FloatArray) -> Any:
         """Return a gizmo whose red arrow is an axis, frame of the root link [m], shape (3,) each."""
@@ -146,16 +155,21 @@ class DrawnModel:
     def _clicked(self, top: str, _: Any) -> None:
         self._on_click(top)
 
-    def _add_surroundings(self) -> None:
-        """Ground, light, and the first look: from the side towards which the parts move."""
-        scene, size = self._server.scene, self._scene.size
+    def _set_up_view(self) -> None:
+        """Light, and the first look: from the side towards which the parts move."""
+        scene = self._server.scene
         scene.set_up_direction("+z")
+        scene.configure_default_lights(enabled=True, cast_shadow=True)
         eye, target = self._scene.camera
         camera = self._server.initial_camera
         camera.position, camera.look_at, camera.up = tuple(eye), tuple(target), (0.0, 0.0, 1.0)
-        camera.near = 1e-3 * size
+        camera.near = 1e-3 * self._scene.size
+
+    def _add_ground(self) -> None:
+        size = self._scene.size
+        _, target = self._scene.camera
         cell = 10.0 ** math.floor(math.log10(max(size, 1e-6)) - 0.5)
-        scene.add_grid(
+        self._server.scene.add_grid(
             "/ground",
             width=4.0 * size,
             height=4.0 * size,
@@ -169,7 +183,6 @@ class DrawnModel:
             shadow_opacity=0.2,
             position=(float(target[0]), float(target[1]), self._scene.ground - 1e-3 * size),
         )
-        scene.configure_default_lights(enabled=True, cast_shadow=True)
 
     def _add_bodies(self) -> None:
         for top, surfaces in self._scene.surfaces.items():

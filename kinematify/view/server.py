@@ -32,8 +32,9 @@ _CHOSEN, _MARKED, _WRONG = (66, 133, 244), (245, 166, 35), (219, 40, 40)
 """Of the part whose joint is chosen, of what a finding is about, and of what collides."""
 _FRAME = 1.0 / 30.0
 _SWEEP_SECONDS = 4.0
-_HEAD_START = 2.5
-"""That the page has before collisions are looked for, which keeps a processor busy for a second at first [s]."""
+_HEAD_START = 1.5
+"""That the first client has for its first picture, before more is drawn and collisions are looked for, which keeps a
+processor busy for a second [s]."""
 _PICTURE = (1600, 1200)
 
 
@@ -117,9 +118,11 @@ class ModelViewer:
 
     def run(self, stop: threading.Event) -> None:
         """Sweep what is to be swept and look for collisions until told to stop."""
-        begun = start = time.monotonic()
-        last = ""
+        start, last = time.monotonic(), ""
+        first: float | None = None
         while not stop.wait(_FRAME):
+            if first is None and self._server.get_clients():
+                first = time.monotonic()
             name = self._sweeping
             if name is not None:
                 if name != last:
@@ -128,8 +131,16 @@ class ModelViewer:
                 lower, upper = self._scene.range_of(self._scene.robot.joint_by_name[name])
                 self.set({name: float(lower + share * (upper - lower))})
             last = name or ""
-            if self._stale and time.monotonic() - begun > _HEAD_START:
-                self._look_for_collisions()
+            if first is not None and time.monotonic() - first > _HEAD_START:
+                self._add_marks()
+                if self._stale:
+                    self.look_for_collisions()
+
+    def _add_marks(self) -> None:
+        with self._lock:
+            if not self._drawn.complete:
+                self._drawn.add_marks()
+                self._drawn.place(self._q, self._apart)
 
     def choose(self, joint: str) -> None:
         """Let the part of a joint glow, and show what is known of the joint."""
@@ -348,7 +359,8 @@ class ModelViewer:
         self._drawn.place(self._q, self._apart)
         self._stale = True
 
-    def _look_for_collisions(self) -> None:
+    def look_for_collisions(self) -> None:
+        """Say what collides where the joints stand, and let it glow."""
         try:
             self._scene.prepare_collisions()  # not in the lock, for which sliders would wait
         except KinematifyError as error:

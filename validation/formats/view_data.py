@@ -7,7 +7,6 @@ import colorsys
 import math
 from typing import TYPE_CHECKING, Any
 
-import fast_simplification
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
@@ -155,6 +154,8 @@ def _decimated(vertices: FloatArray, faces: IntArray, *, share: float) -> tuple[
     wanted = max(_FEWEST, int(share * len(faces)))
     if len(faces) <= wanted:
         return vertices, faces
+    import fast_simplification  # noqa: PLC0415  # `kinematify view` starts without it
+
     unique, index = np.unique(vertices, axis=0, return_inverse=True)
     welded = index.reshape(-1)[faces]
     points, fewer = fast_simplification.simplify(unique, welded, target_count=wanted)
