@@ -95,7 +95,7 @@ def broken_sources(sources: Sequence[Source]) -> list[Source]:
     return [
         replace(source, broken=True)
         for source in sources
-        if source.folder is not None or (source.origin in (PROGRAMMED, DESCRIBED) and source.number < _BROKEN_ROUNDS)
+        if source.folder is not None or (source.origin == PROGRAMMED and source.number < _BROKEN_ROUNDS)
     ]
 
 
