@@ -1,4 +1,7 @@
-"""What the choice is fitted to and judged on: generated objects in ways of modelling, random mechanisms, real ones."""
+"""What the choice is fitted to and judged on: generated objects in ways of modelling, random mechanisms, real ones.
+
+Objects that files describe judge alone: with them in the fit, no more that was left out is right (results/choice.md).
+"""
 
 from __future__ import annotations
 
@@ -273,7 +276,7 @@ def _generated(source: Source, seed: int) -> _Opened:
         truth=ground_truth(blueprint),
         category=category,
         source=source.origin,
-        fits=True,
+        fits=source.origin != DESCRIBED,
         style=str(blueprint.parameters.get("modelled", "")),
     )
 

@@ -41,7 +41,7 @@ _Kind = TypeVar("_Kind", "Example", "TreeExample")
 _FOLDS = 5
 _GENERATED_SETS = {
     FAMILY: "families",
-    DESCRIBED: "objects that files describe",
+    DESCRIBED: "objects that files describe: never fitted to",
     PROGRAMMED: "objects as people program them",
     COMPOSED: "random mechanisms",
 }

@@ -53,7 +53,7 @@ _TURNING_ROUNDS = 120
 _PROPOSED = 0.2  # how right the best hypothesis must be, for its measurements to be those of the true joint
 _FIXED_SHARE = 0.5
 """Weight of all fixed parts together beside all others."""
-_SHARE = {"family": 0.6, "described": 0.6, "programmed": 0.6, "composed": 0.05}
+_SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
 """Weight of an example of such an origin beside one of a real object."""
 
 
