@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config.validation import EngineSettings
+    from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mechanism import Travel
     from kinematify.robot.robot import Robot
@@ -74,6 +75,28 @@ class EngineContext:
     def prepared(self) -> Prepared:
         """What the engine is given."""
         return load_prepared(self.request.work)
+
+    @cached_property
+    def surfaces(self) -> Scene:
+        """What the file declares to collide; engines do without, and only drives that are stopped ask for it."""
+        from kinematify.geometry.scene import read_scene  # noqa: PLC0415 - for these only
+
+        return read_scene(self._whole, self.request.settings.geometry)
+
+    @cached_property
+    def visible_surfaces(self) -> Scene | None:
+        """What is visible; None where it is what collides."""
+        from kinematify.geometry.scene import read_scene, simplified, visible_shapes  # noqa: PLC0415
+
+        if not simplified(self._whole):
+            return None
+        return read_scene(self._whole, self.request.settings.geometry, visible_shapes)
+
+    @cached_property
+    def _whole(self) -> Robot:
+        from kinematify.validation.left_model import model_of  # noqa: PLC0415
+
+        return model_of(self.request)
 
     @cached_property
     def mechanism(self) -> Mechanism:

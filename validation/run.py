@@ -258,7 +258,8 @@ class _Run:
         told = [self._result(key) for key in keys(list(self.checks.values()))]
         results = evidence_before_blame(shown_as_loaded(across_engines(told, self.engines)))
         checks = suppress([self._with_command(result, settings) for result in results], suppressions)
-        checks = with_causes(checks, _bodies(self.path))
+        robot = _bodies(self.path)
+        checks = with_causes(checks, robot)
         facts = environment(
             settings, seconds=time.perf_counter() - self._started, interrupted=self.interrupted, engines=self.engines
         )
@@ -266,12 +267,17 @@ class _Run:
         return ValidationReport(
             model=str(self.path),
             checks=checks,
-            joints=with_next_best(self._joints.values(), checks, inferred),
+            joints=with_next_best(self._in_order(robot), checks, inferred),
             refinement=None if inferred is None else inferred.refinement,
             curves=tuple(sorted(self._curves, key=lambda curve: curve.engine)),  # they come in as stages end
             pairs=self._pairs,
             environment=facts,
         )
+
+    def _in_order(self, robot: Robot | None) -> list[JointSummary]:
+        """Joints as the file names them: they come in as stages end."""
+        place = {joint.name: number for number, joint in enumerate(() if robot is None else robot.joints)}
+        return sorted(self._joints.values(), key=lambda item: place.get(item.joint, len(place)))
 
     def _take(self, told: CheckResult | Summary) -> None:
         if isinstance(told, JointSummary):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from kinematify.robot.robot import Inertial, rigid_groups
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.config import ModelConfig
     from kinematify.config.validation import PrepareSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Link, Robot, Shape
@@ -108,8 +110,13 @@ def _with_made_up_tensor(link: Link, declared: Inertial, settings: PrepareSettin
     )
 
 
+@cache
+def _densities() -> ModelConfig:
+    return load_config().model
+
+
 def _from_geometry(part: Part) -> PreparedInertial:
-    config = load_config().model
+    config = _densities()
     solid = inertial_of(part, np.zeros(3), thickness=config.min_thickness * part.diagonal, config=config)
     return PreparedInertial(
         mass=solid.mass,

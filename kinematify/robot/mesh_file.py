@@ -41,6 +41,9 @@ TO_Z_UP = {
     "Y_UP": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]),
 }
 """Axis that a COLLADA file may state as the one that points up -> rotation that turns it to z."""
+_STL_HEADER = 84
+"""Bytes before the triangles of a binary STL; the last four are their number."""
+_STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -163,6 +166,17 @@ def _read_obj(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
     _check_indices(meshes)
     # Every group keeps its own vertices only: with thousands of groups the copies would fill the memory.
     return tuple(compacted(mesh) for mesh in meshes) if len(meshes) > 1 else meshes
+
+
+def _read_stl(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
+    """Nearly all are binary, and those need no trimesh; it tells what is wrong with others."""
+    content = path.read_bytes()
+    count = int.from_bytes(content[80:84], "little")
+    if not count or len(content) != _STL_HEADER + count * _STL_TRIANGLE.itemsize:
+        return _read_scene(path, appearance)
+    corners = np.frombuffer(content, _STL_TRIANGLE, offset=_STL_HEADER)["corners"].reshape(-1, 3)
+    faces = np.arange(3 * count, dtype=np.int64).reshape(-1, 3)
+    return (RawMesh(name=path.name, vertices=corners.astype(np.float64), faces=faces),)
 
 
 def _read_gltf(path: Path, appearance: bool) -> tuple[RawMesh, ...]:
@@ -303,7 +317,8 @@ def _collada_holders(node: Any, holder: _Holder) -> Iterator[_Holder]:
 
 _READERS = {
     ".obj": _read_obj,
+    ".stl": _read_stl,
     **dict.fromkeys(GLTF_SUFFIXES, _read_gltf),
     **dict.fromkeys(CAD_SUFFIXES, _read_step),
 }
-"""Formats whose groups, names or exact numbers the general reader would lose."""
+"""Formats whose groups, names or exact numbers the general reader would lose, or that need none of it."""

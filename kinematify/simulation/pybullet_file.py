@@ -116,7 +116,7 @@ class PybulletFile:
         """A world as it was after loading, with the joints at `values`; its motors too where that is asked for."""
         world = self._worlds.get(contacts)
         if world is None or (as_loaded and world.pushed):
-            world = self._worlds[contacts] = _World(self._path, contacts=contacts)
+            world = self._worlds[contacts] = _World(self._path, contacts=contacts, seen=False)
         bullet.restoreState(world.state, physicsClientId=world.client)
         for name, k in self._index.items():
             world.do(bullet.resetJointState, k, values[name])
@@ -297,11 +297,13 @@ def _chain(above: Mapping[int, int], link: int) -> list[int]:
 class _World:
     """A world with one file in it."""
 
-    def __init__(self, urdf: Path, *, contacts: bool) -> None:
+    def __init__(self, urdf: Path, *, contacts: bool, seen: bool = True) -> None:
+        """Load a file; `seen`: with its visual geometry, which takes nearly all of the time and moves nothing."""
         self.client, self.pushed = bullet.connect(bullet.DIRECT), False
         weakref.finalize(self, bullet.disconnect, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=self.client)
         flags = bullet.URDF_USE_SELF_COLLISION if contacts else 0
+        flags |= 0 if seen else bullet.URDF_IGNORE_VISUAL_SHAPES
         try:
             self.body = bullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
         except bullet.error as error:

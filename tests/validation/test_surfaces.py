@@ -12,6 +12,7 @@ from kinematify.config.validation import load_settings
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import box
+from kinematify.geometry.scene import read_scene
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
 from kinematify.robot.mechanism import Mechanism
@@ -41,12 +42,12 @@ def test_a_bar_is_stopped_by_the_end_of_its_slit_alone(slit: Path, depth: float,
     model = read_robot(slit)
     rows = np.linspace(0.0, depth, 20)[:, None]
     assert Mechanism(robot=model).rest == 0.0
-    assert surfaces_meet(model, ("wall", "bar"), rows, tolerance=0.001, settings=GEOMETRY) is meet
+    assert surfaces_meet(read_scene(model, GEOMETRY), ("wall", "bar"), rows, tolerance=0.001) is meet
 
 
 def test_without_surfaces_the_pieces_have_the_last_word(slit: Path) -> None:
-    bare = read_robot(slit, geometry="none")
-    assert surfaces_meet(bare, ("wall", "bar"), np.zeros((2, 1)), tolerance=0.001, settings=GEOMETRY)
+    bare = read_scene(read_robot(slit, geometry="none"), GEOMETRY)
+    assert surfaces_meet(bare, ("wall", "bar"), np.zeros((2, 1)), tolerance=0.001)
 
 
 def test_a_lever_that_only_pieces_stop_is_no_error(tmp_path: Path) -> None:

@@ -193,20 +193,16 @@ def _surfaces(context: EngineContext, driven: Driven, pair: tuple[str, str], *, 
     Returns:
         For those that collide; and for what is visible too, since collision shapes are often stubs or swollen.
     """
-    from kinematify.geometry.scene import simplified, visible_shapes  # noqa: PLC0415 - exact geometry takes a while
-    from kinematify.validation.geometry.surfaces import surfaces_meet  # noqa: PLC0415 - as above
-    from kinematify.validation.left_model import model_of  # noqa: PLC0415 - as above
+    from kinematify.validation.geometry.surfaces import surfaces_meet  # noqa: PLC0415 - exact geometry takes a while
 
     leader, (_, values) = driven.drive.leader, context.excess_towards(driven)
     away = np.abs(values - context.travel(driven).rest)
     way = np.argsort(away)[: 1 + int(np.count_nonzero(away < abs(until - context.travel(driven).rest)))]
     rows = np.tile(context.mechanism.rest, (1 + len(way), 1))
     rows[1:, leader] = values[way]
-    declared = model_of(context.request)  # the engines themselves do without surfaces
-    geometry = context.request.settings.geometry
-    ask = partial(surfaces_meet, declared, pair, rows, tolerance=context.drives.sweep.tolerance, settings=geometry)
-    real = ask()
-    return real, real and (not simplified(declared) or ask(shapes_of=visible_shapes))
+    ask = partial(surfaces_meet, links=pair, leaders=rows, tolerance=context.drives.sweep.tolerance)
+    real = ask(context.surfaces)
+    return real, real and (context.visible_surfaces is None or ask(context.visible_surfaces))
 
 
 def _buried(context: EngineContext, index: int) -> bool:
