@@ -58,11 +58,6 @@ _DROPPED = ("up", "down")
 _FLANKS = ("left", "right")
 _SWINGS = ("hinged", "hinge", "hinges", "open", "opens", "opening", "swings", "swinging")
 _BETWEEN = ("to", "on", "at", "the", "its", "from", "towards")
-_GOES = (
-    ("goes", "up", "and", "down"), ("go", "up", "and", "down"), ("goes", "up"), ("moves", "up", "and", "down"),
-)  # fmt: skip
-"""What is said of a body of which something rises, longest first."""
-_RISING = ("desktop", "lifting platform", "telescope")
 _SHAPES = tuple({body.build: body.words[0] for body in reversed(BODIES)}.values())[::-1]
 """One body of each shape, for messages."""
 _ENDS = ("front", "back", "rear")
@@ -85,8 +80,6 @@ class _Look:
     count: int | None = None
     material: str | None = None
     color: str | None = None
-    motion: str = ""
-    """Of `MOTIONS`."""
     side: str = ""
     """Of `FACING`."""
 
@@ -109,8 +102,6 @@ def read_composition(sentence: str) -> Composition:
     if reader.handles is not None and not any(item.mechanism.has_grip for item in reader.wanted):
         reader.left.append("handles")
     wanted = (*reader.wanted, *_taken_for_granted(reader))
-    if reader.rises and not any(item.mechanism.words[0] in _RISING for item in wanted):
-        reader.left.append(reader.rises)
     if reader.hinge and not any(item.hinge for item in wanted):
         reader.left.append(f"opens to the {reader.hinge}")
     if reader.left:
@@ -259,8 +250,6 @@ class _Reader:
         self.scale = 1.0
         self.hinge = ""
         """Side of the doors that nobody named."""
-        self.rises = ""
-        """Words that say that something of it goes up."""
         self.left: list[str] = []
         """Words that cannot be understood here, as they were written."""
         self.unread: list[int] = []
@@ -277,10 +266,12 @@ class _Reader:
             steps = (
                 self._length, self._hinged, self._opened, self._detail, self._mechanism, self._named_body,
                 self._openness, self._look_of_body, self._described, self._counted,
-                self._purpose, self._roughly, self._rises,
+                self._purpose, self._roughly,
             )  # fmt: skip
             taken = next((words for step in steps if (words := step(k))), 0)
-            if not taken and not self._says_nothing(self._tokens[k]):
+            if not taken and self._tokens[k].text in MOTIONS:
+                self.unread.append(k)
+            elif not taken and not self._says_nothing(self._tokens[k]):
                 self._described_so_far()  # of a noun that is not known here
                 self.unread += [*self._looking, k]
             if self._look == _Look():
@@ -364,11 +355,6 @@ class _Reader:
                 color=look.color,
             )
         )
-        if look.motion:
-            said = f"{look.motion} {' '.join(words)}"
-            self.requirements.append(
-                PartRequirement(nouns=(self.wanted[-1].stem,), words=said, moves=MOTIONS[look.motion])
-            )
         return len(words) + taken
 
     def _known(self) -> Mapping[tuple[str, ...], Mechanism]:
@@ -376,14 +362,6 @@ class _Reader:
         says = self.body.says if self.body is not None else {}
         own = {tuple(word.split()): _mechanisms()[tuple(kind.split())] for word, kind in says.items()}
         return {**own, **{words: kind for words, kind in _mechanisms().items() if words not in own}}
-
-    def _rises(self, k: int) -> int:
-        """`that goes up and down`: something of it does."""
-        words = next((words for words in _GOES if self._texts(k)[: len(words)] == words), ())
-        if words and self._look == _Look():
-            self.rises = " ".join(words)
-            return len(words)
-        return 0
 
     def _detail(self, k: int) -> int:
         """`with two handles`, which this body has anyway; `with five blades`, of the rotor that it has or just got."""
@@ -463,8 +441,8 @@ class _Reader:
         its_part = _longest(self._texts(k + len(words)), _mechanisms())
         if its_part is not None:  # a cabinet door is no cabinet
             self.left.append(" ".join((*words, *its_part[0])))
-        if not 1 <= self.copies <= MOST_COPIES or self.of_body.motion:
-            self.left.append(f"{self.of_body.count or self.of_body.motion} {' '.join(words)}")
+        if not 1 <= self.copies <= MOST_COPIES:
+            self.left.append(f"{self.of_body.count} {' '.join(words)}")
         return len(words)
 
     def _openness(self, k: int) -> int:
@@ -486,7 +464,7 @@ class _Reader:
         while taken := self._described(end):
             end += taken
         look = self._described_so_far()
-        twice = (look.color and self.of_body.color) or (look.material and self.of_body.material) or look.motion
+        twice = (look.color and self.of_body.color) or (look.material and self.of_body.material)
         if end == k or (end < len(self._tokens) and not self._tokens[end].is_sign) or twice:
             return 0
         self.of_body.color = look.color or self.of_body.color
@@ -507,9 +485,6 @@ class _Reader:
                 return length
         if texts and texts[0] in _MATERIAL_WORDS and self._look.material is None:
             self._look.material = _MATERIAL_WORDS[texts[0]]
-            return 1
-        if texts[:1] and texts[0] in MOTIONS and not self._look.motion:
-            self._look.motion = texts[0]
             return 1
         if texts[:1] and texts[0] in _ENDS and self._has_noun_behind(k) and not self._look.side:
             self._look.side = _SIDES[texts[0]]

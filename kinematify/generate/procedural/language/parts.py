@@ -65,7 +65,7 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "turns": lambda made, joint: joint.kind.turns,
     "swings": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "tilts": lambda made, joint: joint.kind is JointType.REVOLUTE and abs(joint.axis[2]) < _SLANT,
-    "flips": lambda made, joint: joint.kind.turns and abs(joint.axis[2]) < _SLANT and "wheel" not in joint.child,
+    "flips": lambda made, joint: joint.kind.turns and abs(joint.axis[2]) < _SLANT,
     "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
     "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "moves": lambda made, joint: joint.kind is not JointType.FIXED,
@@ -216,7 +216,7 @@ class PartReader:
     def _movement_of_some_part(self) -> None:
         """`a fan that oscillates`, `a swivel chair`: the one part of a name does; ribs do not tilt an umbrella."""
         names = Counter(_stem(part.name) for part in self.made.parts)
-        for k, token in enumerate(self.reading.tokens):
+        for k in range(len(self.reading.tokens)):
             behind = self.reading.text(k - 1) in ("that", "which", "be")
             said = self._verb(k)
             if said is None or not (behind or k + 1 in self.reading.named):
@@ -228,10 +228,12 @@ class PartReader:
                 stems = {
                     _stem(joint.child)
                     for joint in self.made.joints
-                    if (not moves or _MOVES[moves](self.made, joint)) and (not way or _goes(self.made, joint, way))
+                    if "wheel" not in joint.child  # what rolls does not make the whole turn
+                    and (not moves or _MOVES[moves](self.made, joint))
+                    and (not way or _goes(self.made, joint, way))
                 }
                 stems = {stem for stem in stems if names[stem] == 1}
-                wanted = PartRequirement(nouns=tuple(sorted(stems)), words=token.given, moves=moves, way=way)
+                wanted = PartRequirement(nouns=tuple(sorted(stems)), words=self.said(*where), moves=moves, way=way)
                 if stems and self.require(wanted, *where):
                     break
 

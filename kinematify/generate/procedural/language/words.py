@@ -36,7 +36,7 @@ OPENNESS = {"closed": 0.0, "shut": 0.0, "folded": 0.0, "ajar": 0.15, "open": 1.0
 _PURPOSE_TEXT = """
     burner cash crisper cutlery detergent emergency freezer glove main power soap start stop storage vegetable volume
     battery mail coin card ticket cable cup bottle spice fuse inspection service access charging dust filter ash crumb
-    drip bread laundry trash book wine toy cat dog pet side engine water paper tool food feed paint letter
+    drip bread laundry trash book wine toy cat dog pet engine water paper tool food feed paint letter
 """
 PURPOSES = frozenset(_PURPOSE_TEXT.split())
 """What a part is for, right before its noun; it asks for nothing that could be built differently."""
