@@ -65,7 +65,7 @@ _MOVES: dict[str, Callable[[Blueprint, BlueprintJoint], bool]] = {
     "turns": lambda made, joint: joint.kind.turns,
     "swings": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "tilts": lambda made, joint: joint.kind is JointType.REVOLUTE and abs(joint.axis[2]) < _SLANT,
-    "flips": lambda made, joint: joint.kind.turns and abs(joint.axis[2]) < _SLANT,
+    "flips": lambda made, joint: joint.kind.turns and abs(joint.axis[2]) < _SLANT and "wheel" not in joint.child,
     "spins": lambda made, joint: joint.kind is JointType.CONTINUOUS,
     "folds": lambda made, joint: joint.kind is JointType.REVOLUTE,
     "moves": lambda made, joint: joint.kind is not JointType.FIXED,
