@@ -504,7 +504,7 @@ _FURNITURE = """
     cabinet, bathroom vanity, chemical cabinet, lab cabinet, record cabinet, toy cabinet, craft cabinet has \
     door 2
 0.8 0.4 1.8 larder, pantry cupboard, broom closet, broom cupboard, trophy case, trophy cabinet, showcase, display \
-    case, glass cabinet, gym locker, school locker, tool locker, parcel locker, pie safe has door 2
+    case, gym locker, school locker, tool locker, parcel locker, pie safe has door 2
 0.35 0.25 0.25 desk organizer, desk organiser, organizer, organiser, drawer organizer, jewelry cabinet, jewellery \
     cabinet, advent calendar, tea cabinet, sewing cabinet, puzzle box, seed box has drawer 3
 2.0 2.0 2.2 greenhouse, hen house, henhouse, tree house, treehouse, tool shed, bike shed, outhouse, portable \
@@ -637,7 +637,7 @@ BODIES = (
     cushion box, coffer, sandbox, sand box, log box, coal box, feed bin, storage chest, storage trunk, pirate chest, \
     steamer trunk always lid 1
         0.4 0.3 0.25 sewing basket, wicker basket, bait box, fishing box, ammo box, ammunition box, first aid box, \
-    first aid kit, medicine box, shoe box, shoebox, hat box, cardboard box, packing box, moving box, shipping box, \
+    first aid kit, medicine box, shoe box, shoebox, hat box, packing box, moving box, shipping box, \
     shipping crate, pet carrier, transport box, flight case, equipment case, road case, tool case, drill case, vanity \
     case, beauty case, humidor, cooler box, litter box, picnic hamper, keepsake box, memory box, toy crate, tool \
     crate always lid 1
@@ -656,7 +656,7 @@ BODIES = (
         0.7 0.5 0.9 grill, barbecue, bbq, barbecue grill, smoker, fire pit has lid 1
         1.0 2.0 0.5 bed, storage bed, daybed, platform bed, captain bed
         1.4 2.0 0.5 single bed, double bed, twin bed, king bed, kids bed, child bed, children bed, guest bed, trundle \
-    bed, ottoman bed, cot, crib, doll bed, toddler bed, wooden bed
+    bed, ottoman bed, cot, crib, doll bed, toddler bed
         """,
     ),
     *_kinds(

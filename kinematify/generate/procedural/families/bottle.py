@@ -113,7 +113,7 @@ FAMILY = Family(
     words=phrases(
         "bottle, water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, "
         "thermos flask, vacuum flask, perfume bottle, sports bottle, shampoo bottle, ketchup bottle, "
-        "medicine bottle, baby bottle, oil bottle, glass bottle, beer bottle, vinegar bottle, vial, "
+        "medicine bottle, baby bottle, oil bottle, beer bottle, vinegar bottle, vial, "
         "soda bottle, juice bottle"
     ),
     material="plastic",

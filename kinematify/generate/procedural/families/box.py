@@ -88,7 +88,7 @@ FAMILY = Family(
     words=phrases(
         "box, chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, "
         "crate, case, container, casket, trunk, lunch box, pencil box, storage box"
-        ", sewing kit box, money box, gift crate, wooden box, apple crate"
+        ", sewing kit box, money box, gift crate, apple crate"
     ),
     material="wood",
     parameters=(

@@ -161,7 +161,7 @@ FAMILY = Family(
     title="robot with arms and legs",
     words=phrases(
         "humanoid, humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, "
-        "wind up robot, robot figure, action figure, wooden mannequin, mannequin, articulated doll, "
+        "wind up robot, robot figure, action figure, mannequin, articulated doll, "
         "robot man, toy humanoid"
     ),
     material="plastic",
