@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from itertools import combinations
 
@@ -121,6 +122,16 @@ def test_a_toy_is_small():
     assert not overlaps(toy)
 
 
+@pytest.mark.parametrize(
+    "sentence", ["a toy " * 1600 + "car", "a cabinet with " + "a and on " * 1100, "toy and on a " * 20]
+)
+def test_long_texts_are_refused_at_once(sentence):
+    start = time.process_time()
+    with pytest.raises(InputError):
+        from_text(sentence)
+    assert time.process_time() - start < 5.0
+
+
 def test_what_opens_is_not_taken_for_what_is_open():
     with pytest.raises(InputError, match="open"):
         from_text("a shed with a door and two windows that open")
@@ -151,6 +162,12 @@ def test_how_parts_move_is_read_against_what_is_built():
     flag = from_text("a mailbox with a flag that can be raised").build()
     raised = next(part for part in flag.moved({"flag_1": 1.0}).parts if part.name == "flag_1")
     assert raised.bounds[1, 2] > next(part for part in flag.parts if part.name == "flag_1").bounds[1, 2]
+
+
+@pytest.mark.parametrize("sentence", ["a rotating cabinet with a door", "a spinning kiosk with a door and a knob"])
+def test_a_door_does_not_make_the_whole_turn(sentence):
+    with pytest.raises(InputError, match="Not understood"):
+        from_text(sentence)
 
 
 def test_a_door_is_hinged_where_it_is_said():

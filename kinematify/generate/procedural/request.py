@@ -50,6 +50,7 @@ _AND = re.compile(
 )
 _TOY = re.compile(r"\b(?:toy|model|miniature|dolls?(?:'s)?)\s+", re.IGNORECASE)
 _TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smaller than usual
+_SEVERAL = 400  # characters at most that may name several objects
 _BESIDE = 0.3  # between what stands side by side [m]
 _LEVEL = 2e-3  # of a surface that something stands on [m]
 _HANDS = ("right_hand", "left_hand", "palm")
@@ -148,11 +149,11 @@ def _read(sentence: str, *, lenient: bool) -> Request:
     try:
         return _read_one(sentence, lenient=False)
     except InputError as reason:
-        if (several := _read_several(sentence)) is not None:
+        if len(sentence) <= _SEVERAL and (several := _read_several(sentence)) is not None:
             return several
         if _TOY.search(sentence) and not lenient:
             try:
-                small = _read(_TOY.sub(" ", sentence, count=1), lenient=False)
+                small = _read(_TOY.sub(" ", sentence), lenient=False)
             except InputError:
                 raise reason from None
             return replace(small, is_toy=True, understood=(*small.understood, "small as a toy"))

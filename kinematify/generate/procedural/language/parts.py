@@ -52,7 +52,7 @@ def _said_of(*ends: str) -> dict[str, str]:
 
 MOTIONS = {
     **{verb + end: moves for moves, verbs in _VERBS.items() for verb in verbs.split() for end in ("", "s")},
-    **_said_of("ing", "able"), "telescopic": "slides", "extendable": "slides", "hinged": "swings", "rotary": "turns",
+    **_said_of("ing", "able"), "telescopic": "slides", "extendable": "slides", "hinged": "swings",
     "telescoping": "slides", "rolls": "slides", "roll": "slides",
 }  # fmt: skip
 """Words for how a part moves, before its noun or behind it."""
@@ -86,6 +86,7 @@ _HANDLES = ("handle", "knob", "pull", "grip")
 """Words for handles, which are no parts of their own."""
 _SLANT = 0.2  # of a part's way that must go where it is said to go; a door goes out as much as aside
 _QUARTER = 0.5 * math.pi
+_ABOUT, _LARGE = 0.2, 0.3  # of a part's diagonal from its middle to its axis; of the whole's diagonal
 _LINKS = ("that", "which", "whose", "is", "are", "to", "can", "be", "the", "in", "on", "at")  # between noun and verb
 _ANYHOW = ("over", "open", "apart", "around", "round", "freely", "away", "together", "aside")
 """Behind a verb they say nothing about where to."""
@@ -229,6 +230,7 @@ class PartReader:
                     _stem(joint.child)
                     for joint in self.made.joints
                     if "wheel" not in joint.child  # what rolls does not make the whole turn
+                    and (behind or moves not in ("turns", "spins") or _turns_about_itself(self.made, joint))
                     and (not moves or _MOVES[moves](self.made, joint))
                     and (not way or _goes(self.made, joint, way))
                 }
@@ -392,6 +394,15 @@ def _goes(blueprint: Blueprint, joint: BlueprintJoint, way: str) -> bool:
     middle = part.bounds.mean(axis=0)
     moved: FloatArray = (joint.motion(value) @ np.append(middle, 1.0))[:3] - middle
     return float(moved @ np.array(_WAYS[way])) > _SLANT * float(np.linalg.norm(moved)) > 0.0
+
+
+def _turns_about_itself(blueprint: Blueprint, joint: BlueprintJoint) -> bool:
+    """Whether a large part turns about its middle, as a swivel chair does and a cabinet with a door does not."""
+    bounds = next(part for part in blueprint.parts if part.name == joint.child).bounds
+    middle, size = bounds.mean(axis=0), float(np.linalg.norm(np.ptp(bounds, axis=0)))
+    aside = float(np.linalg.norm(np.cross(joint.axis, middle - joint.pivot)))
+    whole = float(np.linalg.norm(np.ptp(blueprint.assembly.bounds, axis=0)))
+    return joint.kind.turns and aside < _ABOUT * size and size > _LARGE * whole
 
 
 def _looking(blueprint: Blueprint, names: Sequence[str], material: str, color: str) -> Blueprint:
