@@ -1,6 +1,6 @@
 """`python -m tools.draw_view FOLDER OUT`: pictures of the viewer's page at three widths, by a real browser.
 
-The test of the page calls `visit` too, so that the pictures show what is tested.
+The test of the page calls `keep_candidate` too.
 """
 
 from __future__ import annotations
@@ -45,11 +45,21 @@ def draw(folder: Path, out: Path) -> None:
     for width in WIDTHS:
         with opened(window.url, width=width) as (page, _):
             page.wait_for_selector("text=Nothing collides", timeout=_PATIENCE)
+            # It says that this machine has no graphics card, and lies over the model.
+            page.add_style_tag(content=".mantine-Notifications-root { display: none; }")
             window.viewer.choose(joint)
             window.viewer.set({joint: 0.9})
-            page.wait_for_timeout(4000)
-            page.screenshot(path=out / f"view_{width}.png", timeout=_PATIENCE)
+            (out / f"view_{width}.png").write_bytes(_picture_at_rest(page))
     window.close()
+
+
+def _picture_at_rest(page: Page) -> bytes:
+    """A PNG of a page on which the model has faded in: two in a row are the same."""
+    last, picture = b"", page.screenshot(timeout=_PATIENCE)
+    while picture != last:
+        page.wait_for_timeout(3000)
+        last, picture = picture, page.screenshot(timeout=_PATIENCE)
+    return picture
 
 
 if __name__ == "__main__":

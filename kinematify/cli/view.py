@@ -119,7 +119,7 @@ def _sight(finding: dict[str, Any], titles: Mapping[str, str]) -> Sight:
     title = titles.get(finding["check"], finding["check"])
     return Sight(
         title=f"{place}: {title}"[:_SHOWN_TITLE],
-        message=f"{finding['message']} {finding['remedy']} *({finding['severity']} {finding['check']})*",
+        message=f"{finding['message']} {finding['remedy']} ({finding['severity']} {finding['check']})",
         q={name: float(value) for name, value in (finding["q"] or {}).items() if value is not None},
         links=tuple(links),
     )

@@ -30,6 +30,8 @@ _AXIS = (214, 26, 41)
 _SLIDE = (18, 84, 219)
 _CLOSED = (120, 40, 160)
 """Of the dashed line where a chain of joints closes."""
+_ABOVE_PANEL = 0.35
+"""Of the distance to the camera: how much higher than the middle a model stands in a narrow window."""
 _GIZMO = 0.2
 """Of the model's size."""
 _GLOW = 0.45
@@ -112,6 +114,16 @@ class DrawnModel:
         color = _AXIS if self._scene.kind_of(joint).turns else _SLIDE
         visible = self._shows_axes and self._scene.kind_of(joint) is not JointType.FIXED
         self._axes[joint.name] = self._add_lines(f"/axes/{joint.name}", points, color, visible=visible)
+
+    def step_back(self, client: viser.ClientHandle) -> None:
+        """Let a window that is higher than wide see the whole model, above the panel that lies over its lower half."""
+        aspect = client.camera.aspect
+        if aspect < 1.0:
+            eye, target = self._scene.camera
+            back = (eye - target) / aspect
+            down = np.array([0.0, 0.0, -_ABOVE_PANEL * np.linalg.norm(back)])
+            with client.atomic():
+                client.camera.position, client.camera.look_at = target + back + down, target + down
 
     def add_gizmo(self, axis: FloatArray, pivot: FloatArray) -> Any:
         """Return a gizmo whose red arrow is an axis, frame of the root link [m], shape (3,) each."""

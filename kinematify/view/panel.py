@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -28,6 +29,7 @@ _TYPES = {
     "fixed": JointType.FIXED,
 }
 """What a joint can be set to by hand."""
+_MARKUP = re.compile(r"[\\`*_{}\[\]<>]")
 _POSES = ("At rest", "Opened", "Random")
 _SLIDER_STEPS = 400
 _TOLD = 12
@@ -151,7 +153,8 @@ class Panel:
     def show_joint(self, joint: Joint, candidates: Sequence[str]) -> None:
         """Show what is known of a joint, and its candidates in words, below the sliders."""
         self._joint = joint.name
-        self._told.content = f"**{joint.name}** moves {joint.child} on {joint.parent} ({joint.kind.value})."
+        moves = _plain(f"{joint.child} on {joint.parent} ({joint.kind.value}).")
+        self._told.content = f"**{_plain(joint.name)}** moves {moves}"
         self._play.visible = True
         self._play.label = f"Play {joint.name}"
         self._options = [_AS_WRITTEN, *(f"{number}: {words}" for number, words in enumerate(candidates, start=1))]
@@ -175,7 +178,7 @@ class Panel:
         return str(self._status.content)
 
     def show_status(self, said: str) -> None:
-        """Say what collides, below the poses."""
+        """Say what collides, in Markdown, below the poses."""
         self._status.content = said
 
     def begin_by_hand(self, kind: JointType, limits: tuple[float, float]) -> None:
@@ -248,7 +251,7 @@ class Panel:
     def _add_findings(self, sights: Sequence[Sight]) -> None:
         for sight in sights[:_SIGHTS]:
             with self._gui.add_folder(sight.title, expand_by_default=len(sights) <= 3):
-                self._gui.add_markdown(sight.message)
+                self._gui.add_markdown(_plain(sight.message))
                 self._gui.add_button("Show the place").on_click(_ignoring_event(partial(self._actions.show, sight)))
         if len(sights) > _SIGHTS:
             self._gui.add_markdown(f"{len(sights) - _SIGHTS} more stand in the report.")
@@ -296,15 +299,15 @@ def said_of(shown: Shown) -> str:
     """How to begin, the joints to look at first, and where chains of joints close."""
     said = ["Touch a slider or click a part."]
     if shown.doubtful:
-        names = ", ".join(shown.doubtful)
+        names = _plain(", ".join(shown.doubtful))
         said.append(f"Look at these, the inference is less than {shown.doubtful_below:.0%} sure: **{names}**.")
-    said += [f"Dashed line: {chain.told}" for chain in shown.chains]
+    said += [f"Dashed line: {_plain(chain.told)}" for chain in shown.chains]
     return "\n\n".join(said)
 
 
 def said_of_kept(kept: Kept) -> str:
     """What was written, and the command that does the same."""
-    warnings = "".join(f"\n\n{warning}" for warning in kept.warnings)
+    warnings = "".join(f"\n\n{_plain(warning)}" for warning in kept.warnings)
     return f"Kept. The same from the command line:\n\n```\n{kept.command}\n```{warnings}"
 
 
@@ -314,11 +317,21 @@ def said_of_touches(touches: Sequence[Touch]) -> str:
     if not bad:
         return "Nothing collides."
     lines = [
-        f"- **{' and '.join(touch.pair)}** stand in each other, {1e3 * touch.depth:.3g} mm deep"
+        f"- **{_plain(' and '.join(touch.pair))}** stand in each other, {1e3 * touch.depth:.3g} mm deep"
         for touch in bad[:_TOLD]
     ]
     more = [f"- and {len(bad) - _TOLD} more pairs"] if len(bad) > _TOLD else []
     return "\n".join([*lines, *more])
+
+
+def said_of_failure(error: Exception) -> str:
+    """Why collisions cannot be looked for."""
+    return f"Collisions cannot be looked for. {_plain(str(error))}"
+
+
+def _plain(text: str) -> str:
+    """Text as Markdown that shows it as it is: `<mimic>` would be a tag, and is not seen."""
+    return _MARKUP.sub(r"\\\g<0>", text)
 
 
 def _factor_of(kind: JointType) -> float:

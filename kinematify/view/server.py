@@ -17,7 +17,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_from_quaternion
 from kinematify.view.alternatives import Alternative, described, distinct
 from kinematify.view.drawn import DrawnModel
-from kinematify.view.panel import Panel, said_of, said_of_kept, said_of_touches
+from kinematify.view.panel import Panel, said_of, said_of_failure, said_of_kept, said_of_touches
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -65,6 +65,7 @@ class ModelViewer:
         self._random = np.random.default_rng(0)
         server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         self._open(shown, sights, said_of(shown))
+        server.on_client_connect(self._connected)
 
     def _open(self, shown: Shown, sights: Sequence[Sight], said: str) -> None:
         """Show a model from the beginning."""
@@ -91,6 +92,9 @@ class ModelViewer:
                 can_undo=self._folder is not None and self._folder.can_undo,
             )
             self._place()
+
+    def _connected(self, client: viser.ClientHandle) -> None:
+        self._drawn.step_back(client)
 
     def set(self, values: Mapping[str, float]) -> None:
         """Move joints [rad or m], sliders included; names that are no leaders are passed over."""
@@ -365,7 +369,7 @@ class ModelViewer:
             self._scene.prepare_collisions()  # not in the lock, for which sliders would wait
         except KinematifyError as error:
             self._stale = False
-            self._panel.show_status(f"Collisions cannot be looked for. {error}")
+            self._panel.show_status(said_of_failure(error))
             return
         with self._lock:
             self._stale = False

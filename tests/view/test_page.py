@@ -12,12 +12,15 @@ from kinematify.pipeline import infer, write_inference
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from tests.browser import opened
+from tests.household import four_bars
 from tests.objects import BUILDERS
 from tests.view.pages import PATIENCE, downloaded, mistakes, press, served
 from tools.draw_view import keep_candidate
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from playwright.sync_api import Page
 
 
 @pytest.fixture
@@ -43,33 +46,54 @@ def test_a_joint_is_set_by_hand_kept_and_taken_back_while_a_second_browser_watch
     folder: Path,
 ) -> None:
     (joint,) = read_robot(folder / "model.urdf").joints
-    with served(folder, 18150) as window:
-        with opened(window.url) as (leaving, _):
-            leaving.wait_for_selector("text=At rest", timeout=PATIENCE)
-            window.viewer.choose(joint.name)
-        with opened(window.url) as (page, told):
-            second = page.context.browser.new_page()
-            second.goto(window.url)
-            for seen in (page, second):
-                seen.get_by_text(f"{joint.name} moves").first.wait_for(timeout=PATIENCE)
-            press(page, "Set by hand")
-            second.get_by_text("Limits [deg]").first.wait_for(timeout=PATIENCE)
-            window.viewer.set_limits(-10.0, 50.0)
-            press(page, "Keep this")
-            page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
-            second.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
-            (found,) = read_robot(folder / "model.urdf").joints
-            assert (found.lower, found.upper) == pytest.approx(np.radians([-10.0, 50.0]), abs=1e-5)
-            assert np.allclose(found.axis, joint.axis, atol=1e-5)
-            press(second, "Take the last choice back")
-            page.get_by_text("The same from the command line").wait_for(state="detached", timeout=PATIENCE)
-            assert not mistakes(told)
+    with served(folder, 18150) as window, opened(window.url, width=400) as (page, told):
+        leaving, second = (page.context.browser.new_page(viewport=page.viewport_size) for _ in range(2))
+        for seen in (leaving, second):
+            seen.goto(window.url, timeout=PATIENCE)
+        leaving.wait_for_selector("text=At rest", timeout=PATIENCE)
+        window.viewer.choose(joint.name)
+        leaving.close()
+        for seen in (page, second):
+            seen.get_by_text(f"{joint.name} moves").first.wait_for(timeout=PATIENCE)
+        press(page, "Set by hand")
+        second.get_by_text("Limits [deg]").first.wait_for(timeout=PATIENCE)
+        window.viewer.set_limits(-10.0, 50.0)
+        press(page, "Keep this")
+        page.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
+        second.get_by_text("The same from the command line").wait_for(timeout=PATIENCE)
+        (found,) = read_robot(folder / "model.urdf").joints
+        assert (found.lower, found.upper) == pytest.approx(np.radians([-10.0, 50.0]), abs=1e-5)
+        assert np.allclose(found.axis, joint.axis, atol=1e-5)
+        press(second, "Take the last choice back")
+        page.get_by_text("The same from the command line").wait_for(state="detached", timeout=PATIENCE)
+        assert not mistakes(told)
     (again,) = read_robot(folder / "model.urdf").joints
     assert (again.lower, again.upper) == (joint.lower, joint.upper)
 
 
+def test_where_a_chain_closes_is_told_whole_and_dashed(tmp_path: Path) -> None:
+    pytest.importorskip("viser", reason="viser is not installed")
+    write_inference(infer(four_bars().assembly), tmp_path / "model", preview=False)
+    with served(tmp_path / "model", 18190) as window, opened(window.url, width=800) as (page, told):
+        page.wait_for_selector("text=Nothing collides", timeout=PATIENCE)
+        assert "<equality><connect>" in page.inner_text("body"), "no tag of the page"
+        at_rest = _purple(page, tmp_path / "rest.png")
+        window.viewer.set({"crank_joint": 0.4})
+        page.wait_for_timeout(4000)
+        assert _purple(page, tmp_path / "moved.png") > at_rest + 50, "a line between what was one pin"
+        assert not mistakes(told)
+
+
+def _purple(page: Page, out: Path) -> int:
+    """Pixels of the dashed line on the page."""
+    page.screenshot(path=out, timeout=PATIENCE)
+    with Image.open(out) as picture:
+        red, green, blue = np.moveaxis(np.asarray(picture.convert("RGB"), dtype=int), 2, 0)
+    return int(((red > green + 60) & (blue > green + 60)).sum())
+
+
 def test_a_film_of_the_joint_and_a_picture_are_downloaded(folder: Path, tmp_path: Path) -> None:
-    with served(folder, 18160) as window, opened(window.url) as (page, _):
+    with served(folder, 18160) as window, opened(window.url, width=400) as (page, _):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
         downloaded(page, "Film (GIF)", tmp_path / "film.gif")
         downloaded(page, "Picture (PNG)", tmp_path / "picture.png")

@@ -9,7 +9,7 @@ channel, and the mean difference. *GLB in the viewer*: the same for the export.
 
 from __future__ import annotations
 
-import tempfile
+import shutil
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +35,8 @@ from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.robot.transforms import quaternion_of
-from kinematify.view.window import Window
+from kinematify.view.drawn import DrawnModel
+from kinematify.view.window import Window, read_model
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +50,7 @@ if TYPE_CHECKING:
 ALIKE = 0.05
 """Of the range of a channel."""
 KINDS = ("plain", "texture", "vertices", "glossy")
-_SIZE = (600, 800)
+_SIZE = (300, 400)
 """Of a picture of the page: height and width [pixels]."""
 _PATIENCE = 120.0
 """For a picture to come to rest without a graphics card [s]."""
@@ -69,28 +70,47 @@ class Dressed:
     """One file to be made."""
 
     seed: int
+    folder: Path
+    """Of this file alone."""
+
+    @property
+    def given(self) -> Path:
+        """The file."""
+        return self.folder / f"object_{self.seed}.glb"
+
+    @property
+    def urdf(self) -> Path:
+        """What was inferred of it."""
+        return self.folder / "model" / "model.urdf"
+
+    def exported(self, kind: str) -> Path:
+        """The model in another format."""
+        return self.folder / _FORMATS[kind]
 
 
 def measure(options: ColorsOptions, work: Work) -> Measured:
-    """Take every file round."""
-    asked = {f"object {seed}": Dressed(seed=seed) for seed in range(options.objects)}
-    return list(work.each(taken_round, asked, workers=1).values()), {}
+    """Take every file round, then show all of them in one page: it takes longer to open than to show a file."""
+    asked = {
+        f"object {seed}": Dressed(seed=seed, folder=work.folder / f"object_{seed}") for seed in range(options.objects)
+    }
+    records = work.each(taken_round, asked, workers=1)
+    shown = work.each(shown_on_a_page, {"page": tuple(asked[name] for name in records)}, workers=1)
+    return [record | shown["page"][name] for name, record in records.items()] if shown else [], {}
 
 
 def taken_round(asked: Dressed) -> Record:
     """Compare one file with what becomes of it."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        glb = make_object(asked.seed, folder)
-        write_inference(infer(load_assembly(glb)), folder / "model", preview=False)
-        urdf = folder / "model" / "model.urdf"
-        given = seen_of_glb(glb)
-        record: Record = {"object": asked.seed, "urdf": unlike(given, seen_of_urdf(urdf))}
-        read: dict[str, Callable[[Path], RawMesh]] = {"glb": seen_of_glb, "mjcf": seen_of_mjcf, "usd": seen_of_usd}
-        for kind, file in _FORMATS.items():
-            export(urdf, kind, folder / file)
-            record[kind] = unlike(given, read[kind](folder / file))
-        return record | _on_the_page(urdf, glb, folder / _FORMATS["glb"])
+    shutil.rmtree(asked.folder, ignore_errors=True)
+    asked.folder.mkdir(parents=True)
+    make_object(asked.seed, asked.folder)
+    write_inference(infer(load_assembly(asked.given)), asked.urdf.parent, preview=False)
+    given = seen_of_glb(asked.given)
+    record: Record = {"object": asked.seed, "urdf": unlike(given, seen_of_urdf(asked.urdf))}
+    read: dict[str, Callable[[Path], RawMesh]] = {"glb": seen_of_glb, "mjcf": seen_of_mjcf, "usd": seen_of_usd}
+    for kind in _FORMATS:
+        export(asked.urdf, kind, asked.exported(kind))
+        record[kind] = unlike(given, read[kind](asked.exported(kind)))
+    return record
 
 
 def make_object(seed: int, folder: Path) -> Path:
@@ -255,28 +275,35 @@ def seen_of_usd(path: Path) -> RawMesh:
     return merged(tuple(meshes), path.name)
 
 
-def _on_the_page(urdf: Path, given: Path, exported: Path) -> Record:
-    """Pictures of the model, of the file that it was made of and of an export, in the same page."""
-    window = Window(urdf, port=_PORT)
-    viewer, scene = window.viewer, window.server.scene
+def shown_on_a_page(asked: tuple[Dressed, ...]) -> Record:
+    """Compare pictures of every model, of the file that it was made of, and of an export, in the same page."""
+    window = Window(asked[0].urdf, port=_PORT)
     try:
         with open_browser() as browser:
             page = browser.new_page(viewport={"width": _SIZE[1], "height": _SIZE[0]})
-            page.goto(window.url)
-            viewer.show_axes(False)
-            model = _picture(page, window)
-            for part in viewer.parts:
-                viewer.show_part(part, False)
-            empty = _picture(page, window, unlike=model)
-            found = {}
-            for name, path in (("file", given), ("export", exported)):
-                handle = scene.add_glb("/given", path.read_bytes(), wxyz=quaternion_of(TO_Z_UP["Y_UP"]))
-                found[name] = _picture(page, window, unlike=empty)
-                handle.remove()
-                _picture(page, window, unlike=found[name])
+            page.goto(window.url, timeout=1000.0 * _PATIENCE)
+            window.server.scene.reset()
+            empty = _picture(page, window)
+            _seen(asked[0], page, window, empty)  # a page fades in, slower than two pictures can tell
+            return {f"object {item.seed}": _seen(item, page, window, empty) for item in asked}
     finally:
         window.close()
-    different, mean = _compared(found["file"], model, empty)
+
+
+def _seen(asked: Dressed, page: Page, window: Window, empty: FloatArray) -> Record:
+    scene = window.server.scene
+    drawn = DrawnModel(window.server, read_model(asked.urdf, ()).scene, (), lambda _: None)
+    drawn.place({}, 0.0)
+    found = {"model": _picture(page, window, unlike=empty)}
+    for part in drawn.parts:
+        drawn.show_part(part, False)
+    for name, path in (("file", asked.given), ("export", asked.exported("glb"))):
+        _picture(page, window, unlike=next(reversed(found.values())))
+        handle = scene.add_glb("/given", path.read_bytes(), wxyz=quaternion_of(TO_Z_UP["Y_UP"]))
+        found[name] = _picture(page, window, unlike=empty)
+        handle.remove()
+    _picture(page, window, unlike=found["export"])
+    different, mean = _compared(found["file"], found["model"], empty)
     export_different, _ = _compared(found["file"], found["export"], empty)
     return {"viewer": different, "viewer_mean": mean, "glb_viewer": export_different}
 
@@ -285,7 +312,7 @@ def _picture(page: Page, window: Window, unlike: FloatArray | None = None) -> Fl
     """What the page shows when it has come to rest and differs from what was there before, shape (h, w, 3)."""
     end, last = time.monotonic() + _PATIENCE, None
     while time.monotonic() < end:
-        page.wait_for_timeout(300)
+        page.wait_for_timeout(100)
         client = next(iter(window.server.get_clients().values()), None)
         if client is None:
             continue
