@@ -93,7 +93,7 @@ def _purple(page: Page, out: Path) -> int:
 
 
 def test_a_film_of_the_joint_and_a_picture_are_downloaded(folder: Path, tmp_path: Path) -> None:
-    with served(folder, 18160) as window, opened(window.url, width=400) as (page, _):
+    with served(folder, 18160) as window, opened(window.url) as (page, _):
         page.wait_for_selector("text=At rest", timeout=PATIENCE)
         downloaded(page, "Film (GIF)", tmp_path / "film.gif")
         downloaded(page, "Picture (PNG)", tmp_path / "picture.png")
