@@ -180,6 +180,8 @@ def test_night_and_trend_pages(tmp_path: Path) -> None:
     anchor = problem_anchor("object_03", "accuracy", "rest", AXIS.id)
     with opened(f"{(tmp_path / history[1].name / 'index.html').as_uri()}#{anchor}") as (page, told):
         assert page.locator(f"#{anchor}").is_visible(), "a link to a problem opens the section that holds it"
+        assert page.evaluate("document.documentElement.scrollHeight") <= 4 * 800, "the night is folded"
+        page.locator("details", has=page.locator("#accuracy")).locator("summary").first.click()
         rows = page.locator("#accuracy tbody tr:visible")
         everything = rows.count()
         page.locator("input[data-table=accuracy]").fill("object_03 yaw37")
@@ -189,6 +191,8 @@ def test_night_and_trend_pages(tmp_path: Path) -> None:
         head.locator("button").click()
         head.locator("button").click()
         assert page.locator("#accuracy tbody tr").first.inner_text().startswith("object_11")
+        page.evaluate("dispatchEvent(new Event('beforeprint'))")
+        assert page.locator("details:not([open])").count() == 0, "paper cannot be unfolded"
         page.goto((tmp_path / "index.html").as_uri())
         assert page.locator("#nights tbody tr").count() == 2
         page.locator("#objects a", has_text="object_03").click()

@@ -3,7 +3,7 @@
 GLB files as a script makes them, boxes of one colour, with a picture, with colours of vertices, or glossy, go through
 the inference. *Model* and exports: share of places (three of every triangle) whose colour differs from that of the file
 at the same place by more than 5 % of a channel. *Viewer*: the file itself, as three.js shows it, stands where the
-model stood in the same page, under the same light; share of the object's pixels that differ by more than 5 % of a
+model stood in the same page, under the same light without shadows; share of the object's pixels that differ by more than 5 % of a
 channel, and the mean difference. *GLB in the viewer*: the same for the export.
 """
 
@@ -294,9 +294,9 @@ def _seen(asked: Dressed, page: Page, window: Window, empty: FloatArray) -> Reco
     scene = window.server.scene
     drawn = DrawnModel(window.server, read_model(asked.urdf, ()).scene, (), lambda _: None)
     drawn.place({}, 0.0)
+    scene.configure_default_lights(cast_shadow=False)  # shadows follow later than what casts them
     found = {"model": _picture(page, window, unlike=empty)}
-    for part in drawn.parts:
-        drawn.show_part(part, False)
+    scene.reset()
     for name, path in (("file", asked.given), ("export", asked.exported("glb"))):
         _picture(page, window, unlike=next(reversed(found.values())))
         handle = scene.add_glb("/given", path.read_bytes(), wxyz=quaternion_of(TO_Z_UP["Y_UP"]))
@@ -312,7 +312,7 @@ def _picture(page: Page, window: Window, unlike: FloatArray | None = None) -> Fl
     """What the page shows when it has come to rest and differs from what was there before, shape (h, w, 3)."""
     end, last = time.monotonic() + _PATIENCE, None
     while time.monotonic() < end:
-        page.wait_for_timeout(100)
+        page.wait_for_timeout(800)
         client = next(iter(window.server.get_clients().values()), None)
         if client is None:
             continue

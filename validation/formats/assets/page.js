@@ -66,3 +66,9 @@ function openTarget() {
 }
 addEventListener('hashchange', openTarget);
 if (location.hash) openTarget();
+let unfolded = [];
+addEventListener('beforeprint', () => {
+  unfolded = [...document.querySelectorAll('details:not([open])')];
+  for (const folded of unfolded) folded.open = true;
+});
+addEventListener('afterprint', () => { for (const folded of unfolded) folded.open = false; });

@@ -31,6 +31,8 @@ METRIC_TITLES = {
 }
 _COUNTED = ("errors", "warnings", "move as loaded", "opened by an arm", "s")
 METRIC_SCALES = {"line_m": 1000.0}
+_SEEN = 20
+"""Rows that a page shows before they are asked for: a night of many objects stays readable on a few screens."""
 
 
 def night_page(night: Night, pages: Collection[str] = ()) -> str:
@@ -93,7 +95,8 @@ def _change_table(changes: Sequence[Change], name: str) -> str:
         )
         for change in told
     ]
-    return words + table(("class", "object", "run", "what", "told"), rows, name=name)
+    listed = table(("class", "object", "run", "what", "told"), rows, name=name)
+    return words + (listed if len(rows) <= _SEEN else _folded(f"All {len(rows)} changes", listed))
 
 
 def _class_cell(change: Change) -> str:
@@ -135,7 +138,8 @@ def _matrix(night: Night, pages: Collection[str]) -> list[str]:
     ]
     headings = ("object", "model", "verdict", *(f"{f} {FAMILIES[f]}" for f in families), *_COUNTED)
     classes = ("", "", "state", *["state"] * len(families), *["number"] * len(_COUNTED))
-    return ["<h2>Validation</h2>", _legend(), table(headings, rows, name="validation", classes=classes)]
+    listed = table(headings, rows, name="validation", classes=classes)
+    return ["<h2>Validation</h2>", _legend(), _folded(f"{len(rows)} models, family by family", listed)]
 
 
 def _model(run: Run, pages: Collection[str]) -> str:
@@ -170,7 +174,12 @@ def _accuracy(night: Night) -> list[str]:
     ]
     headings = ("object", "kind", "pose", "status", *METRIC_TITLES.values(), "problems", "s")
     classes = ("", "", "", "", *["number"] * (len(METRIC_TITLES) + 2))
-    return ["<h2>Accuracy</h2>", table(headings, rows, name="accuracy", classes=classes)]
+    listed = table(headings, rows, name="accuracy", classes=classes)
+    return ["<h2>Accuracy</h2>", _folded(f"{len(rows)} inferences, joint by joint", listed)]
+
+
+def _folded(words: str, content: str) -> str:
+    return f"<details><summary>{words}</summary>{content}</details>"
 
 
 def _metric(run: Run, metric: str) -> str:
@@ -180,7 +189,11 @@ def _metric(run: Run, metric: str) -> str:
 
 def _runs(night: Night) -> list[str]:
     """A section for each run that has something to tell, closed at first."""
-    return ["<h2>Runs with problems</h2>", *(_run(run) for run in night.runs if _told(run))]
+    told = [_run(run) for run in night.runs if _told(run)]
+    return [
+        "<h2>Runs with problems</h2>",
+        _folded(f"{len(told)} runs", "".join(told)) if len(told) > _SEEN else "".join(told),
+    ]
 
 
 def _run(run: Run) -> str:
