@@ -3,8 +3,8 @@
 GLB files as a script makes them, boxes of one colour, with a picture, with colours of vertices, or glossy, go through
 the inference. *Model* and exports: share of places (three of every triangle) whose colour differs from that of the file
 at the same place by more than 5 % of a channel. *Viewer*: the file itself, as three.js shows it, stands where the
-model stood in the same page, under the same light without shadows; share of the object's pixels that differ by more than 5 % of a
-channel, and the mean difference. *GLB in the viewer*: the same for the export.
+model stood in the same page, under the same light without shadows; share of the object's pixels that differ by more
+than 5 % of a channel, and the mean difference. *GLB in the viewer*: the same for the export.
 """
 
 from __future__ import annotations
