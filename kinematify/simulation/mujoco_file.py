@@ -42,7 +42,7 @@ _NO_CONTACTS = "model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT\n"
 _OVERLAP = (
     _LOAD
     + """name = lambda geom: model.body(model.geom_bodyid[geom]).name
-print(max(-contact.dist for contact in data.contact if {{name(geom) for geom in contact.geom}} == {links}))
+print(max(-contact.dist for contact in data.contact if {{name(geom) for geom in contact.geom}} == set({links})))
 """
 )
 _REST = (
@@ -203,7 +203,7 @@ class MujocoFile:
 
     def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
         """See `LoadedFile`."""
-        names = {"world" if name == self._root else name for name in links}
+        names = sorted({"world" if name == self._root else name for name in links})
         return _OVERLAP.format(**self._facts(None, values), links=names)
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
