@@ -71,6 +71,10 @@ def ends_of(joint):
         ("a workbench with a vise, a drawer and a towel rail", {JointType.PRISMATIC: 2}),
         ("a wooden chest with a lid and two carrying handles", {JointType.REVOLUTE: 3}),
         ("a toolbox with a drawer and a lid", {JointType.PRISMATIC: 1, JointType.REVOLUTE: 1}),
+        (
+            "a printer on a cart",
+            {JointType.CONTINUOUS: 8, JointType.PRISMATIC: 1, JointType.REVOLUTE: 1, JointType.FIXED: 1},
+        ),
         ("a printer on a cart with two drawers", {JointType.REVOLUTE: 1, JointType.PRISMATIC: 3, JointType.FIXED: 1}),
         ("a lorry with six wheels and two doors", {JointType.CONTINUOUS: 6, JointType.REVOLUTE: 2}),
         ("a fridge of 180 cm with a sliding door on the right and three drawers", {JointType.PRISMATIC: 4}),

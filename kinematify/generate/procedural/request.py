@@ -53,6 +53,8 @@ _TOY_LENGTH, _TOY_SCALE = 0.4, 0.2  # longest side [m], and at most so much smal
 _SEVERAL = 400  # characters at most that may name several objects
 _BESIDE = 0.3  # between what stands side by side [m]
 _LEVEL = 2e-3  # of a surface that something stands on [m]
+_GRID = 15  # places along either side at which it is looked for
+_STANDS = 0.4  # share of an object's length and depth that it needs to stand on
 _HANDS = ("right_hand", "left_hand", "palm")
 _GRASP = 5e-4  # between a hand and what it holds [m]
 
@@ -173,17 +175,22 @@ def _joined(one: Request, how: str, other: Request) -> Request:
 
 
 def _read_several(sentence: str) -> Request | None:
-    """Read `a printer on a cart with four casters`, `a table and two chairs`: two objects, each of which is known."""
+    """Read `a printer on a cart with four casters`, `a table and two chairs`: two objects, each of which is known.
+
+    Raises:
+        InputError: Both are, and one has no place on the other.
+    """
     for pattern, how in ((_ON_TOP, "carrying"), (_ON, "on"), (_AND, "beside")):
         found = pattern.search(sentence)
+        if found is None:
+            continue
         try:
-            if found is not None:
-                one, other = (_read_one(found[name], lenient=False, alone=False) for name in ("one", "other"))
-                request = _joined(one, how, other) if how != "carrying" else _joined(other, how, one)
-                if request.build().joints:
-                    return request
+            one, other = (_read_one(found[name], lenient=False, alone=False) for name in ("one", "other"))
         except InputError:
             continue
+        request = _joined(one, how, other) if how != "carrying" else _joined(other, how, one)
+        if request.build().joints:
+            return request
     return None
 
 
@@ -273,13 +280,20 @@ def _standing_on(blueprint: Blueprint, carrier: Blueprint) -> Blueprint:
     Raises:
         InputError: There is no level place of its size.
     """
-    bounds, below = blueprint.assembly.bounds, carrier.parts[0].bounds
-    middle = below.mean(axis=0)[:2]
-    half = 0.4 * np.minimum(np.ptp(bounds, axis=0)[:2], np.ptp(below, axis=0)[:2])
-    places = middle + half * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)])
-    heights = np.array([max(_height(part, place) for part in carrier.parts) for place in places])
-    level = _height(carrier.parts[0], middle)
-    if not (np.isfinite(heights).all() and np.ptp([*heights, level]) < _LEVEL):
+    bounds, below = blueprint.assembly.bounds, carrier.parts[0].bounds[:, :2]
+
+    def heights_at(places: FloatArray) -> FloatArray:
+        return np.array([max(_height(part, place) for part in carrier.parts) for place in places])
+
+    # Where it is level may be less than its bounds: a cart has a push handle behind it.
+    over = below[0] + np.ptp(below, axis=0) * (np.indices((_GRID, _GRID)).reshape(2, -1).T + 0.5) / _GRID
+    level = _height(carrier.parts[0], below.mean(axis=0))
+    flat = over[np.abs(heights_at(over) - level) < _LEVEL] if np.isfinite(level) else over[:0]
+    footprint, room = np.ptp(bounds, axis=0)[:2], np.ptp(flat, axis=0) if len(flat) else np.zeros(2)
+    middle = (flat.min(axis=0) + flat.max(axis=0)) / 2.0 if len(flat) else below.mean(axis=0)
+    half = 0.4 * np.minimum(footprint, room)
+    heights = heights_at(middle + half * np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]))
+    if (room < _STANDS * footprint).any() or not (np.isfinite(heights).all() and np.ptp([*heights, level]) < _LEVEL):
         raise InputError(
             f"There is no level place for a {blueprint.family.replace('_', ' ')} on a "
             f"{carrier.family.replace('_', ' ')}. Ask for them apart."
