@@ -36,6 +36,7 @@ def unpack(archive: Path, folder: Path, max_bytes: int) -> None:
                 _check_entry(archive, entry)
             _check_size(archive, sum(entry.file_size for entry in entries), max_bytes)
             _extract(archive, opened, [entry for entry in entries if _is_wanted(entry.filename)], folder, max_bytes)
+    # zipfile raises NotImplementedError where it does not know the compression, RuntimeError where one is encrypted.
     except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, NotImplementedError, RuntimeError, OSError) as error:
         raise AssemblyError(
             f"The archive {archive} cannot be unpacked ({error}). It may be damaged: pack the mesh files again."

@@ -120,9 +120,11 @@ def _notes(told: Sequence[Told]) -> str:
 def _more(report: ValidationReport) -> str:
     """What the whole report has besides."""
     code = ", plain code that shows what engines do" if any(item.reproduction for item in report.findings) else ""
+    told = [item.finding for item in report.told if item.finding.suppressed is None]
+    worst = next((found.check for severity in Severity for found in told if found.severity is severity), "KV301")
     return _wrapped(
         f"--all tells everything: notes, each place and number, what follows from what{code}, the joints, the checks "
-        "that did not run. kinematify explain KV301 tells what a check looks at."
+        f"that did not run. kinematify explain {worst} tells what a check looks at."
     )
 
 
