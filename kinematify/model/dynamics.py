@@ -17,13 +17,18 @@ from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from kinematify.config import DynamicsConfig
-    from kinematify.robot.robot import Joint, Robot
+    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.robot import Inertial, Joint, Robot
 
 _GRAVITY = np.array([0.0, 0.0, -9.81])
 _AT_LIMIT = 1e-6
 """A limit that is nearer to rest [rad or m] takes the weight."""
 _NEAR_REST = 0.1
 """What stands on its head would fall [rad]: the weight is looked at so far to both sides of rest."""
+_TIME_STEP = 1.0 / 240.0
+"""Of the engine with the longest one [s]."""
+_MOST_DECAY = 1.0
+"""Of a speed by its damping in one step; what decays by more than twice its size grows."""
 _VALUES = 33
 """Values of a joint at which its weight is looked at."""
 
@@ -68,7 +73,69 @@ def with_dynamics(robot: Robot, config: DynamicsConfig, *, measured: bool = Fals
         else _with_motor(robot, joint, config, measured=measured)
         for joint in robot.joints
     )
-    return replace(robot, joints=joints)
+    return _steady(replace(robot, joints=joints), given=robot)
+
+
+def _steady(robot: Robot, *, given: Robot) -> Robot:
+    """Scale down damping that was made up so that it stays stable where an engine applies that of the last step.
+
+    It is so for as long as no eigenvalue of inverse mass matrix times damping times time step exceeds 2. The damping of
+    a joint goes with all that hangs on it, which is far more than moves where a long chain folds.
+    """
+    roots = np.sqrt([max(joint.damping or 0.0, 0.0) for joint in robot.joints])
+    # The same eigenvalues, of a symmetric matrix; what carries no mass is left out.
+    decay = roots[:, None] * np.linalg.pinv(mass_matrix(robot), rcond=1e-9, hermitian=True) * roots
+    fastest = float(np.linalg.eigvalsh(decay).max(initial=0.0))
+    share = _MOST_DECAY / max(_TIME_STEP * fastest, _MOST_DECAY)
+    return replace(
+        robot,
+        joints=tuple(
+            joint
+            if share == 1.0 or joint.damping is None or before.damping is not None
+            else _stated(joint, share * joint.damping, joint.friction or 0.0)
+            for joint, before in zip(robot.joints, given.joints, strict=True)
+        ),
+    )
+
+
+def mass_matrix(robot: Robot) -> FloatArray:
+    """Return the mass matrix of all joints at rest, shape (J, J); rows of what moves nothing are zero.
+
+    Composite rigid bodies, in spatial vectors about the world's origin.
+    """
+    poses = forward_kinematics(robot, rest_configuration(robot))
+    composite = {
+        link.name: np.zeros((6, 6)) if link.inertial is None else _spatial_inertia(link.inertial, poses[link.name])
+        for link in robot.links
+    }
+    for joint in reversed(robot.joints_downward):
+        composite[joint.parent] = composite[joint.parent] + composite[joint.child]
+    index = {joint.child: k for k, joint in enumerate(robot.joints)}
+    twists = np.array([_twist(joint, poses[joint.child]) for joint in robot.joints]).reshape(-1, 6)
+    matrix = np.zeros((len(index), len(index)))
+    for joint in robot.joints:
+        k = index[joint.child]
+        momentum, link = composite[joint.child] @ twists[k], joint.child
+        while link != robot.root:
+            matrix[index[link], k] = matrix[k, index[link]] = twists[index[link]] @ momentum
+            link = robot.joint_above[link].parent
+    return matrix
+
+
+def _twist(joint: Joint, T_world_joint: FloatArray) -> FloatArray:
+    """Angular velocity and that of the point at the world's origin while the joint moves at speed 1."""
+    axis = T_world_joint[:3, :3] @ joint.axis
+    if joint.kind is JointType.FIXED:
+        return np.zeros(6)
+    return np.concatenate([axis, np.cross(T_world_joint[:3, 3], axis)] if joint.kind.turns else [np.zeros(3), axis])
+
+
+def _spatial_inertia(inertial: Inertial, T_world_link: FloatArray) -> FloatArray:
+    turn, mass = T_world_link[:3, :3], inertial.mass
+    x, y, z = turn @ inertial.center_of_mass + T_world_link[:3, 3]
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    about_origin = turn @ inertial.tensor @ turn.T + mass * cross @ cross.T
+    return np.block([[about_origin, mass * cross], [mass * cross.T, mass * np.eye(3)]])
 
 
 def moved_by_hand(robot: Robot, joint: Joint) -> bool:
@@ -190,8 +257,7 @@ def joint_load(robot: Robot, joint: Joint) -> JointLoad:
     weight = 9.81 * float(masses.sum())
     if not joint.kind.turns:
         pull = float(masses.sum() * (_GRAVITY @ axis))
-        pulls, inertia, press = np.array([pull]), float(masses.sum()), weight
-        at_rest = pull
+        pulls, around, inertia, press = np.array([pull]), [pull], float(masses.sum()), weight
     else:
         arms = [np.cross(axis, centre - pivot) for centre in centres]
         inertia = sum(
@@ -202,13 +268,11 @@ def joint_load(robot: Robot, joint: Joint) -> JointLoad:
         moment = (masses[:, None] * (centres - pivot)).sum(axis=0)
         pulls = np.array([axis @ np.cross(rotation_about(axis, value) @ moment, _GRAVITY) for value in values])
         nearby = np.array([-_NEAR_REST, 0.0, _NEAR_REST])
-        around = np.array([axis @ np.cross(rotation_about(axis, value) @ moment, _GRAVITY) for value in nearby])
-        at_rest = float(around[np.argmax(np.abs(around))])
+        around = [float(axis @ np.cross(rotation_about(axis, value) @ moment, _GRAVITY)) for value in nearby]
         press = weight * float(np.sqrt(inertia / max(float(masses.sum()), 1e-300)))
-    taken = upper <= _AT_LIMIT if at_rest > 0.0 else lower >= -_AT_LIMIT
     return JointLoad(
         inertia=float(inertia),
-        at_rest=0.0 if taken else abs(at_rest),
+        at_rest=max((abs(pull) for pull in around if (upper if pull > 0.0 else -lower) > _AT_LIMIT), default=0.0),
         largest=float(np.abs(pulls).max()),
         press=press,
         travel=upper - lower,

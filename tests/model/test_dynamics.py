@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.model.dynamics import joint_load, moved_by_hand, with_dynamics
+from kinematify.model.dynamics import joint_load, mass_matrix, moved_by_hand, with_dynamics
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Inertial, Joint, Link, Robot
+from kinematify.robot.write import write_robot
 
 CONFIG = load_config().dynamics
 
@@ -70,6 +73,14 @@ def test_a_limit_takes_the_weight_of_a_closed_lid() -> None:
     assert joint_load(ajar, ajar.joints[0]).at_rest == pytest.approx(2.0 * 9.81 * 0.5, rel=0.01)
 
 
+@pytest.mark.parametrize("aside", [-1.0e-4, 0.0, 1.0e-4])
+def test_a_limit_holds_what_stands_on_its_head_on_one_side_alone(aside: float) -> None:
+    robot = lid(2.0, 0.0)
+    upright = replace(robot, links=(robot.links[0], body("lid", 2.0, (aside, 0.0, 0.5))))
+    pull = 2.0 * 9.81 * 0.5 * np.sin(0.1)
+    assert joint_load(upright, upright.joints[0]).at_rest == pytest.approx(pull, rel=0.01), "over its hinge it falls"
+
+
 @pytest.mark.parametrize("mass", [0.5, 5.0, 200.0])
 @pytest.mark.parametrize("lower", [0.0, -0.5])
 def test_a_hand_lifts_what_friction_holds(mass: float, lower: float) -> None:
@@ -118,6 +129,52 @@ def test_where_the_effort_is_kept_friction_and_damping_leave_enough_to_lift(effo
         assert joint.effort == effort
         assert joint.friction is not None
         assert joint.friction <= max(effort - load.largest, 0.0)
+
+
+@pytest.mark.parametrize("links", [4, 11, 20])
+def test_damping_of_a_long_chain_stays_stable_where_it_is_that_of_the_last_step(links: int) -> None:
+    names = [f"link_{k}" for k in range(links)]
+    moved = np.eye(4)
+    moved[0, 3] = 1.0
+    chain = Robot(
+        name="chain",
+        links=tuple(body(name, 1.0, (0.5, 0.0, 0.0)) for name in names),
+        joints=tuple(
+            replace(hinge(child, parent, (0.0, 0.0, 1.0), -1.0, 1.0), T_parent_child=moved)
+            for parent, child in pairwise(names)
+        ),
+    )
+    made = with_dynamics(chain, CONFIG)
+    damping = np.diag([joint.damping or 0.0 for joint in made.joints])
+    decay = np.linalg.eigvals(np.linalg.solve(mass_matrix(made), damping)) / 240.0
+    assert np.abs(decay).max() < 1.05
+    assert damping.min(where=np.eye(links - 1, dtype=bool), initial=np.inf) > 0.0
+
+
+def test_the_mass_matrix_is_that_of_an_engine(tmp_path: Path) -> None:
+    generator = np.random.default_rng(5)
+    names = ("base", "a", "b", "c", "d")
+    parents = ("base", "a", "a", "c")
+    joints = []
+    for child, parent in zip(names[1:], parents, strict=True):
+        axis = generator.normal(size=3)
+        moved = np.eye(4)
+        moved[:3, 3] = generator.normal(size=3)
+        kind = JointType.PRISMATIC if child == "b" else JointType.REVOLUTE
+        joint = hinge(child, parent, tuple(axis / np.linalg.norm(axis)), -1.0, 1.0)
+        joints.append(replace(joint, kind=kind, T_parent_child=moved))
+    robot = Robot(
+        name="tree",
+        links=tuple(body(name, 1.0 + k, tuple(generator.normal(size=3))) for k, name in enumerate(names)),
+        joints=tuple(joints),
+    )
+    model = mujoco.MjModel.from_xml_path(str(write_robot(robot, tmp_path / "model.urdf")))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    dense = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, dense)
+    order = [model.joint(f"{name}_joint").dofadr[0] for name in names[1:]]
+    np.testing.assert_allclose(mass_matrix(robot), dense[np.ix_(order, order)], rtol=1e-5, atol=1e-6)
 
 
 def test_what_a_file_states_stays() -> None:
