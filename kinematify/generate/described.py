@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import yaml
 from pydantic import BaseModel, ConfigDict, Field
 
 from kinematify.generate.blueprint_file import MIRRORS, BlueprintDescription, Name, Vector, parents_first
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.parameter import counted
+from kinematify.generate.shipped import read_table
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
@@ -138,5 +138,5 @@ def _joint_elsewhere(joint: BlueprintJoint, names: Mapping[str, str], transform:
 def known_families() -> Mapping[str, Family]:
     """All families: those that programs build, then those that files describe."""
     files = sorted(_FOLDER.glob("*.yaml"))
-    described = (ObjectDescription.model_validate(yaml.safe_load(file.read_text(encoding="utf-8"))) for file in files)
+    described = (ObjectDescription.model_validate(read_table(file)) for file in files)
     return {**FAMILIES, **{item.category: item.family() for item in described}}

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,9 +30,10 @@ from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_but
 from kinematify.generate.procedural.pieces.fronts import add_door, add_drawer, add_flap, room
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, ring, rod, union
+from kinematify.generate.shipped import read_table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from manifold3d import Manifold
 
@@ -504,273 +506,27 @@ class Mechanism:
     """On the left or the right is said of the half of a side that it covers."""
 
 
-_CONTROLS = ("front", "top", "right", "left", "back")
-MECHANISMS = (
-    Mechanism(
-        words=phrases("door, cab door"),
-        sides=("front", "left", "right", "back"),
-        build=_door,
-        arranged="row",
-        weight=3.0,
-        least=(0.12, 0.15),
-        needs="opening",
-        has_grip=True,
-    ),
-    Mechanism(
-        words=phrases("drawer, pull-out drawer, pull out drawer, storage drawer"),
-        sides=("front",),
-        build=_drawer,
-        arranged="stack",
-        least=(0.12, 0.07),
-        needs="room",
-        has_grip=True,
-    ),
-    Mechanism(
-        words=phrases(
-            "flap, tailgate, drop door, flap door, tilting flap, drop front, mail flap, pull down door, fold down door"
-        ),
-        sides=("front", "back"),
-        build=_flap,
-        arranged="stack",
-        weight=1.5,
-        least=(0.12, 0.1),
-        needs="opening",
-        has_grip=True,
-    ),
-    Mechanism(
-        words=phrases("lid, hatch, cover, scanner lid, lift up lid, hinged top, lift up top, flip top, flip up lid"),
-        sides=("top",),
-        build=_lid,
-        arranged="row",
-        weight=3.0,
-        least=(0.12, 0.12),
-        needs="opening",
-        has_grip=True,
-    ),
-    Mechanism(
-        words=phrases("sliding door, shutter, sliding panel, sliding window"),
-        sides=("front", "top"),
-        build=_shutter,
-        arranged="stack",
-        weight=3.0,
-        least=(0.2, 0.12),
-        needs="opening",
-        halves=True,
-    ),
-    Mechanism(
-        words=phrases(
-            "sash, roll-up door, roll up door, roller door, roller shutter, rolling shutter, rolling door, "
-            "overhead door, up and over door, vertical sliding door, guillotine door"
-        ),
-        sides=("front",),
-        build=_sash,
-        arranged="row",
-        weight=3.0,
-        least=(0.12, 0.2),
-        needs="opening",
-    ),
-    Mechanism(
-        words=phrases("hood, bonnet, engine hood, engine cover"),
-        sides=("hood",),
-        build=_lid,
-        arranged="alone",
-        needs="room",
-        most=1,
-    ),
-    Mechanism(
-        words=phrases("trunk, boot, trunk lid, boot lid"),
-        sides=("trunk",),
-        build=_trunk,
-        arranged="alone",
-        needs="room",
-        most=1,
-    ),
-    Mechanism(
-        words=phrases("ladder, turntable ladder, rescue ladder"),
-        sides=("top",),
-        build=_ladder,
-        arranged="alone",
-        most=1,
-    ),
-    Mechanism(
-        words=phrases("vise, vice, bench vise, clamping vise"),
-        sides=("top",),
-        build=_vise,
-        least=(0.2, 0.14),
-        weight=2.0,
-    ),
-    Mechanism(
-        words=phrases("towel rail, towel bar, towel rack, towel holder, rail, guard rail, handrail, grab bar"),
-        sides=("right", "left", "front", "back"),
-        build=_rail,
-        least=(0.2, 0.06),
-        moves=False,
-    ),
-    Mechanism(
-        words=phrases("display, digital display, lcd, lcd display, touchscreen, touch screen"),
-        sides=_CONTROLS,
-        build=partial(_plate, material="plastic", color="dark grey"),
-        moves=False,
-    ),
-    Mechanism(
-        words=phrases("window, viewing window, pane, porthole"),
-        sides=("front", "right", "left", "back"),
-        build=partial(_plate, material="mirror"),
-        least=(0.08, 0.08),
-        weight=2.0,
-        moves=False,
-    ),
-    Mechanism(
-        words=phrases("lock, keyhole, letter slot, mail slot, coin slot, sign, label, nameplate"),
-        sides=_CONTROLS,
-        build=partial(_plate, material="metal"),
-        moves=False,
-    ),
-    Mechanism(
-        words=phrases("mirror, looking glass"), sides=("top",), build=_mirror, arranged="edge", most=1, moves=False
-    ),
-    Mechanism(
-        words=phrases("tray, paper tray, pull-out shelf, pull out shelf, keyboard tray, pull-out tray"),
-        sides=("front",),
-        build=_shelf,
-        arranged="stack",
-        weight=0.4,
-        least=(0.15, 0.04),
-        needs="room",
-    ),
-    Mechanism(words=("round lid",), sides=("top",), build=_round_lid, arranged="alone", needs="round mouth", most=1),
-    Mechanism(
-        words=phrases("open shelf, shelf, compartment, open compartment, cubby, niche"),
-        sides=("front",),
-        build=_compartment,
-        arranged="stack",
-        least=(0.12, 0.1),
-        needs="room",
-        moves=False,
-    ),
-    Mechanism(words=phrases("knob, dial, rotary knob, control knob"), sides=_CONTROLS, build=_knob),
-    Mechanism(words=phrases("button, push button, key"), sides=_CONTROLS, build=_button),
-    Mechanism(words=phrases("slider, fader, slide switch"), sides=_CONTROLS, build=_slider, least=(0.04, 0.08)),
-    Mechanism(
-        words=phrases("latch, catch, clasp, turn button, bolt"), sides=_CONTROLS, build=_latch, least=(0.05, 0.05)
-    ),
-    Mechanism(words=("flag",), sides=("right", "left", "top"), build=_flag, least=(0.06, 0.06)),
-    Mechanism(words=phrases("seat, swivel seat"), sides=("top",), build=_seat, arranged="alone", needs="post", most=1),
-    Mechanism(
-        words=phrases("desktop, tabletop, worktop, desk top"),
-        sides=("top",),
-        build=_desktop,
-        arranged="alone",
-        needs="legs",
-        most=1,
-    ),
-    Mechanism(words=phrases("screen"), sides=("top",), build=_screen, arranged="alone", needs="post", most=1),
-    Mechanism(
-        words=phrases(
-            "lever, toggle switch, switch, breaker, circuit breaker, joystick, power switch, main switch, toggle"
-        ),
-        sides=_CONTROLS,
-        build=_lever,
-    ),
-    Mechanism(
-        words=phrases("crank, hand crank, winder"),
-        sides=("right", "left", "front", "top", "back"),
-        build=_crank,
-        least=(0.08, 0.08),
-        weight=1.5,
-    ),
-    Mechanism(
-        words=phrases("hand wheel, handwheel, valve wheel, valve, steering wheel, ship wheel, helm"),
-        sides=("front", "right", "left", "top", "back"),
-        build=_hand_wheel,
-        least=(0.1, 0.1),
-        weight=1.5,
-    ),
-    Mechanism(
-        words=phrases("gauge, gauge needle, needle, pointer"), sides=_CONTROLS, build=_needle, least=(0.06, 0.06)
-    ),
-    Mechanism(words=("wheel",), sides=("left",), build=_wheel, arranged="axles"),
-    Mechanism(
-        words=phrases(
-            "caster, castor, caster wheel, swivel wheel, castor wheel, swivel caster, swivel castor, rolling caster"
-        ),
-        sides=("bottom",),
-        build=_caster,
-        arranged="corners",
-    ),
-    Mechanism(
-        words=phrases("rotor, fan, propeller, impeller, ventilator, cooling fan"),
-        members=phrases("blade, sail, wing, vane, rotor blade"),
-        sides=("front", "top", "back", "left", "right"),
-        build=_rotor,
-        least=(0.12, 0.12),
-        weight=2.0,
-    ),
-    Mechanism(
-        words=phrases(
-            "turntable, rotating plate, rotary table, lazy susan, platter, carousel, rotating tray, rotating platform"
-        ),
-        sides=("top", "front"),
-        build=_turntable,
-        least=(0.1, 0.1),
-        weight=2.0,
-    ),
-    Mechanism(
-        words=phrases(
-            "telescope, telescopic mast, telescopic antenna, telescopic rod, antenna, aerial, telescopic pole, mast"
-        ),
-        sides=("top", "front", "back"),
-        build=_telescope,
-    ),
-    Mechanism(
-        words=phrases("carrying handle, handle, carry handle, bail, swing handle, folding handle"),
-        sides=("top",),
-        build=_bail,
-        arranged="over",
-        most=2,
-    ),
-    Mechanism(
-        words=phrases("cantilever tray, cantilever compartment"),
-        sides=("top",),
-        build=add_cantilever_tray,
-        arranged="apart",
-        least=(0.25, 0.2),
-        needs="mouth",
-        most=2,
-    ),
-    Mechanism(
-        words=phrases("lifting platform, scissor lift, scissor mechanism"),
-        sides=("top",),
-        build=add_scissor_lift,
-        arranged="alone",
-        most=1,
-    ),
-    Mechanism(words=phrases("gripper, parallel gripper"), sides=("front", "top"), build=add_gripper, least=(0.16, 0.1)),
-    Mechanism(words=phrases("hook, coat hook, folding hook"), sides=("front", "right", "left", "back"), build=add_hook),
-    Mechanism(
-        words=phrases("pedal, foot pedal"),
-        sides=("front",),
-        build=add_pedal,
-        arranged="foot",
-        weight=0.5,
-        least=(0.08, 0.08),
-    ),
-    Mechanism(
-        words=phrases("leg, folding leg, fold out leg, fold-out leg"),
-        sides=("bottom",),
-        build=add_leg,
-        arranged="corners",
-        needs="height",
-        most=4,
-    ),
-    Mechanism(words=phrases("arm, folding arm"), sides=("top",), build=_arm, arranged="alone", most=1),
-    Mechanism(
-        words=phrases("push handle, push bar, pushing handle"),
-        sides=("back",),
-        build=_push_handle,
-        arranged="edge",
-        most=1,
-        moves=False,
-    ),
-)
+_BUILDERS: Mapping[str, Callable[[Place], None]] = {
+    **{
+        build.__name__.removeprefix("_").removeprefix("add_"): build
+        for build in (
+            _door, _drawer, _flap, _lid, _shutter, _sash, _trunk, _ladder, _vise, _rail, _mirror, _shelf, _round_lid,
+            _compartment, _knob, _button, _slider, _latch, _flag, _seat, _desktop, _screen, _lever, _crank, _hand_wheel,
+            _needle, _wheel, _caster, _rotor, _turntable, _telescope, _bail, _arm, _push_handle, add_cantilever_tray,
+            add_scissor_lift, add_gripper, add_hook, add_pedal, add_leg,
+        )
+    },
+    "display": partial(_plate, material="plastic", color="dark grey"),
+    "window": partial(_plate, material="mirror"),
+    "lock": partial(_plate, material="metal"),
+}  # fmt: skip
+
+
+def _kind(said: Mapping[str, Any]) -> Mechanism:
+    listed = {name: phrases(said[name]) for name in ("words", "members") if name in said}
+    pairs = {name: tuple(said[name]) for name in ("sides", "least") if name in said}
+    return Mechanism(**{**said, **listed, **pairs, "build": _BUILDERS[said["build"]]})
+
+
+MECHANISMS = tuple(_kind(said) for said in read_table(Path(__file__).with_name("mechanisms.yaml")))
 """All mechanisms; no word stands twice."""
