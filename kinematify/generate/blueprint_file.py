@@ -43,12 +43,13 @@ from kinematify.generate.procedural.materials import COLORS, MATERIALS, of_one_m
 from kinematify.generate.procedural.solids import SEGMENTS, ball, hull, union
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Mimic
-from kinematify.robot.transforms import rotation_from_rpy
+from kinematify.robot.transforms import rotation_about, rotation_from_rpy
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.generate.procedural.materials import RGB
+    from kinematify.robot.arrays import FloatArray
 
 MOST_PARTS = 200
 MOST_SHAPES = 200
@@ -76,8 +77,33 @@ class _Described(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
+class Repetition(_Described):
+    """Something stands there several times: evenly about an axis, the first where it is given, or evenly over a way."""
+
+    count: Annotated[int, Field(ge=1, le=60)] | Name
+    """How often; in the file of an object that sentences ask for it may be the name of one of its `counts`."""
+    about: Literal["x", "y", "z"] = "z"
+    """Direction of the axis."""
+    through: Vector = (0.0, 0.0, 0.0)
+    """A point on the axis, world frame [m]."""
+    upright: bool = False
+    """It is carried around the axis without being turned."""
+    over: Vector | None = None
+    """Way from the first to the last instead, in whose middle it is given, world frame [m]; one alone stands there."""
+
+    def transforms(self, counts: Mapping[str, int]) -> list[FloatArray]:
+        """Where each of them is, seen from where it is given, each of shape (3, 4)."""
+        number = counts[self.count] if isinstance(self.count, str) else self.count
+        if self.over is not None:
+            shares = np.linspace(-0.5, 0.5, number) if number > 1 else (0.0,)
+            return [np.column_stack([np.eye(3), share * np.array(self.over)]) for share in shares]
+        axis, point = np.array(MIRRORS[self.about]), np.array(self.through)
+        turns = [rotation_about(axis, 2.0 * math.pi * k / number) for k in range(number)]
+        return [np.column_stack([np.eye(3) if self.upright else turn, point - turn @ point]) for turn in turns]
+
+
 class _Placed(_Described):
-    """What every primitive has; it is made about the origin, turned, then moved."""
+    """What every primitive has; it is made about the origin, turned, moved, then repeated, then mirrored."""
 
     xyz: Vector = (0.0, 0.0, 0.0)
     """Of its middle [m]."""
@@ -85,10 +111,14 @@ class _Placed(_Described):
     """Turns about the fixed x, y and z axes, in this order [rad], as in URDF."""
     mirrored: tuple[Literal["x", "y", "z"], ...] = ()
     """It stands on the other side, too: across the plane through the world's origin that this axis is normal to."""
+    repeated: Repetition | None = None
+    """How often it stands there."""
 
-    def solid(self) -> Manifold:
-        """The primitive where it stands."""
+    def solid(self, counts: Mapping[str, int]) -> Manifold:
+        """The primitive where it stands, as often as `counts` say that are only named."""
         solid = self.upright().transform(np.column_stack([rotation_from_rpy(np.array(self.rpy)), self.xyz]))
+        if self.repeated is not None:
+            solid = union(*(solid.transform(placed) for placed in self.repeated.transforms(counts)))
         for axis in self.mirrored:
             solid += solid.mirror(MIRRORS[axis])
         return solid
@@ -338,10 +368,10 @@ class PartDescription(_Described):
             raise ValueError("red, green and blue must be from 0 to 1")
         return color
 
-    def solid(self) -> Manifold:
-        """What is left of its shapes."""
-        solid = union(*(shape.solid() for shape in self.shapes))
-        return solid - union(*(shape.solid() for shape in self.subtract)) if self.subtract else solid
+    def solid(self, counts: Mapping[str, int]) -> Manifold:
+        """What is left of its shapes; `counts` as for a primitive."""
+        solid = union(*(shape.solid(counts) for shape in self.shapes))
+        return solid - union(*(shape.solid(counts) for shape in self.subtract)) if self.subtract else solid
 
     def part(self) -> Part:
         """The part as a closed mesh.
@@ -349,7 +379,7 @@ class PartDescription(_Described):
         Raises:
             InputError: Nothing is left of it.
         """
-        mesh = self.solid().to_mesh64()
+        mesh = self.solid({}).to_mesh64()
         if len(mesh.tri_verts) == 0:
             raise InputError(
                 f"Nothing is left of the part {self.name}. Give it shapes with a volume, and subtract less."
@@ -462,6 +492,9 @@ class BlueprintDescription(_Described):
                 raise ValueError(f"a loop joins {one} to itself; name two parts")
         _refuse_twice([joint.child for joint in self.joints], "joints carry")
         self._refuse_cycles()
+        repeated = [s.repeated for part in self.parts for s in (*part.shapes, *part.subtract) if s.repeated]
+        for repetition in repeated:
+            self._refuse_unknown_count(repetition)
         roots = sorted(set(names) - {joint.child for joint in self.joints})
         if len(roots) > 1:
             raise ValueError(
@@ -470,6 +503,10 @@ class BlueprintDescription(_Described):
             )
         self._refuse_bad_leaders()
         return self
+
+    def _refuse_unknown_count(self, repetition: Repetition) -> None:
+        if isinstance(repetition.count, str):
+            raise ValueError(f"the count {repetition.count!r} is no number; only objects that ship with us name counts")
 
     def _refuse_cycles(self) -> None:
         above = {joint.child: joint.parent for joint in self.joints}

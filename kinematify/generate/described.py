@@ -9,9 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from kinematify.generate.blueprint_file import MIRRORS, BlueprintDescription, Name, Vector, parents_first
+from kinematify.generate.blueprint_file import (
+    MIRRORS,
+    BlueprintDescription,
+    Name,
+    Repetition,
+    Vector,
+    parents_first,
+)
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import Family
 from kinematify.generate.procedural.parameter import counted
@@ -41,10 +48,13 @@ class CopyDescription(BaseModel):
     """One more across the plane through the world's origin that this axis is normal to."""
     around: int = Field(1, ge=1, le=60)
     """So many in all, evenly about the world's z axis."""
+    repeated: Repetition | None = None
+    """How often it stands there in all; the first one moves where it is repeated over a way."""
 
-    def transforms(self) -> list[FloatArray]:
-        """Where the copies are, seen from the first, each of shape (3, 4)."""
-        found = [np.column_stack([np.eye(3), step]) for step in self.moved]
+    def transforms(self, counts: Mapping[str, int]) -> list[FloatArray]:
+        """Where they are, seen from the first as it is given, which is the first of them, each of shape (3, 4)."""
+        found = [np.eye(3, 4)] if self.repeated is None else self.repeated.transforms(counts)
+        found += [np.column_stack([np.eye(3), step]) for step in self.moved]
         if self.mirrored:
             normal = np.array(MIRRORS[self.mirrored])
             found.append(np.column_stack([np.eye(3) - 2.0 * np.outer(normal, normal), np.zeros(3)]))
@@ -52,6 +62,19 @@ class CopyDescription(BaseModel):
             turn = rotation_about(np.array([0.0, 0.0, 1.0]), 2.0 * math.pi * k / self.around)
             found.append(np.column_stack([turn, np.zeros(3)]))
         return found
+
+
+class CountDescription(BaseModel):
+    """A number that a sentence may ask for."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    usual: int
+    """If nothing is said."""
+    range: tuple[int, int]
+    """Fewest and most."""
+    words: tuple[str, ...] = ()
+    """How people call what is counted, besides the name of the count."""
 
 
 class ObjectDescription(BlueprintDescription):
@@ -65,11 +88,24 @@ class ObjectDescription(BlueprintDescription):
     """How people call its parts, besides their names."""
     details: dict[str, int] = Field({})
     """Word for what belongs to a part -> how many of it there are."""
+    counts: dict[str, CountDescription] = Field({})
+    """Word for what repeats -> how often it may; named where a shape or a copy is repeated."""
     copies: tuple[CopyDescription, ...] = ()
     """In this order; a later one may take up what an earlier one made."""
 
+    def _refuse_unknown_count(self, repetition: Repetition) -> None:
+        if isinstance(repetition.count, str) and repetition.count not in self.counts:
+            raise ValueError(f"there is no count {repetition.count!r}; there are {', '.join(self.counts) or 'none'}")
+
+    @model_validator(mode="after")
+    def _copies_by_known_counts(self) -> ObjectDescription:
+        for copy in self.copies:
+            if copy.repeated is not None:
+                self._refuse_unknown_count(copy.repeated)
+        return self
+
     def family(self) -> Family:
-        """The object as a family that leaves nothing to choose but what every family does."""
+        """The object as a family that leaves nothing to choose but its counts and what every family does."""
         return Family(
             name=self.category,
             title=self.title,
@@ -77,6 +113,12 @@ class ObjectDescription(BlueprintDescription):
             parameters=tuple(
                 counted(f"{word}s", count, (count, count), "Belongs to it.", words=word)
                 for word, count in self.details.items()
+            )
+            + tuple(
+                counted(
+                    f"{word}s", said.usual, said.range, "So many.", words=", ".join((word, *said.words)), drawn=False
+                )
+                for word, said in self.counts.items()
             ),
             material=self.parts[0].material,
             part_words=self.part_words,
@@ -84,17 +126,22 @@ class ObjectDescription(BlueprintDescription):
         )
 
     def _build(self, values: Values, workshop: Workshop) -> None:
+        counts = {word: values.count(f"{word}s") for word in self.counts}
         looks = {part.name: part for part in self.parts}
-        solids = {part.name: part.solid() for part in self.parts}
+        solids = {part.name: part.solid(counts) for part in self.parts}
         joints = {joint.child: joint.joint() for joint in self.joints}
         for copy in self.copies:
-            for transform in copy.transforms():
+            carried = _carried(copy.like, joints)
+            given = {name: (solids[name], joints[name]) for name in carried}
+            for k, transform in enumerate(copy.transforms(counts)):
                 names: dict[str, str] = {}
-                for name in _carried(copy.like, joints):
+                for name in carried:
                     own = name.startswith(copy.like) and copy.like in names
-                    names[name] = name.replace(copy.like, names[copy.like], 1) if own else _next_name(name, solids)
-                    looks[names[name]], solids[names[name]] = looks[name], solids[name].transform(transform)
-                    joints[names[name]] = _joint_elsewhere(joints[name], names, transform)
+                    copied = name.replace(copy.like, names[copy.like], 1) if own else _next_name(name, solids)
+                    names[name] = name if k == 0 else copied
+                    solid, joint = given[name]
+                    looks[names[name]], solids[names[name]] = looks[name], solid.transform(transform)
+                    joints[names[name]] = _joint_elsewhere(joint, names, transform)
         base = self.parts[0].name
         for name, solid in solids.items():
             look = looks[name]

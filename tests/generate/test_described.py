@@ -9,6 +9,7 @@ import pytest
 from manifold3d import Manifold, Mesh64
 
 from kinematify.errors import InputError
+from kinematify.generate.blueprint_file import described_blueprint
 from kinematify.generate.described import ObjectDescription, known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
@@ -19,20 +20,28 @@ from kinematify.robot.joint_type import JointType
 DESCRIBED = sorted(set(known_families()) - set(FAMILIES))
 
 
+def solid_of(part):
+    return Manifold(Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64)))
+
+
 def overlaps(blueprint):
     """Pairs of parts that share more than a cubic millimetre."""
-    solids = {
-        part.name: Manifold(
-            Mesh64(vert_properties=np.array(part.vertices), tri_verts=np.array(part.faces, dtype=np.uint64))
-        )
-        for part in blueprint.parts
-    }
+    solids = {part.name: solid_of(part) for part in blueprint.parts}
     return [(a, b) for a, b in combinations(solids, 2) if (solids[a] ^ solids[b]).volume() > 1e-9]
 
 
-@pytest.mark.parametrize("name", DESCRIBED)
-def test_parts_move_freely_to_both_ends(name):
-    blueprint = build(known_families()[name], {})
+COUNTED = [
+    (name, {parameter.name: int(bound)})
+    for name in DESCRIBED
+    for parameter in known_families()[name].parameters
+    for bound in parameter.bounds
+    if bound != parameter.default
+]
+
+
+@pytest.mark.parametrize(("name", "given"), [*((name, {}) for name in DESCRIBED), *COUNTED])
+def test_parts_move_freely_to_both_ends(name, given):
+    blueprint = build(known_families()[name], given)
     assert blueprint.joints
     assert not overlaps(blueprint)
     for joint in blueprint.joints:
@@ -109,6 +118,55 @@ def test_copies_take_along_what_they_carry() -> None:
     assert np.allclose(above["caster_2"].pivot, [-0.2, 0.1, 0])
     assert np.allclose(above["caster_3"].pivot, [-0.2, -0.1, 0])
     assert np.allclose(made.parts[-1].bounds.mean(axis=0), [-0.2, -0.15, 0.04])
+
+
+@pytest.mark.parametrize(
+    ("sentence", "stem", "number"),
+    [
+        ("a drone with six propellers", "rotor", 6),
+        ("a ferris wheel with eight cabins", "gondola", 8),
+        ("a wheelbarrow with two wheels", "wheel", 2),
+        ("a two wheeled wheelbarrow", "wheel", 2),
+        ("an iv stand with four casters and two hooks", "caster", 4),
+        ("a swing set with two seats", "seat", 2),
+    ],
+)
+def test_parts_that_repeat_are_as_many_as_a_sentence_says(sentence: str, stem: str, number: int) -> None:
+    made = from_text(sentence).build()
+    named = [part for part in made.parts if part.name.rstrip("0123456789_") == stem]
+    assert len(named) == number
+    middles = np.array([part.bounds.mean(axis=0) for part in named])
+    gaps = np.linalg.norm(middles[:, None] - middles, axis=2) + np.eye(number) * 1e9
+    np.testing.assert_allclose(gaps.min(axis=0), gaps.min(), rtol=0.03, err_msg="evenly")
+
+
+def test_shapes_that_repeat_are_as_many_as_a_sentence_says() -> None:
+    def volume(sentence: str) -> float:
+        part = next(part for part in from_text(sentence).build().parts if part.name == "rotor")
+        return float(solid_of(part).volume())
+
+    three, four, five = (volume(f"a helicopter with {count} blades") for count in ("three", "four", "five"))
+    assert four - three == pytest.approx(five - four, rel=0.02)
+    assert four - three == pytest.approx(0.37 * 0.04 * 0.006, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "sentence", ["a wheelbarrow with four wheels", "a drone with no rotors", "a ladder with 40 steps"]
+)
+def test_counts_that_cannot_be_built_are_refused(sentence: str) -> None:
+    with pytest.raises(InputError, match="whole number from"):
+        from_text(sentence).build()
+
+
+def test_a_count_without_a_description_is_refused() -> None:
+    shape = {"kind": "sphere", "radius": 0.03, "repeated": {"count": "blade"}}
+    parts = [{"name": "body", "shapes": [shape]}, {"name": "rotor", "shapes": [{**shape, "xyz": [0, 0, 1]}]}]
+    joints = [{"type": "continuous", "parent": "body", "child": "rotor"}]
+    described = {"name": "fan", "title": "fan", "words": ["fan"], "parts": parts, "joints": joints}
+    with pytest.raises(ValueError, match="no count 'blade'"):
+        ObjectDescription.model_validate(described)
+    with pytest.raises(InputError, match="'blade' is no number"):
+        described_blueprint({"name": "fan", "parts": parts, "joints": joints})
 
 
 def test_a_colour_that_is_asked_for_is_that_of_the_base() -> None:
