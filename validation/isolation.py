@@ -28,7 +28,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from multiprocessing.connection import Connection
     from multiprocessing.context import ForkContext, ForkServerContext
     from multiprocessing.process import BaseProcess
@@ -69,7 +69,9 @@ class Stage:
     after: tuple[str, ...] = ()
     """Names of the stages that must have ended without a crash before."""
     imports: tuple[str, ...] = ()
-    """Modules that it needs, loaded once for all stages; not the libraries of engines, one for each."""
+    """Modules that it needs, loaded once for all stages."""
+    library: str | None = None
+    """Module of an engine, which only a server loads beforehand: it does things to a process that others use."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,9 +105,10 @@ class _Server:
 
     runs = False
 
-    def start(self, imports: Iterable[str]) -> None:
+    def start(self, stages: Iterable[Stage]) -> None:
         """Start it, if it does not run; its imports go on beside the caller's work."""
-        multiprocessing.get_context("forkserver").set_forkserver_preload([*_EVERY_STAGE, *imports])
+        wanted = [name for stage in stages for name in (*stage.imports, stage.library) if name]
+        multiprocessing.get_context("forkserver").set_forkserver_preload([*_EVERY_STAGE, *wanted])
         resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
         with environment_variables(_VARIABLES), _without_main(), _deaf():
             forkserver.ensure_running()
@@ -124,16 +127,21 @@ def worker_context() -> ForkContext | ForkServerContext:
 
 def start_server(stages: Iterable[Stage]) -> None:
     """Start a server that workers are forked from, with the imports of stages; returns at once."""
-    _SERVER.start(name for stage in stages for name in stage.imports)
+    _SERVER.start(stages)
 
 
-def load_imports(stages: Iterable[Stage] = ()) -> None:
+def load_imports(stages: Sequence[Stage] = (), ahead: Sequence[Stage] = ()) -> None:
     """Load what stages need once for all of them: into this process if workers are forked from it, else into a server.
 
     Called before NumPy is loaded, it keeps the process one that workers can be forked from.
+
+    Args:
+        stages: Those that come next.
+        ahead: Those that come later: a server loads at its start whatever it will need.
     """
     if worker_context().get_start_method() == "forkserver":
-        start_server(stages)
+        if stages or ahead:
+            start_server([*stages, *ahead])
         return
     with environment_variables(_VARIABLES):
         for name in (*_EVERY_STAGE, *(name for stage in stages for name in stage.imports)):
@@ -147,15 +155,18 @@ def _only_threads_of_python() -> bool:
         return False  # not Linux: who knows
 
 
-def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> Iterator[StageEnd]:
+def run_stages(
+    stages: list[Stage], request: StageRequest, *, workers: int, ahead: Sequence[Stage] = ()
+) -> Iterator[StageEnd]:
     """Run stages, each as soon as those before it have ended; yield each end. Closing the iterator stops all.
 
     Args:
         stages: In an order in which each stands behind those that it comes after.
         request: What each of them is given; what those before it took is taken off the time of a stage.
         workers: Processes at a time.
+        ahead: Stages of later calls: what they need is loaded while these run.
     """
-    load_imports(stages)
+    load_imports(stages, ahead)
     waiting, ended = list(stages), dict[str, StageEnd]()
     active: dict[Connection, _Running] = {}
     try:
@@ -173,6 +184,8 @@ def run_stages(stages: list[Stage], request: StageRequest, *, workers: int) -> I
                 else:
                     receiver, running = _start(stage, request, max((end.seconds for end in before), default=0.0))
                     active[receiver] = running
+            load_imports(ahead)
+            ahead = ()
             for end in _listen(active, request):
                 ended[end.stage.name] = end
                 yield end

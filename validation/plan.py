@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from kinematify.simulation.engines import ENGINES
 from kinematify.validation.checks import CHECKS, checks_of
 from kinematify.validation.isolation import Stage
 from kinematify.validation.stages import agreement, as_loaded, asset, engine, evidence, geometry, prepare, task
@@ -12,6 +13,7 @@ from kinematify.validation.stages import agreement, as_loaded, asset, engine, ev
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
+    from kinematify.simulation.engines import EngineEntry
     from kinematify.validation.check import Check
 
 CheckKey = tuple[str, str | None]
@@ -50,6 +52,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
                 checks=checks,
                 after=("prepare",),
                 imports=("kinematify.validation.engine_context",),
+                library=_library(ENGINES[name], "engine"),
             )
         )
     return stages
@@ -63,10 +66,16 @@ def as_loaded_stages(chosen: Sequence[str]) -> list[Stage]:
             run=partial(as_loaded.run, engine=name),
             checks=tuple(key for key in keys(checks_of("KV8")) if key[1] == name),
             imports=("kinematify.validation.as_loaded_context",),
+            library=_library(ENGINES[name], "file"),
         )
         for name in chosen
         if any(name in check.engines for check in checks_of("KV8"))
     ]
+
+
+def _library(engine: EngineEntry, what: str) -> str | None:
+    """What can be loaded once for all stages of an engine; none that may be missing."""
+    return None if engine.prints_when_loaded or engine.extra else engine.module(what)
 
 
 def agreement_stage() -> Stage:

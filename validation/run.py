@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from kinematify.manipulation.request import TaskRequest
     from kinematify.robot.robot import Robot
     from kinematify.validation.check import Check
-    from kinematify.validation.isolation import StageEnd
+    from kinematify.validation.isolation import Stage, StageEnd
     from kinematify.validation.plan import CheckKey
     from kinematify.validation.summary import Summary
     from kinematify.validation.suppression import Suppression
@@ -167,14 +167,22 @@ class _Run:
 
     def all(self, request: StageRequest, workers: int) -> None:
         """Run everything that can run."""
-        load_imports()
+        if self.task is not None:
+            request = replace(request, selected=request.selected | _DOUBTS)
+        later = needed(later_stages(self.engines), request.selected)
+        plain = [
+            stage
+            for stage in as_loaded_stages(self.engines)
+            if any(name in request.selected for name, _ in stage.checks)
+        ]
+        load_imports(ahead=[asset_stage(), *later, *plain])
         asset_request = replace(request, selected=request.selected | _GUARDS)
         usable = precheck(asset_request, Recorder(self._take, asset_request.selected))
         self._progress("pre-check", 0.05)
         if not usable:
             self._explain_rest(Status.BLOCKED, "the pre-check found errors that no engine may see")
             return
-        (asset,) = run_stages([asset_stage()], asset_request, workers=1)
+        (asset,) = run_stages([asset_stage()], asset_request, workers=1, ahead=[*later, *plain])
         self._take_end(asset)
         self._progress("meshes and declared physics", 0.15)
         if asset.late:
@@ -185,30 +193,22 @@ class _Run:
         if fault is not None:
             self._explain_rest(Status.BLOCKED, fault)
             return
-        if self.task is not None:
-            request = replace(request, selected=request.selected | _DOUBTS)
-        stages = needed(later_stages(self.engines), request.selected)
-        for number, end in enumerate(run_stages(stages, request, workers=workers)):
+        for number, end in enumerate(run_stages(later, request, workers=workers)):
             self._take_end(end)
-            self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(stages))
+            self._progress(end.stage.name, 0.15 + 0.8 * (number + 1) / len(later))
         self._explain(
             [key for key in self._missing() if key[1] in set(ENGINES) - set(self.engines)],
             Status.SKIPPED,
             "the engine was not asked for",
         )
-        self._load_plainly(request, workers)
+        self._load_plainly(plain, request, workers)
         self._compare(request, self.engines)
         if self.task is not None:
             self._use(request, self.engines)
 
-    def _load_plainly(self, request: StageRequest, workers: int) -> None:
+    def _load_plainly(self, stages: list[Stage], request: StageRequest, workers: int) -> None:
         """Look at the untouched file in engines; what the exact geometry knows of the joints is known by now."""
         free = {name: joint.free_travel for name, joint in self._joints.items() if joint.free_travel is not None}
-        stages = [
-            stage
-            for stage in as_loaded_stages(self.engines)
-            if any(name in request.selected for name, _ in stage.checks)
-        ]
         for end in run_stages(stages, replace(request, free_travel=free), workers=workers):
             self._take_end(end)
             self._progress(end.stage.name, 0.95)

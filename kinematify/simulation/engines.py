@@ -44,6 +44,12 @@ class EngineEntry:
     """False: its integrator gains energy with its usual step, so energy is looked at with smaller ones."""
     stops_late: bool = False
     """True: a joint is stopped one step after it has passed its limit, and left where it stands then."""
+    prints_when_loaded: bool = False
+    """True: it may be loaded only where what is printed goes to a file."""
+
+    def module(self, what: str) -> str:
+        """Name of its module for an ``engine`` or a ``file``."""
+        return f"kinematify.simulation.{self.name}_{what}"
 
 
 _ENTRIES = (
@@ -57,6 +63,7 @@ _ENTRIES = (
         inflation=1e-3,
         keeps_energy=False,
         stops_late=True,
+        prints_when_loaded=True,
     ),
     EngineEntry(name="drake", title="Drake", package="drake", extra="drake", family="KV9"),
     EngineEntry(name="pinocchio", title="Pinocchio", package="pin", family="KV6", runs=False),
@@ -117,6 +124,6 @@ def load_file(name: str, urdf: Path, root: str, package_dirs: Sequence[Path] = (
 def _module(name: str, what: str) -> ModuleType:
     """A module of an engine; its library is imported here, one in a process."""
     try:
-        return importlib.import_module(f"kinematify.simulation.{name}_{what}")
+        return importlib.import_module(ENGINES[name].module(what))
     except ImportError as error:
         raise EnvironmentFault(_missing(ENGINES[name], str(error))) from error

@@ -40,6 +40,35 @@ class HullMeeting:
     """Share of the joint's free range in which they are in the way."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Hull:
+    """Convex hull of a collision shape, in the frame of its body."""
+
+    points: FloatArray
+    """Corners, and the middles of the faces (k, 3) [m]."""
+    planes: FloatArray
+    """Outward normals with their offsets (f, 4)."""
+
+    @cached_property
+    def middle(self) -> FloatArray:
+        """Centre of a sphere round it (3,) [m]."""
+        return np.asarray((self.points.min(axis=0) + self.points.max(axis=0)) / 2.0)
+
+    @cached_property
+    def radius(self) -> float:
+        """Of that sphere [m]."""
+        return float(np.linalg.norm(self.points - self.middle, axis=1).max())
+
+    def reached(self, other: _Hull, T: FloatArray) -> FloatArray:
+        """Depth of the deepest point of another hull, posed in this one's frame, in it [m], (n, 4, 4) -> (n,)."""
+        depth = np.zeros(len(T))
+        middle = T[:, :3, :3] @ other.middle + T[:, :3, 3]
+        near = (middle @ self.planes[:, :3].T + self.planes[:, 3]).max(axis=1) < other.radius
+        posed = other.points @ T[near, :3, :3].transpose(0, 2, 1) + T[near, None, :3, 3]
+        depth[near] = -(posed @ self.planes[:, :3].T + self.planes[:, 3]).max(axis=2).min(axis=1, initial=0.0)
+        return depth
+
+
 class HullView:
     """The bodies as engines see them."""
 
@@ -48,16 +77,16 @@ class HullView:
         self._scene, self._sweeper, self._allowance = scene, sweeper, allowance
 
     @cached_property
-    def _hulls(self) -> list[list[tuple[FloatArray, FloatArray]]]:
-        """For every body, of each shape the corners (k, 3) and the planes (f, 4) of its hull."""
+    def _hulls(self) -> list[list[_Hull]]:
+        """For every body, the hull of each shape."""
         return [[self._hull(points) for points in body.shapes] for body in self._scene.bodies]
 
-    def _hull(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _hull(self, points: FloatArray) -> _Hull:
         kept = outermost(points, self._scene.settings.hull_planes)
         hull = ConvexHull(thickened(kept, _THICKNESS * self._scene.size))
         corners = hull.points[hull.vertices]
         middles = hull.points[hull.simplices].mean(axis=1)
-        return np.concatenate([corners, middles]), np.asarray(hull.equations)
+        return _Hull(points=np.concatenate([corners, middles]), planes=np.asarray(hull.equations))
 
     def depth(self, pair: Pair, T: FloatArray) -> FloatArray:
         """Deepest point of one body's hulls in the other one's [m], poses (n, 4, 4) -> (n,)."""
@@ -66,7 +95,7 @@ class HullView:
         found = np.zeros(len(T))
         for one in first:
             for other in second:
-                found = np.maximum(found, np.maximum(_deepest(one[1], other[0], T), _deepest(other[1], one[0], back)))
+                found = np.maximum(found, np.maximum(one.reached(other, T), other.reached(one, back)))
         return found
 
     def blocked(self, sweep: JointSweep, samples: int) -> HullMeeting | None:
@@ -100,10 +129,3 @@ class HullView:
         if any(shape.concave for name in links for shape in self._scene.model.link_by_name[name].collisions):
             return False
         return pair not in self._scene.connection_of or pair[0] == 0
-
-
-def _deepest(planes: FloatArray, points: FloatArray, T: FloatArray) -> FloatArray:
-    """Depth of the deepest point, posed in the frame of the planes (f, 4), below all of them [m], (n, 4, 4) -> (n,)."""
-    posed = points @ T[:, :3, :3].transpose(0, 2, 1) + T[:, None, :3, 3]
-    depth = -(posed @ planes[:, :3].T + planes[:, 3]).max(axis=2)
-    return np.asarray(np.maximum(depth.max(axis=1), 0.0))
