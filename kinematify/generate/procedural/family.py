@@ -5,15 +5,18 @@ from __future__ import annotations
 import difflib
 import math
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.parameter import angle, choice, length, share
+from kinematify.generate.procedural.parameter import angle, choice, length, phrases, read_parameter, share
 from kinematify.generate.procedural.styles import STYLES
 from kinematify.generate.procedural.workshop import Workshop
+from kinematify.generate.shipped import read_table
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -100,6 +103,29 @@ COMMON = (
     ),
 )
 """Parameters of every family."""
+
+
+def family(name: str, build: Callable[[Values, Workshop], None]) -> Family:
+    """Return the family that `families.yaml` describes under a name, built by a function."""
+    said = _described()[name]
+    return Family(
+        name=name,
+        title=said["title"],
+        words=phrases(said["words"]),
+        parameters=tuple(read_parameter(asked, facts) for asked, facts in said["parameters"].items()),
+        build=build,
+        material=said.get("material", "wood"),
+        kinds={kind: usual for kinds, usual in said.get("kinds", {}).items() for kind in phrases(kinds)},
+        part_words={part: phrases(words) for part, words in said.get("part_words", {}).items()},
+    )
+
+
+@cache
+def _described() -> Mapping[str, Any]:
+    """Families by name."""
+    described: Mapping[str, Any] = read_table(Path(__file__).with_name("families.yaml"))
+    return described
+
 
 _NOT_DRAWN = ("material", "color")
 

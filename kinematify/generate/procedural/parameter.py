@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 Value = float | int | str
 _Range = tuple[float, float]
@@ -95,6 +95,18 @@ def choice(
         choice_words={key: phrases(said) for key, said in named.items() if said},
         drawn=drawn,
     )
+
+
+_KINDS: Mapping[str, Callable[..., Parameter]] = {
+    "length": length, "angle": angle, "share": share, "count": counted, "choices": choice,
+}  # fmt: skip
+
+
+def read_parameter(name: str, said: Mapping[str, Any]) -> Parameter:
+    """Return the parameter that a table describes: what it is with its default or choices, and the arguments above."""
+    kind = next(kind for kind in _KINDS if kind in said)
+    facts = {key: tuple(value) if isinstance(value, list) else value for key, value in said.items() if key != kind}
+    return _KINDS[kind](name, said[kind], **facts)
 
 
 def phrases(text: str) -> tuple[str, ...]:

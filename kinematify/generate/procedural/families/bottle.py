@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box, cylinder, turned
 
@@ -107,30 +106,4 @@ def _flip(values: Values, workshop: Workshop) -> None:
     workshop.turns("cap", "body", (-1, 0, 0), pivot, (0.0, 1.5), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="bottle",
-    title="bottle with a cap",
-    words=phrases(
-        "bottle, water bottle, wine bottle, drinking bottle, flask, milk bottle, bottle of water, thermos, "
-        "thermos flask, vacuum flask, perfume bottle, sports bottle, shampoo bottle, ketchup bottle, "
-        "medicine bottle, baby bottle, oil bottle, beer bottle, vinegar bottle, vial, "
-        "soda bottle, juice bottle"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.075, (0.04, 0.3), "Outer diameter.", usual=(0.055, 0.1), words="diameter"),
-        length("height", 0.24, (0.1, 0.6), "Without the cap.", usual=(0.16, 0.32)),
-        length("neck", 0.03, (0.024, 0.08), "Its diameter.", usual=(0.026, 0.04)),
-        choice(
-            "cap",
-            {
-                "screw": "screw top, screw on, twist, twist off, twisting",
-                "pull": "stopper, cork, plug, push on, pull off",
-                "flip": "flip top, hinged, flip up, snap",
-            },
-            "How it opens.",
-            words="lid, top",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("bottle", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box, cylinder, tray
 
@@ -82,29 +81,4 @@ def _loose(values: Values, workshop: Workshop) -> None:
     workshop.slides("lid", "body", (0, 0, 1), (0, 0.5 * depth, height), travel, rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="box",
-    title="box with a lid",
-    words=phrases(
-        "box, chest box, treasure chest, treasure chest box, toolbox, tool box, jewelry box, jewellery box, "
-        "crate, case, container, casket, trunk, lunch box, pencil box, storage box"
-        ", sewing kit box, money box, gift crate, apple crate"
-    ),
-    material="wood",
-    parameters=(
-        length("width", 0.3, (0.06, 2.0), "Outer width.", usual=(0.15, 0.6)),
-        length("depth", 0.2, (0.05, 1.5), "Outer depth.", usual=(0.1, 0.4)),
-        length("height", 0.15, (0.04, 1.5), "Without the lid.", usual=(0.06, 0.35)),
-        length("wall", 0.006, (0.003, 0.015), "Of the boards.", usual=(0.004, 0.012)),
-        choice(
-            "lid",
-            {"hinged": "hinge, flip", "sliding": "slide, slider", "loose": "lift off, removable"},
-            "How the lid moves.",
-        ),
-        choice(
-            "hinge", ("edge", "barrel", "piano"), "Of a hinged lid: hidden, two barrels, or one along the whole edge."
-        ),
-        choice("top", {"flat": "", "round": "vaulted, domed, curved"}, "Of a hinged lid."),
-    ),
-    build=_build,
-)
+FAMILY = family("box", _build)

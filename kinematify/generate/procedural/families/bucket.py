@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases, share
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.solids import bore, cylinder, ring, turned, union
 
 if TYPE_CHECKING:
@@ -75,32 +74,4 @@ def _vessel(values: Values) -> Manifold:
     return turned(_profile(values, 0.0, 0.0, height)) + bead
 
 
-FAMILY = Family(
-    name="bucket",
-    title="bucket",
-    words=phrases(
-        "bucket, pail, water bucket, paint bucket, cleaning bucket, mop bucket, sand bucket, "
-        "champagne bucket, feed bucket, milk pail, beach bucket, toy bucket, slop bucket"
-    ),
-    material="plastic",
-    parameters=(
-        length(
-            "width",
-            0.28,
-            (0.12, 0.8),
-            "Outer diameter of the rim, without the bead.",
-            usual=(0.2, 0.36),
-            words="diameter",
-        ),
-        length("height", 0.27, (0.1, 0.8), "To the rim.", usual=(0.2, 0.35)),
-        share("taper", 0.72, (0.5, 0.95), "Foot over rim.", usual=(0.62, 0.85)),
-        length("wire", 0.003, (0.002, 0.006), "Its radius.", usual=(0.0025, 0.004)),
-        choice(
-            "handle",
-            {"grip": "with a grip", "wire": "bare wire"},
-            "A bail with a grip around its top, or the wire alone.",
-            words="bail",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("bucket", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.solids import box
 
@@ -56,24 +55,4 @@ def _add_buttons(values: Values, workshop: Workshop, bottom: float, top: float) 
         add_button(workshop, f"button_{k + 1}", mount, size, travel=travel, is_round=is_round)
 
 
-FAMILY = Family(
-    name="button_panel",
-    title="button panel",
-    words=phrases(
-        "button panel, keypad, control panel, push button panel, number pad, elevator panel, key pad, "
-        "remote control, calculator"
-        ", numeric pad, lift panel, elevator button panel, call panel"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.12, (0.06, 0.6), "Outer width.", usual=(0.08, 0.25)),
-        length("height", 0.18, (0.08, 0.8), "Outer height.", usual=(0.12, 0.3)),
-        length("depth", 0.03, (0.02, 0.2), "Of the housing.", usual=(0.02, 0.06)),
-        counted("buttons", 12, (1, 24), "In rows, from the top left.", usual=(2, 16), words="key, push button"),
-        counted("columns", 3, (1, 6), "Of buttons.", usual=(1, 4), words="column"),
-        counted("knobs", 0, (0, 4), "Above the buttons.", usual=(0, 3), words="dial"),
-        choice("shape", {"square": "rectangular", "round": "circular"}, "Of the buttons."),
-        choice("display", {"none": "", "display": "screen"}, "A recess for a screen."),
-    ),
-    build=_build,
-)
+FAMILY = family("button_panel", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases, share
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, off
 
 if TYPE_CHECKING:
@@ -74,21 +73,4 @@ def _hand(dial: float, kind: int, hub: float, level: float) -> Manifold:
     return blade + cylinder(hub, (0, level - _THICK, 0), (0, level, 0), segments=32)
 
 
-FAMILY = Family(
-    name="clock",
-    title="clock",
-    words=phrases(
-        "clock, wall clock, kitchen clock, station clock, table clock, analog clock, watch, alarm clock, "
-        "wristwatch, pocket watch, desk clock, office clock, school clock, hallway clock, mantel clock"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.3, (0.12, 1.0), "Outer width or diameter.", usual=(0.2, 0.45), words="diameter"),
-        length("depth", 0.05, (0.04, 0.12), "Of the case.", usual=(0.04, 0.07)),
-        length("frame", 0.015, (0.006, 0.03), "Of the rim.", usual=(0.01, 0.025)),
-        counted("hands", 3, (1, 3), "Hours first.", usual=(2, 3), words="hand, pointer"),
-        share("time", 10.15, (0.0, 12.0), "That it shows [h].", usual=(0.0, 12.0)),
-        choice("shape", {"round": "circular", "square": "rectangular"}, "Of the case."),
-    ),
-    build=_build,
-)
+FAMILY = family("clock", _build)

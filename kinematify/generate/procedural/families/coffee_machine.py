@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, add_drawer, room
@@ -153,25 +152,4 @@ def _add_buttons(values: Values, workshop: Workshop) -> None:
         add_button(workshop, f"button_{k + 1}", mount, (cap, cap), travel=0.003, is_round=is_round)
 
 
-FAMILY = Family(
-    name="coffee_machine",
-    title="coffee machine",
-    words=phrases(
-        "coffee machine, coffee maker, espresso machine, coffeemaker, coffee brewer, coffee pot, "
-        "espresso maker, filter coffee machine, drip coffee maker, coffee brewing machine"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.22, (0.16, 0.8), "Outer width.", usual=(0.18, 0.3)),
-        length("depth", 0.26, (0.22, 0.5), "Outer depth.", usual=(0.24, 0.34)),
-        length("height", 0.34, (0.28, 0.6), "Outer height.", usual=(0.3, 0.42)),
-        choice(
-            "kind", {"filter": "drip, jug, carafe", "espresso": "portafilter"}, "A jug under a filter, or portafilters."
-        ),
-        counted("groups", 1, (1, 3), "For espresso.", usual=(1, 2), words="group, spout"),
-        counted("buttons", 2, (0, 5), "In a row.", usual=(0, 4), words="key"),
-        choice("button", ("square", "round"), "Their shape."),
-        choice("hinge", ("edge", "barrel"), "Of the filter: hidden or visible."),
-    ),
-    build=_build,
-)
+FAMILY = family("coffee_machine", _build)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import ball, bore, box, cylinder, off, rod, union
@@ -165,24 +164,4 @@ def _tube(half: float, start: float, end: float, inner: float, deep: float) -> M
     return bar - box((-inner, -inner, deep), (inner, inner, end + 1.0)) if inner else bar
 
 
-FAMILY = Family(
-    name="crane",
-    title="crane",
-    words=phrases(
-        "crane, tower crane, mobile crane, construction crane, hoist, toy crane, harbor crane, dock crane, "
-        "truck crane, toy tower crane, building crane"
-    ),
-    material="steel",
-    parameters=(
-        choice(
-            "kind",
-            {"tower": "", "mobile": "crawler, tracked, telescopic, telescoping"},
-            "A tower with a trolley on its jib, or a boom on tracks.",
-        ),
-        length("height", 3.0, (1.5, 20.0), "Of a tower; sets the scale.", usual=(2.0, 5.0)),
-        length("jib", 2.4, (1.0, 20.0), "Its length; of a boom drawn out.", usual=(1.6, 3.0), words="jib, boom"),
-        counted("sections", 2, (0, 4), "That a boom lengthens by.", usual=(0, 3), words="section"),
-        counted("wheels", 0, (0, 4), "Seen on each side.", usual=(0, 3), words="wheel"),
-    ),
-    build=_build,
-)
+FAMILY = family("crane", _build)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from manifold3d import Manifold
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import bent_fork, stub
 from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button, add_knob
 from kinematify.generate.procedural.solids import ball, cylinder, rod
@@ -81,29 +80,4 @@ def _add_switch(values: Values, workshop: Workshop) -> None:
         add_knob(workshop, "knob", mount, 0.12 * foot, rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="desk_lamp",
-    title="desk lamp",
-    words=phrases(
-        "desk lamp, lamp, table lamp, reading lamp, task lamp, work lamp, architect lamp, desk light, "
-        "study lamp, bedside lamp, drawing lamp, drafting lamp, led lamp, magnifying lamp, piano lamp, "
-        "anglepoise lamp, workshop lamp"
-    ),
-    material="metal",
-    part_words={"arm": ("arm segment", "segment")},
-    parameters=(
-        counted(
-            "joints",
-            3,
-            (1, 4),
-            "Hinges; the fourth lets the post turn.",
-            usual=(1, 4),
-            words="joint, hinge, degree of freedom, dof",
-        ),
-        length("arm", 0.3, (0.15, 0.8), "Length of an arm.", usual=(0.2, 0.4)),
-        length("base", 0.09, (0.06, 0.2), "Radius.", usual=(0.07, 0.12)),
-        length("shade", 0.06, (0.03, 0.12), "Radius.", usual=(0.045, 0.08)),
-        choice("switch", ("none", "button", "knob"), "On the base."),
-    ),
-    build=_build,
-)
+FAMILY = family("desk_lamp", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases, share
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
@@ -92,26 +91,4 @@ def _basket(lower: tuple[float, float, float], upper: tuple[float, float, float]
     return tray(lower, upper, wall) - union(*slots)
 
 
-FAMILY = Family(
-    name="dishwasher",
-    title="dishwasher",
-    words=phrases("dishwasher, dish washer, dish washing machine"),
-    material="metal",
-    parameters=(
-        length("width", 0.6, (0.4, 1.0), "Outer width.", usual=(0.45, 0.62)),
-        length("height", 0.82, (0.6, 1.1), "Outer height.", usual=(0.7, 0.88)),
-        length("depth", 0.58, (0.4, 0.8), "Outer depth of the body.", usual=(0.5, 0.62)),
-        counted("racks", 2, (1, 3), "Racks inside.", usual=(1, 3), words="basket, dish rack"),
-        share(
-            "reach",
-            0.3,
-            (0.1, 0.5),
-            "Way of the racks behind the closed door, as a share of the room's depth.",
-            usual=(0.2, 0.4),
-        ),
-        counted("buttons", 0, (0, 6), "Above the handle.", usual=(0, 5), words="key"),
-        choice("handle", ("bar", "cup", "edge"), "What the door is pulled by."),
-        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
-    ),
-    build=_build,
-)
+FAMILY = family("dishwasher", _build)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob, add_lever
 from kinematify.generate.procedural.pieces.handles import handle
@@ -157,38 +156,4 @@ def _add_folding_barrels(
             workshop.add(body, (half if level < 0 else half.mirror((0, 1, 0))).translate(place))
 
 
-FAMILY = Family(
-    name="door",
-    title="door",
-    words=phrases(
-        "door, doorway, gate, garden gate, front door, house door, interior door, room door, baby gate, "
-        "safety gate, yard gate, fence gate, cellar door, closet door, shower door, entrance door, "
-        "back door, office door, cell door, side gate, picket gate"
-    ),
-    material="wood",
-    parameters=(
-        length("width", 0.95, (0.7, 5.0), "Outer width.", usual=(0.8, 1.4)),
-        length("height", 2.05, (1.6, 4.0), "Outer height.", usual=(1.9, 2.3)),
-        length("thick", 0.04, (0.02, 0.06), "Of a leaf.", usual=(0.03, 0.05), words="thick, thickness"),
-        length("frame", 0.05, (0.03, 0.08), "Its bars' width.", usual=(0.04, 0.07)),
-        choice(
-            "kind",
-            {
-                "hinged": "swinging, swing, french",
-                "sliding": "slide, patio, barn",
-                "folding": "bifold, accordion, concertina",
-            },
-            "How leaves move.",
-        ),
-        counted(
-            "leaves", 1, (1, 4), "That move; a folding door has two at least.", usual=(1, 2), words="leaf, wing, door"
-        ),
-        counted("panels", 2, (0, 8), "In every leaf.", usual=(0, 4), words="panel"),
-        choice(
-            "handle", ("lever", "knob", "bar", "none"), "Levers and knobs turn; a sliding or folding leaf has a grip."
-        ),
-        choice("hinge", ("barrel", "edge"), "Visible hinges, or hidden ones."),
-        choice("hinge_side", ("left", "right"), "Of a single hinged leaf."),
-    ),
-    build=_build,
-)
+FAMILY = family("door", _build)

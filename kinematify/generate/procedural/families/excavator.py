@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import bent_fork, room
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
@@ -106,21 +105,4 @@ def _scoop(values: Values, radius: float, start: float) -> Manifold:
     return union(shell, ear, *teeth)
 
 
-FAMILY = Family(
-    name="excavator",
-    title="excavator",
-    words=phrases(
-        "excavator, digger, backhoe, mini excavator, power shovel, toy excavator, backhoe loader, "
-        "toy digger, trencher, crawler excavator"
-    ),
-    material="steel",
-    parameters=(
-        length("length", 2.6, (1.5, 5.0), "Of the tracks.", usual=(1.6, 4.0)),
-        length("width", 1.8, (1.0, 4.0), "Over the tracks.", usual=(1.2, 2.6)),
-        length("boom", 2.6, (1.6, 8.0), "Its length.", usual=(2.0, 4.0)),
-        length("stick", 1.6, (1.0, 5.0), "Its length.", usual=(1.2, 2.4), words="arm"),
-        length("bucket", 0.7, (0.3, 1.8), "Its size.", usual=(0.5, 1.0)),
-        counted("wheels", 0, (0, 4), "Seen on each side.", usual=(0, 3), words="wheel"),
-    ),
-    build=_build,
-)
+FAMILY = family("excavator", _build)

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import at, barrel
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, rod, union
 from kinematify.robot.transforms import rotation_about
@@ -120,21 +119,4 @@ def _about(axis: FloatArray, pivot: FloatArray, angle: float) -> FloatArray:
     return at(pivot - rotation @ pivot, rotation)
 
 
-FAMILY = Family(
-    name="eyeglasses",
-    title="pair of eyeglasses",
-    words=phrases(
-        "eyeglasses, glasses, pair of glasses, pair of eyeglasses, spectacles, pair of spectacles, sunglasses, "
-        "pair of sunglasses, reading glasses"
-        ", safety glasses, 3d glasses, ski glasses"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.138, (0.11, 0.17), "Of the frame.", usual=(0.125, 0.15)),
-        length("lens", 0.04, (0.025, 0.055), "Its height.", usual=(0.03, 0.048)),
-        length("bridge", 0.018, (0.014, 0.024), "Its width.", usual=(0.015, 0.022)),
-        length("temple", 0.135, (0.09, 0.16), "Length of a temple.", usual=(0.125, 0.148)),
-        choice("shape", {"rectangular": "square", "round": "circular"}, "Of the lenses.", words="lens, frame"),
-    ),
-    build=_build,
-)
+FAMILY = family("eyeglasses", _build)

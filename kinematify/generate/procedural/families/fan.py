@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.controls import FRONT, TOP, Mount, add_button, add_knob
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
@@ -146,25 +145,4 @@ def _add_controls(values: Values, workshop: Workshop, place: tuple[float, float,
             add_knob(workshop, "knob", mount, 0.016, rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="fan",
-    title="fan",
-    words=phrases(
-        "fan, ventilator, blower, table fan, floor fan, desk fan, pedestal fan, standing fan, room fan, "
-        "usb fan, electric fan"
-    ),
-    material="plastic",
-    parameters=(
-        choice(
-            "kind",
-            {"stand": "desk, table, floor, pedestal, standing", "ceiling": "", "box": "window"},
-            "On a stand, under a ceiling, or in a box.",
-        ),
-        counted("blades", 4, (2, 8), "Of the rotor.", usual=(3, 6), words="blade, wing, vane"),
-        length("diameter", 0.3, (0.16, 0.6), "Of stand or box fans' blades.", usual=(0.2, 0.45)),
-        length("span", 1.2, (0.6, 2.5), "Of a ceiling fan's blades.", usual=(0.9, 1.4)),
-        length("height", 0.5, (0.3, 1.8), "Of the whole; a box fan's follows from its diameter.", usual=(0.4, 1.2)),
-        counted("buttons", 0, (0, 4), "None: a knob.", usual=(0, 4), words="key"),
-    ),
-    build=_build,
-)
+FAMILY = family("fan", _build)

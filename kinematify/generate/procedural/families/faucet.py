@@ -6,8 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import fork, room, stub
 from kinematify.generate.procedural.solids import box, cylinder, off, rod, union
 
@@ -98,29 +97,4 @@ def _swivel(values: Values, workshop: Workshop) -> None:
     workshop.turns("lever", "body", (1, 0, 0), side, (0.0, 1.0), rest=rest)
 
 
-FAMILY = Family(
-    name="faucet",
-    title="faucet",
-    words=phrases(
-        "faucet, tap, water tap, kitchen tap, kitchen faucet, mixer tap, spigot, basin tap, bathroom faucet, "
-        "sink faucet, bath tap, garden tap, sink tap, outdoor tap, shower tap, bathtub faucet, lab tap"
-    ),
-    material="steel",
-    parameters=(
-        length("height", 0.24, (0.18, 0.6), "Of spout or post.", usual=(0.2, 0.36)),
-        length("reach", 0.16, (0.12, 0.35), "Of the spout, forward.", usual=(0.14, 0.22)),
-        length("pipe", 0.012, (0.008, 0.016), "Radius of the pipe.", usual=(0.01, 0.014)),
-        counted("handles", 2, (1, 2), "Of one with handles that twist.", usual=(1, 2)),
-        choice(
-            "handle",
-            {
-                "lever": "single lever, mixer",
-                "twist": "twist handle, twisting, twist, cross handle, knob, valve",
-                "swivel": "swivelling, swiveling, swivelling spout, swivel spout",
-            },
-            "What moves.",
-        ),
-        choice("cross", ("cross", "bar"), "Shape of handles that twist."),
-    ),
-    build=_build,
-)
+FAMILY = family("faucet", _build)

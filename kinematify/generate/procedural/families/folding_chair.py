@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.solids import bore, box, cylinder
 
 if TYPE_CHECKING:
@@ -84,23 +83,4 @@ def _hang(values: Values, workshop: Workshop, name: str, *, solids: list[Manifol
     workshop.turns(name, "frame", (1, 0, 0), (0, 0, level), (0.0, opens), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="folding_chair",
-    title="folding chair",
-    words=phrases(
-        "folding chair, foldable chair, camping chair, collapsible chair, garden chair, deck chair, "
-        "beach chair, lawn chair, patio chair, director chair, fishing chair, garden deck chair, "
-        "picnic chair, folding stool, folding seat"
-    ),
-    material="wood",
-    parameters=(
-        length("width", 0.44, (0.3, 0.7), "Outer width.", usual=(0.38, 0.5)),
-        length("height", 0.84, (0.7, 1.2), "When folded.", usual=(0.76, 0.95)),
-        length("seat", 0.44, (0.3, 0.5), "Level of the seat.", usual=(0.4, 0.47)),
-        length("depth", 0.35, (0.2, 0.42), "Of the seat.", usual=(0.3, 0.4)),
-        length("rail", 0.028, (0.022, 0.045), "Of the bars.", usual=(0.024, 0.034)),
-        counted("slats", 3, (1, 6), "Of the back.", usual=(1, 4), words="slat"),
-        counted("boards", 4, (1, 8), "Of the seat.", usual=(1, 6), words="board"),
-    ),
-    build=_build,
-)
+FAMILY = family("folding_chair", _build)

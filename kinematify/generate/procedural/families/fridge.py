@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
 from kinematify.generate.procedural.solids import box, tray
 
@@ -82,31 +81,4 @@ def _bins(opening: Opening, clearance: float) -> list[Manifold]:
     return [tray((left, -clearance - 1e-3, z), (right, _BIN, z + 0.08), 0.004) for z in levels]
 
 
-FAMILY = Family(
-    name="fridge",
-    title="fridge",
-    words=phrases(
-        "fridge, refrigerator, freezer, fridge freezer, icebox, cooler, minibar, mini fridge, kitchen fridge"
-    ),
-    material="metal",
-    parameters=(
-        length("width", 0.6, (0.4, 1.5), "Outer width.", usual=(0.55, 0.9)),
-        length("height", 1.7, (0.5, 2.4), "Outer height.", usual=(1.3, 2.0)),
-        length("depth", 0.6, (0.35, 1.0), "Outer depth of the body.", usual=(0.5, 0.7)),
-        counted("doors", 2, (1, 4), "Doors.", usual=(1, 4)),
-        choice(
-            "freezer",
-            {
-                "top": "freezer on top, freezer above, top freezer",
-                "bottom": "freezer below, freezer at the bottom, bottom freezer",
-                "side": "side by side, american",
-                "none": "french, without freezer, without a freezer, no freezer",
-            },
-            "Where the smaller compartment is; with none, two doors are a pair.",
-        ),
-        choice("hinge_side", ("right", "left"), "Of doors over the whole width."),
-        choice("handle", ("bar", "edge", "none"), "What doors are pulled by."),
-        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
-    ),
-    build=_build,
-)
+FAMILY = family("fridge", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.solids import box, cylinder, union
 
 if TYPE_CHECKING:
@@ -59,18 +58,4 @@ def _build(values: Values, workshop: Workshop) -> None:
     workshop.slides("ram", "carriage", (0, 0, -1), (0, -0.09, low), (0.0, stroke))
 
 
-FAMILY = Family(
-    name="gantry",
-    title="three-axis gantry",
-    words=phrases(
-        "gantry, three axis gantry, gantry robot, cartesian robot, portal, 3d printer, cnc machine, milling machine"
-        ", cnc router, laser cutter, laser engraver, pick and place machine, pen plotter, gantry crane, overhead crane"
-    ),
-    material="metal",
-    parameters=(
-        length("width", 0.9, (0.5, 4.0), "Between the sides.", usual=(0.6, 1.4)),
-        length("depth", 1.0, (0.4, 4.0), "Along the bed.", usual=(0.6, 1.5)),
-        length("height", 0.6, (0.4, 3.0), "Of the bridge.", usual=(0.45, 0.9)),
-    ),
-    build=_build,
-)
+FAMILY = family("gantry", _build)

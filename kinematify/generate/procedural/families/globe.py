@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import angle, choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import ball, bore, cylinder, ring, union
 
@@ -73,24 +72,4 @@ def _latitude(radius: float, angle: float) -> Manifold:
     return ring(radius * math.cos(angle), 0.008 * radius, sides=8).translate((0, 0, radius * math.sin(angle)))
 
 
-FAMILY = Family(
-    name="globe",
-    title="globe",
-    words=phrases("globe, world globe, earth globe, desk globe, terrestrial globe"),
-    material="plastic",
-    part_words={"base": ("stand",)},
-    parameters=(
-        length("diameter", 0.25, (0.1, 0.8), "Of the ball.", usual=(0.16, 0.36)),
-        length("post", 0.05, (0.03, 0.4), "Its height.", usual=(0.03, 0.12)),
-        angle("tilt", 0.41, (0.25, 0.6), "Of the axis.", usual=(0.3, 0.5)),
-        choice(
-            "mount", {"arc": "half meridian", "ring": "full meridian"}, "A half or a full meridian.", words="meridian"
-        ),
-        choice(
-            "foot",
-            {"fixed": "", "turning": "rotating foot, turning foot, swivel"},
-            "Whether the meridian turns on the foot.",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("globe", _build)

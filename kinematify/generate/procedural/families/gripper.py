@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
 
 if TYPE_CHECKING:
@@ -24,15 +23,4 @@ def _build(values: Values, workshop: Workshop) -> None:
         add_fingers(workshop, "finger", "palm", fingers, finger, clearance=clearance, rest=rest)
 
 
-FAMILY = Family(
-    name="gripper",
-    title="gripper",
-    words=phrases("gripper, parallel gripper, parallel jaw gripper, claw, robot gripper, grasper"),
-    material="metal",
-    parameters=(
-        counted("fingers", 2, (2, 6), "Two are parallel jaws.", usual=(2, 4), words="finger, jaw"),
-        length("width", 0.12, (0.06, 0.5), "Of two jaws.", usual=(0.08, 0.16)),
-        length("finger", 0.07, (0.05, 0.3), "Its length.", usual=(0.06, 0.1)),
-    ),
-    build=_build,
-)
+FAMILY = family("gripper", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import fork, room
 from kinematify.generate.procedural.solids import box, cylinder
 
@@ -48,19 +47,4 @@ def _build(values: Values, workshop: Workshop) -> None:
             parent, z = name, z + length
 
 
-FAMILY = Family(
-    name="hand",
-    title="robot hand",
-    words=phrases(
-        "hand, robot hand, robotic hand, dexterous hand, humanoid hand, prosthetic hand, "
-        "anthropomorphic hand, hand prosthesis, bionic hand"
-    ),
-    material="plastic",
-    parameters=(
-        counted("fingers", 4, (1, 8), "Side by side.", usual=(2, 5), words="finger"),
-        counted("joints", 3, (1, 5), "Of every finger.", usual=(2, 4), words="joint, phalanx, segment, knuckle"),
-        length("phalanx", 0.045, (0.02, 0.2), "First phalanx.", usual=(0.035, 0.06)),
-        length("finger_width", 0.018, (0.01, 0.06), "Width.", usual=(0.014, 0.022)),
-    ),
-    build=_build,
-)
+FAMILY = family("hand", _build)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import at
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import ball, cylinder, off
@@ -65,21 +64,4 @@ def _add_leg(values: Values, workshop: Workshop, leg: str, place: FloatArray) ->
     workshop.turns(f"{leg}_tibia", f"{leg}_femur", across, others[1], (-0.35, 0.9))
 
 
-FAMILY = Family(
-    name="hexapod",
-    title="robot on six legs",
-    words=phrases(
-        "hexapod, six legged robot, spider robot, robot spider, spider, hexapod robot, insect robot, "
-        "robot ant, robot insect, robotic spider, ant robot, beetle robot, toy spider"
-    ),
-    material="plastic",
-    parameters=(
-        counted("legs", 6, (4, 8), "Around the trunk.", usual=(6, 8), words="leg"),
-        counted("joints", 3, (2, 3), "Of every leg.", usual=(2, 3), words="joint, joint per leg, dof"),
-        length("trunk", 0.2, (0.12, 1.0), "Its diameter.", usual=(0.14, 0.3)),
-        length("femur", 0.12, (0.1, 0.5), "Its length.", usual=(0.1, 0.18)),
-        length("tibia", 0.16, (0.12, 0.5), "Its length.", usual=(0.13, 0.22)),
-        length("joint_radius", 0.018, (0.012, 0.025), "Of the stubs.", usual=(0.015, 0.02)),
-    ),
-    build=_build,
-)
+FAMILY = family("hexapod", _build)

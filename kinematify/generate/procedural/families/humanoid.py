@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.limbs import leg_solids, limb_solids
 from kinematify.generate.procedural.solids import ball, box, cylinder, hull, off, rod
@@ -156,25 +155,4 @@ def _add_arm(values: Values, workshop: Workshop, name: str, sy: int, shoulder: F
     workshop.turns(f"{name}_hand", f"{name}_forearm", (0, 0, 1), end, (-1.4, 1.4))
 
 
-FAMILY = Family(
-    name="humanoid",
-    title="robot with arms and legs",
-    words=phrases(
-        "humanoid, humanoid robot, android, biped, bipedal robot, person shaped robot, toy robot, robot toy, "
-        "wind up robot, robot figure, action figure, mannequin, articulated doll, "
-        "robot man, toy humanoid"
-    ),
-    material="plastic",
-    parameters=(
-        length("thigh", 0.36, (0.25, 0.6), "Its length.", usual=(0.3, 0.42)),
-        length("shank", 0.36, (0.25, 0.6), "Its length.", usual=(0.3, 0.42)),
-        length("torso", 0.42, (0.3, 0.7), "Its height.", usual=(0.36, 0.5)),
-        length("shoulders", 0.5, (0.36, 0.9), "Their width.", usual=(0.44, 0.56)),
-        length("upper_arm", 0.26, (0.16, 0.45), "Its length.", usual=(0.22, 0.3)),
-        length("forearm", 0.22, (0.15, 0.4), "Its length.", usual=(0.2, 0.28)),
-        length("joint_radius", 0.028, (0.02, 0.036), "Of the stubs.", usual=(0.022, 0.032)),
-        choice("feet", {"feet": "foot", "none": ""}, "Feet on ankles."),
-        choice("hands", ("turning", "fixed"), "Whether hands turn."),
-    ),
-    build=_build,
-)
+FAMILY = family("humanoid", _build)

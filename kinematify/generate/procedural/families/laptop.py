@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import grid
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import box
@@ -43,21 +42,4 @@ def _build(values: Values, workshop: Workshop) -> None:
     workshop.turns("screen", "base", (-1, 0, 0), pivot, (0.0, _OPENS), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="laptop",
-    title="laptop",
-    words=phrases(
-        "laptop, notebook, notebook computer, laptop computer, portable computer, macbook, chromebook, "
-        "netbook, ultrabook, toy laptop"
-    ),
-    material="metal",
-    part_words={"screen": ("lid", "display")},
-    parameters=(
-        length("width", 0.34, (0.2, 0.5), "Outer width.", usual=(0.28, 0.4)),
-        length("depth", 0.24, (0.15, 0.4), "Outer depth.", usual=(0.2, 0.28)),
-        length("base", 0.014, (0.008, 0.04), "Thickness below.", usual=(0.01, 0.024)),
-        length("screen", 0.007, (0.005, 0.02), "Thickness above.", usual=(0.005, 0.01)),
-        counted("knuckles", 3, (2, 5), "Of each of the two hinges.", usual=(3, 5)),
-    ),
-    build=_build,
-)
+FAMILY = family("laptop", _build)

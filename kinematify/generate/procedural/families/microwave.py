@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
@@ -75,19 +74,4 @@ def _add_controls(values: Values, workshop: Workshop, x: float, front: float) ->
         add_button(workshop, f"button_{k + 1}", mount(u, middle + v), cap, travel=0.002)
 
 
-FAMILY = Family(
-    name="microwave",
-    title="microwave oven",
-    words=phrases("microwave, microwave oven"),
-    material="plastic",
-    parameters=(
-        length("width", 0.5, (0.4, 0.8), "Outer width.", usual=(0.42, 0.6)),
-        length("height", 0.28, (0.22, 0.5), "Outer height.", usual=(0.25, 0.35)),
-        length("depth", 0.36, (0.25, 0.6), "Outer depth.", usual=(0.3, 0.45)),
-        counted("buttons", 6, (0, 12), "On the panel.", usual=(1, 12), words="key"),
-        counted("knobs", 0, (0, 2), "Above the buttons.", usual=(0, 2), words="dial"),
-        choice("handle", ("bar", "edge", "none"), "What the door is pulled by."),
-        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
-    ),
-    build=_build,
-)
+FAMILY = family("microwave", _build)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import at, bent_fork, stub
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
@@ -110,31 +109,4 @@ def _armrest(x: float, level: float) -> list[Manifold]:
     ]
 
 
-FAMILY = Family(
-    name="office_chair",
-    title="office chair",
-    words=phrases(
-        "office chair, swivel chair, desk chair, computer chair, chair, task chair, gaming chair, "
-        "drafting chair, conference chair, executive chair, student chair, kids desk chair, revolving chair, "
-        "spinning chair"
-    ),
-    material="plastic",
-    parameters=(
-        counted(
-            "castors",
-            5,
-            (3, 6),
-            "Each turns and has a wheel.",
-            usual=(4, 6),
-            words="castor, caster, wheel, roller, leg",
-        ),
-        length("width", 0.48, (0.36, 0.7), "Of the seat.", usual=(0.44, 0.54)),
-        length("depth", 0.46, (0.36, 0.65), "Of the seat.", usual=(0.42, 0.5)),
-        length("back", 0.5, (0.2, 0.9), "Its height.", usual=(0.35, 0.65)),
-        length("column", 0.2, (0.12, 0.4), "Its height.", usual=(0.16, 0.26)),
-        length("star", 0.3, (0.22, 0.42), "Length of an arm.", usual=(0.26, 0.34)),
-        length("wheel", 0.028, (0.02, 0.045), "Radius.", usual=(0.022, 0.034)),
-        choice("armrests", {"armrests": "armrest, arm", "none": "armless"}, "Beside the seat."),
-    ),
-    build=_build,
-)
+FAMILY = family("office_chair", _build)

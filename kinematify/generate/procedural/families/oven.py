@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_flap, carcass
 from kinematify.generate.procedural.solids import box, cylinder
@@ -70,22 +69,4 @@ def _window(opening: Opening, clearance: float) -> Manifold:
     )
 
 
-FAMILY = Family(
-    name="oven",
-    title="oven or stove",
-    words=phrases(
-        "oven, stove, cooker, range, kitchen stove, range cooker, gas stove, gas oven, electric stove, "
-        "cooking range, gas cooker"
-    ),
-    material="metal",
-    parameters=(
-        length("width", 0.6, (0.35, 1.2), "Outer width.", usual=(0.5, 0.9)),
-        length("height", 0.85, (0.45, 1.2), "Outer height.", usual=(0.6, 0.95)),
-        length("depth", 0.6, (0.35, 0.9), "Outer depth of the body.", usual=(0.5, 0.65)),
-        counted("knobs", 4, (0, 8), "Knobs above the door.", usual=(2, 6), words="dial"),
-        choice("top", {"burners": "cooktop, hob", "plain": "built in"}, "A cooktop, or a plain top."),
-        choice("handle", ("bar", "edge", "cup"), "What the door is pulled by."),
-        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
-    ),
-    build=_build,
-)
+FAMILY = family("oven", _build)

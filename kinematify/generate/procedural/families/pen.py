@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import bore, box, cylinder, ring, turned, union
 
@@ -104,22 +103,4 @@ def _twist(values: Values, workshop: Workshop) -> None:
     workshop.turns("grip", "barrel", (0, 1, 0), (0, middle, radius), (0.0, 3.0), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="pen",
-    title="pen",
-    words=phrases(
-        "pen, ballpoint pen, ballpoint, ball pen, biro, fountain pen, felt pen, marker, click pen, "
-        "retractable pen, gel pen, rollerball pen, mechanical pencil"
-    ),
-    material="plastic",
-    parameters=(
-        length("length", 0.14, (0.1, 0.2), "Of the barrel.", usual=(0.125, 0.155)),
-        length("width", 0.011, (0.009, 0.02), "Outer diameter.", usual=(0.0095, 0.013), words="diameter"),
-        choice(
-            "mechanism",
-            {"click": "clicking, push button, retractable, button", "cap": "capped", "twist": "twisting, twist action"},
-            "What moves.",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("pen", _build)

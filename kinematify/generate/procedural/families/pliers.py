@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
 from kinematify.generate.procedural.solids import box, hull, union
 
@@ -67,34 +66,4 @@ def _grooves(values: Values, gap: float, jaw: float) -> list[Manifold]:
     return [box((0.0, y, -1.0), (gap + 4e-4, y + 0.4 * step, 1.0)) for y in places]
 
 
-FAMILY = Family(
-    name="pliers",
-    title="pair of pliers",
-    words=phrases(
-        "pliers, pair of pliers, combination pliers, pincers, pair of pincers, wire cutters, wire cutter, "
-        "side cutter, nippers, wire stripper, crimping pliers, cutting pliers, bolt cutter, bolt cutters, "
-        "cable cutter, lineman pliers, long nose pliers, electrician pliers"
-    ),
-    material="steel",
-    parameters=(
-        length("length", 0.18, (0.1, 0.4), "Over all.", usual=(0.13, 0.25)),
-        length("thick", 0.01, (0.006, 0.02), "Of a lever.", usual=(0.008, 0.014)),
-        choice(
-            "jaws",
-            {
-                "flat": "combination, flat nose",
-                "needle": "needle nose, needle nosed, long nose, pointed",
-                "cutting": "cutter, side cutting, diagonal, diagonal cutting",
-            },
-            "Shape of the jaws.",
-            words="jaw, nose",
-        ),
-        choice(
-            "grips",
-            {"sleeve": "insulated, cushioned", "none": "bare"},
-            "Around the ends of the handles.",
-            words="grip, handle",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("pliers", _build)

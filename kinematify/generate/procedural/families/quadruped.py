@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.limbs import leg_solids
 from kinematify.generate.procedural.solids import box, cylinder, off
 
@@ -78,21 +77,4 @@ def _add_leg(
     workshop.turns(f"{leg}_shank", f"{leg}_thigh", (0, 1, 0), pivots[2], (-shank, shank))
 
 
-FAMILY = Family(
-    name="quadruped",
-    title="robot on four legs",
-    words=phrases(
-        "quadruped, robot dog, dog robot, dog, four legged robot, quadruped robot, robot cat, robotic dog, "
-        "robot horse, mechanical dog, toy dog"
-    ),
-    material="metal",
-    parameters=(
-        counted("joints", 3, (2, 3), "Of every leg.", usual=(2, 3), words="joint, joint per leg, dof"),
-        length("length", 0.4, (0.25, 2.0), "Of the trunk.", usual=(0.3, 0.7)),
-        length("width", 0.18, (0.14, 1.0), "Of the trunk.", usual=(0.16, 0.3)),
-        length("thigh", 0.2, (0.15, 0.6), "Its length.", usual=(0.16, 0.28)),
-        length("shank", 0.2, (0.12, 0.6), "Its length.", usual=(0.16, 0.28)),
-        length("joint_radius", 0.03, (0.02, 0.05), "Of the stubs.", usual=(0.024, 0.034)),
-    ),
-    build=_build,
-)
+FAMILY = family("quadruped", _build)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob, grid
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_door, carcass
 from kinematify.generate.procedural.solids import bore, cylinder, rod
@@ -57,25 +56,4 @@ def _add_lever(values: Values, workshop: Workshop, mount: Mount, length: float) 
     workshop.turns("handle", "door", -mount.outward, mount.place, (0.0, 0.5 * math.pi), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="safe",
-    title="safe",
-    words=phrases(
-        "safe, strongbox, strong box, vault, safe box, money safe, bank safe, office safe, home safe, hotel room safe"
-    ),
-    material="steel",
-    parameters=(
-        length("width", 0.35, (0.2, 1.2), "Outer width.", usual=(0.28, 0.6)),
-        length("height", 0.4, (0.2, 1.8), "Outer height.", usual=(0.28, 0.9)),
-        length("depth", 0.35, (0.2, 1.0), "Outer depth of the body.", usual=(0.25, 0.5)),
-        length("wall", 0.015, (0.01, 0.035), "Of the body.", usual=(0.012, 0.03)),
-        choice(
-            "lock",
-            {"dial": "combination lock, dial lock, round dial", "keypad": "buttons, key pad, digital lock"},
-            "What it is unlocked by.",
-        ),
-        choice("handle", {"lever": "", "wheel": "spoked handle, hand wheel"}, "What draws the bolts."),
-        choice("hinge", ("edge", "barrel"), "Hidden hinges, or visible ones."),
-    ),
-    build=_build,
-)
+FAMILY = family("safe", _build)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import stub
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
@@ -57,16 +56,4 @@ def _build(values: Values, workshop: Workshop) -> None:
     workshop.turns("tool", "spindle", (0, 0, 1), tip, (-3.1, 3.1))
 
 
-FAMILY = Family(
-    name="scara",
-    title="SCARA robot",
-    words=phrases("scara, scara robot, scara arm"),
-    material="metal",
-    parameters=(
-        length("upper_arm", 0.3, (0.15, 1.0), "First link.", usual=(0.2, 0.4)),
-        length("forearm", 0.25, (0.15, 1.0), "Second link.", usual=(0.2, 0.35)),
-        length("height", 0.35, (0.2, 1.0), "Of the column.", usual=(0.25, 0.45)),
-        length("stroke", 0.12, (0.05, 0.13), "Of the ram.", usual=(0.08, 0.13)),
-    ),
-    build=_build,
-)
+FAMILY = family("scara", _build)

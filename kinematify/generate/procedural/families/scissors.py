@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases, share
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.crossed import disc, riveted, strip
 from kinematify.generate.procedural.solids import box, hull
 
@@ -67,26 +66,4 @@ def _lever(values: Values, span: Span, *, large: bool) -> Manifold:
     return blade + (shank - over) + (neck - over - behind) + (ring - hole - over)
 
 
-FAMILY = Family(
-    name="scissors",
-    title="pair of scissors",
-    words=phrases(
-        "scissors, pair of scissors, shears, pair of shears, kitchen scissors, garden shears, "
-        "pruning shears, hedge shears, hedge clippers, secateurs, tin snips, paper scissors, nail scissors, "
-        "poultry shears, grass shears, bandage scissors, surgical scissors, sewing scissors, hair scissors, "
-        "craft scissors, kids scissors, herb scissors"
-    ),
-    material="steel",
-    parameters=(
-        length("length", 0.18, (0.08, 0.35), "Over all.", usual=(0.12, 0.25)),
-        share("blade", 0.5, (0.35, 0.65), "Share of the length.", usual=(0.42, 0.58)),
-        length("thick", 0.0025, (0.002, 0.004), "Of a blade.", usual=(0.002, 0.003)),
-        choice(
-            "loops",
-            ("round", "oval", "mixed"),
-            "Of the handles: both round, both long, or one of each.",
-            words="loop, handle",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("scissors", _build)

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import at, stub
 from kinematify.generate.procedural.pieces.jaws import add_fingers, add_jaws, finger_palm, jaw_rail
 from kinematify.generate.procedural.solids import box, cylinder, off
@@ -67,36 +66,4 @@ def _add_gripper(values: Values, workshop: Workshop, flange: str, place: Point) 
         add_fingers(frame, "finger", flange, fingers, _FINGER, clearance=clearance, rest=rest)
 
 
-FAMILY = Family(
-    name="serial_arm",
-    title="robot arm",
-    words=phrases(
-        "robot arm, arm, manipulator, robotic arm, serial arm, articulated arm, industrial robot, axis robot"
-        ", cobot, collaborative robot, welding robot, painting robot, robot manipulator, assembly robot"
-    ),
-    material="metal",
-    parameters=(
-        counted(
-            "joints",
-            6,
-            (1, 12),
-            "Joints in series.",
-            usual=(3, 7),
-            words="joint, dof, axis, degree of freedom, degrees of freedom",
-        ),
-        length("length", 0.9, (0.2, 3.0), "Sum of the links.", usual=(0.5, 1.5), words="reach"),
-        choice(
-            "gripper",
-            {
-                "none": "",
-                "jaws": "gripper, parallel gripper, jaw gripper",
-                "fingers": "finger gripper, fingered gripper",
-            },
-            "What is on its flange.",
-            drawn=False,
-        ),
-        counted("fingers", 3, (2, 6), "Of a gripper with fingers; two are jaws.", words="finger", drawn=False),
-        length("radius", 0.04, (0.01, 0.15), "Of joints.", usual=(0.03, 0.06)),
-    ),
-    build=_build,
-)
+FAMILY = family("serial_arm", _build)

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import fork, room
 from kinematify.generate.procedural.solids import cylinder, rod
 
@@ -55,18 +54,4 @@ def _hinge(workshop: Workshop, k: int, x: float, radius: float, clearance: float
     workshop.turns(f"segment_{k + 1}", f"segment_{k}", axis, (x, 0, radius), (-0.7, 0.7))
 
 
-FAMILY = Family(
-    name="snake",
-    title="snake robot",
-    words=phrases(
-        "snake, snake robot, worm robot, chain robot, snake arm, caterpillar robot, inchworm robot, "
-        "tentacle, tentacle robot, toy snake"
-    ),
-    material="plastic",
-    parameters=(
-        counted("segments", 8, (2, 40), "In a row.", usual=(4, 10), words="segment, module, link"),
-        length("radius", 0.03, (0.01, 0.2), "Of the body.", usual=(0.02, 0.05)),
-        length("segment", 0.15, (0.05, 1.0), "Its length.", usual=(0.12, 0.25)),
-    ),
-    build=_build,
-)
+FAMILY = family("snake", _build)

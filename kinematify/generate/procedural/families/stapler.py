@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, union
 
 if TYPE_CHECKING:
@@ -86,16 +85,4 @@ def _arm(values: Values, half: float, blade: float, axis: tuple[float, float]) -
     return union(top, *sides, driver)
 
 
-FAMILY = Family(
-    name="stapler",
-    title="stapler",
-    words=phrases("stapler, desk stapler, office stapler, toy stapler, booklet stapler"),
-    material="metal",
-    parameters=(
-        length("length", 0.15, (0.08, 0.3), "Of the base.", usual=(0.11, 0.2)),
-        length("width", 0.036, (0.026, 0.06), "At the ears.", usual=(0.03, 0.045)),
-        length("cover", 0.01, (0.006, 0.016), "Height of the arm.", usual=(0.008, 0.013)),
-        choice("cover_shape", ("flat", "round"), "Of the arm's top."),
-    ),
-    build=_build,
-)
+FAMILY = family("stapler", _build)

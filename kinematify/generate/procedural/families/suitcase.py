@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import barrel
 from kinematify.generate.procedural.pieces.castors import STEM, castor
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
@@ -141,26 +140,4 @@ def _add_wheels(values: Values, workshop: Workshop) -> None:
         workshop.add("front", *feet)
 
 
-FAMILY = Family(
-    name="suitcase",
-    title="suitcase",
-    words=phrases(
-        "suitcase, trolley case, luggage, travel case, roller suitcase, carry on, carry on suitcase, "
-        "cabin bag, rolling suitcase, wheeled suitcase, hand luggage, travel suitcase, travel trolley"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.4, (0.3, 0.7), "Of the shells.", usual=(0.34, 0.5)),
-        length("depth", 0.24, (0.18, 0.45), "Of both shells.", usual=(0.2, 0.3)),
-        length("height", 0.62, (0.4, 1.0), "With the wheels, the handle pushed in.", usual=(0.52, 0.75)),
-        counted(
-            "wheels", 4, (2, 4), "Castors; two of them only roll.", usual=(2, 4), words="wheel, roller, castor, caster"
-        ),
-        choice(
-            "handle",
-            {"trolley": "telescopic, telescoping, extendable, pull out", "side": "carrying"},
-            "One that is drawn out at the top, or only the one at the side.",
-        ),
-    ),
-    build=_build,
-)
+FAMILY = family("suitcase", _build)

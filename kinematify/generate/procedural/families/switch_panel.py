@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod
 
@@ -78,22 +77,4 @@ def _toggle(half: float, clearance: float) -> tuple[Manifold, Manifold]:
     return hub + stick, box((-wide, -1.0, -0.012 - clearance), (wide, 0.008 + clearance, 0.012 + clearance))
 
 
-FAMILY = Family(
-    name="switch_panel",
-    title="switch panel",
-    words=phrases(
-        "switch panel, light switch, wall switch, switch plate, switch, switchboard, dimmer switch, "
-        "toggle switch, rocker switch, double switch plate, lamp switch"
-    ),
-    material="plastic",
-    parameters=(
-        counted(
-            "rockers", 1, (1, 6), "Switches side by side.", usual=(1, 4), words="rocker, switch, gang, rocker switch"
-        ),
-        counted("dimmers", 0, (0, 2), "At the right.", usual=(0, 1), words="knob, dial"),
-        choice("kind", ("rocker", "toggle"), "Of the switches."),
-        length("pitch", 0.045, (0.03, 0.08), "Of switches.", usual=(0.035, 0.06)),
-        length("height", 0.085, (0.06, 0.15), "Of the plate.", usual=(0.075, 0.12)),
-    ),
-    build=_build,
-)
+FAMILY = family("switch_panel", _build)

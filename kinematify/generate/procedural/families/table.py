@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.errors import InputError
-from kinematify.generate.procedural.family import Family
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.layout import parse_layout
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
-from kinematify.generate.procedural.pieces.handles import HANDLES
 from kinematify.generate.procedural.solids import box, union
 
 if TYPE_CHECKING:
@@ -104,27 +102,4 @@ def _leg(x: float, y: float, height: float) -> Manifold:
     return box((x, y, 0), (x + _LEG, y + _LEG, height))
 
 
-FAMILY = Family(
-    name="table",
-    title="table or desk with drawers",
-    words=phrases(
-        "table, desk, writing desk, workbench, console table, vanity, side table, bench table, study desk, "
-        "writing table, school table, reading desk, entrance table"
-    ),
-    material="wood",
-    parameters=(
-        length("width", 1.2, (0.4, 4.0), "Outer width.", usual=(0.8, 1.8)),
-        length("depth", 0.6, (0.3, 2.0), "Outer depth.", usual=(0.45, 0.8)),
-        length("height", 0.74, (0.5, 1.5), "Outer height.", usual=(0.65, 0.95)),
-        length("top", 0.025, (0.01, 0.06), "Thickness of the top.", usual=(0.018, 0.045)),
-        counted("drawers", 2, (1, 5), "Drawers.", usual=(1, 4)),
-        choice(
-            "arrangement",
-            {"row": "side by side, in a row, next to each other", "pedestal": "stacked"},
-            "Drawers side by side under the top, or stacked at the right.",
-        ),
-        choice("layout", (), "Any other arrangement, e.g. '2*drawer | drawer | 2*drawer'; overrides the counts."),
-        choice("handle", HANDLES, "What drawers are pulled by."),
-    ),
-    build=_build,
-)
+FAMILY = family("table", _build)

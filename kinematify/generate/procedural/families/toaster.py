@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_knob
 from kinematify.generate.procedural.solids import box, cylinder, hull, union
 
@@ -79,19 +78,4 @@ def _add_tray(values: Values, workshop: Workshop) -> None:
     workshop.slides("tray", "body", (0, 1, 0), (0, depth, 0.016), (0.0, travel), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="toaster",
-    title="toaster",
-    words=phrases("toaster, bread toaster, pop up toaster, retro toaster, toy toaster"),
-    material="metal",
-    parameters=(
-        length("width", 0.19, (0.14, 0.5), "Outer width.", usual=(0.16, 0.32)),
-        length("depth", 0.28, (0.2, 0.5), "Outer depth.", usual=(0.24, 0.36)),
-        length("height", 0.19, (0.15, 0.35), "Outer height.", usual=(0.17, 0.24)),
-        counted("levers", 1, (1, 2), "In front.", usual=(1, 2), words="lever, handle"),
-        counted("slots", 2, (1, 2), "Per lever.", usual=(1, 2), words="slot, slice"),
-        choice("knob", {"knob": "dial", "none": ""}, "One beside every lever."),
-        choice("tray", {"tray": "crumb tray", "none": ""}, "For crumbs."),
-    ),
-    build=_build,
-)
+FAMILY = family("toaster", _build)

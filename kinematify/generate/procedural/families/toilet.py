@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import TOP, Mount, add_button
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, rod, union
 
@@ -123,16 +122,4 @@ def _add_flush(values: Values, workshop: Workshop, corner: tuple[float, float]) 
     workshop.turns("lever", "body", (0, 1, 0), (x, front, z), (0.0, 0.8), rest=rest)
 
 
-FAMILY = Family(
-    name="toilet",
-    title="toilet",
-    words=phrases("toilet, water closet, loo, lavatory, toilet bowl, commode toilet, wc, toilet seat, kids toilet"),
-    material="ceramic",
-    parameters=(
-        length("width", 0.4, (0.3, 0.6), "Outer width.", usual=(0.35, 0.45)),
-        length("depth", 0.68, (0.55, 0.9), "Outer depth.", usual=(0.6, 0.75)),
-        length("height", 0.4, (0.25, 0.55), "Of the bowl's rim.", usual=(0.36, 0.45)),
-        choice("flush", {"lever": "flush lever", "button": "flush button, push button"}, "What it is flushed by."),
-    ),
-    build=_build,
-)
+FAMILY = family("toilet", _build)

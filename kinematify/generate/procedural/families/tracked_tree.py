@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import bent_fork
 from kinematify.generate.procedural.pieces.tracks import Tracks, add_tracks, add_turntable
 from kinematify.generate.procedural.solids import ball, cylinder
@@ -67,23 +66,4 @@ def _along(lean: float) -> FloatArray:
     return np.array([0.0, -math.sin(lean), math.cos(lean)])
 
 
-FAMILY = Family(
-    name="tracked_tree",
-    title="tree of links on tracks",
-    words=phrases(
-        "tracked tree, tracked robot tree, robot tree, tracked robot, tree on tracks, tree of links, "
-        "linkage tree, tree linkage, kinematic tree, tree robot, branching robot"
-    ),
-    material="metal",
-    parameters=(
-        counted("branches", 4, (1, 8), "Around the trunk.", usual=(2, 6), words="branch, limb"),
-        counted("links", 2, (1, 3), "Of a branch.", usual=(1, 3), words="link, joint, joint per branch"),
-        counted("wheels", 0, (0, 4), "Seen on each side.", usual=(0, 3), words="wheel"),
-        length("length", 0.8, (0.4, 3.0), "Of the tracks.", usual=(0.6, 1.2)),
-        length("width", 0.6, (0.4, 2.0), "Over the tracks.", usual=(0.4, 0.9)),
-        length("trunk", 0.5, (0.2, 2.0), "Its height.", usual=(0.3, 0.8)),
-        length("link_length", 0.3, (0.25, 1.0), "Its length.", usual=(0.25, 0.5)),
-        length("joint_radius", 0.025, (0.015, 0.04), "Of the hinges.", usual=(0.02, 0.035)),
-    ),
-    build=_build,
-)
+FAMILY = family("tracked_tree", _build)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.handles import handle
 from kinematify.generate.procedural.pieces.lids import BackEdge, add_barrels
 from kinematify.generate.procedural.solids import bore, box, cylinder, tray
@@ -113,29 +112,4 @@ def _lift(values: Values, workshop: Workshop) -> None:
     workshop.slides("lid", "body", (0, 0, 1), (0, 0, height), (0.0, 1.2 * skirt), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="trash_can",
-    title="trash can",
-    words=phrases(
-        "trash can, garbage can, trash bin, garbage bin, dustbin, waste bin, rubbish bin, bin, trashcan, "
-        "pedal bin, wastebasket"
-        ", kitchen bin, recycling can, waste basket, step bin, office bin, litter bin, bathroom bin"
-    ),
-    material="plastic",
-    parameters=(
-        length("width", 0.28, (0.18, 0.8), "Outer width or diameter.", usual=(0.2, 0.42), words="diameter"),
-        length("height", 0.4, (0.2, 1.2), "Without the lid.", usual=(0.28, 0.7)),
-        choice(
-            "lid",
-            {
-                "pedal": "pedal bin, foot pedal",
-                "swing": "swing lid, swinging, flap, swing top",
-                "lift": "lifts, lifts off, lift off, loose, removable",
-            },
-            "How it opens.",
-            words="cover",
-        ),
-        choice("shape", ("round", "square"), "Of the bin."),
-    ),
-    build=_build,
-)
+FAMILY = family("trash_can", _build)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import fork
 from kinematify.generate.procedural.solids import bore, box, cylinder, hull, ring, rod
 
@@ -87,19 +86,4 @@ def _add_runner(values: Values, workshop: Workshop, top: float) -> None:
     workshop.slides("runner", "shaft", (0, 0, 1), (0, 0, start), (0.0, way), rest=values.number("open"))
 
 
-FAMILY = Family(
-    name="umbrella",
-    title="umbrella",
-    words=phrases(
-        "umbrella, parasol, sunshade, patio umbrella, garden umbrella, beach umbrella, sun umbrella, "
-        "market umbrella, rain umbrella, pocket umbrella, golf umbrella, cocktail umbrella, cafe umbrella"
-    ),
-    material="metal",
-    parameters=(
-        length("height", 0.85, (0.5, 1.5), "Over all.", usual=(0.7, 1.0)),
-        length("reach", 0.55, (0.2, 1.0), "Of a slat.", usual=(0.4, 0.65)),
-        counted("ribs", 8, (4, 12), "Around the shaft.", usual=(6, 10), words="rib, slat"),
-        choice("handle", {"crook": "crooked, hooked, curved", "straight": ""}, "What it stands on."),
-    ),
-    build=_build,
-)
+FAMILY = family("umbrella", _build)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.bearings import barrel, stub
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_button, add_knob
 from kinematify.generate.procedural.pieces.fronts import Fitting, Opening, add_drawer, room
@@ -95,23 +94,4 @@ def _add_controls(values: Values, workshop: Workshop) -> None:
         add_button(workshop, f"button_{k + 1}", mount, (0.2 * width / count - 2 * clearance, 0.014), travel=0.003)
 
 
-FAMILY = Family(
-    name="washing_machine",
-    title="washing machine",
-    words=phrases(
-        "washing machine, washer, dryer, tumble dryer, laundry machine, clothes washer, front loading washer, "
-        "front loading washing machine, front loader"
-        ", toy washing machine, laundry washer"
-    ),
-    material="metal",
-    part_words={"door": ("round door", "porthole")},
-    parameters=(
-        length("width", 0.6, (0.4, 0.9), "Outer width.", usual=(0.5, 0.7)),
-        length("height", 0.85, (0.55, 1.2), "Outer height.", usual=(0.75, 0.95)),
-        length("depth", 0.55, (0.35, 0.8), "Outer depth of the body.", usual=(0.45, 0.65)),
-        counted("buttons", 4, (0, 6), "At the right.", usual=(0, 6), words="key"),
-        choice("knob", ("endless", "stops"), "Whether the programme knob turns without end."),
-        choice("hinge_side", ("left", "right"), "Of the door."),
-    ),
-    build=_build,
-)
+FAMILY = family("washing_machine", _build)

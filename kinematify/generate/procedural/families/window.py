@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kinematify.generate.procedural.family import Family
-from kinematify.generate.procedural.parameter import choice, counted, length, phrases
+from kinematify.generate.procedural.family import family
 from kinematify.generate.procedural.pieces.controls import FRONT, Mount, add_lever
 from kinematify.generate.procedural.pieces.leaves import (
     Field,
@@ -132,34 +131,4 @@ def _add_handle(
     add_lever(workshop, name, mount, 2.2 * bar, arm=arm, swing=swing, through=False, rest=rest)
 
 
-FAMILY = Family(
-    name="window",
-    title="window",
-    words=phrases(
-        "window, skylight, roof window, house window, basement window, casement window, attic window, "
-        "bathroom window, kitchen window"
-    ),
-    material="wood",
-    parameters=(
-        length("width", 1.0, (0.6, 4.0), "Outer width.", usual=(0.6, 1.6)),
-        length("height", 1.2, (0.5, 3.0), "Outer height.", usual=(0.6, 1.6)),
-        length("frame", 0.05, (0.03, 0.08), "Its bars' width.", usual=(0.04, 0.07)),
-        choice(
-            "kind",
-            {
-                "casement": "hinged, swinging, french",
-                "sliding": "slide, gliding",
-                "tilt": "tilting, tilted, hopper, bottom hung",
-                "awning": "top hung",
-                "pivot": "pivoting, pivoted",
-            },
-            "Sashes turn about a side, slide, turn about the lower or upper edge, or about their middle.",
-        ),
-        counted("sashes", 1, (1, 3), "That move.", usual=(1, 3), words="sash, window, pane, casement"),
-        counted("rows", 1, (1, 4), "Of panes in a sash.", usual=(1, 2)),
-        counted("columns", 1, (1, 3), "Of panes in a sash.", usual=(1, 2)),
-        choice("hinge", ("barrel", "edge"), "Visible hinges, or hidden ones."),
-        choice("handle", ("lever", "none"), "A handle that turns on hinged sashes."),
-    ),
-    build=_build,
-)
+FAMILY = family("window", _build)

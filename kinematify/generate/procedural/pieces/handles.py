@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 
     from kinematify.generate.procedural.solids import Point
 
-HANDLES = ("bar", "knob", "cup", "edge", "none")
-"""Kinds, as in ``--set handle=``."""
 _SUNK = 1e-3  # how deep a handle reaches into its front, so that both are one solid
 
 
@@ -20,7 +18,7 @@ def handle(kind: str, at: Point, *, along: str, length: float) -> list[Manifold]
     """Return the solids of a handle.
 
     Args:
-        kind: Of `HANDLES`.
+        kind: ``bar``, ``knob``, ``cup``, ``edge`` or ``none``.
         at: Where its middle meets the front [m]; the front's outer face lies in y = at[1].
         along: ``x`` or ``z``, the direction of a long one.
         length: Of a long one [m].
