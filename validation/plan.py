@@ -40,7 +40,7 @@ def later_stages(chosen: Sequence[str]) -> list[Stage]:
             name="evidence",
             run=evidence.run,
             checks=keys(checks_of("KV34", "KV35")),
-            imports=("kinematify.validation.evidence.case", "kinematify.validation.evidence.measure"),
+            imports=tuple(f"kinematify.validation.evidence.{name}" for name in ("bodies", "case", "measure", "pins")),
         ),
     ]
     for name in chosen:
