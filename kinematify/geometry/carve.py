@@ -55,8 +55,10 @@ _BEGUN = 0.25
 """Share of a step that lies within a range if the step counts as one within it."""
 _DIRECTIONS = 6
 """Steps of a sweep whose face planes are tried as cuts."""
-_BLOCK = 10_000_000
-"""Numbers in a table that is held at once; hulls of scanned parts have thousands of corners and faces."""
+_MANY = 10_000_000
+"""Corners times normals of which inner corners are left out first: hulls of scanned parts have thousands of each."""
+_CACHED = 200_000
+"""Numbers in a table that is made at once: they fit the processor's cache."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -368,7 +370,16 @@ class _Path:
 
     def near(self, moving: Sequence[_Polytope], resting: Sequence[_Polytope]) -> list[tuple[_Polytope, _Polytope]]:
         """Pairs whose boxes meet in some step, those of the first pieces last."""
-        found = [(item, other) for item in moving for other in resting if self._box_steps(item, other).any()]
+        if not resting:
+            return []
+        lows = np.stack([other.low for other in resting]) - self._clearance
+        highs = np.stack([other.high for other in resting]) + self._clearance
+        found = []
+        for item in moving:
+            low, high = self._boxes(item)
+            close = np.flatnonzero(all_three((low.min(axis=0) <= highs) & (high.max(axis=0) >= lows)))
+            meet = all_three((low <= highs[close, None]) & (high >= lows[close, None])).any(axis=1)
+            found += [(item, resting[index]) for index in close[meet].tolist()]
         return found[::-1]
 
     def _box_steps(self, moving: _Polytope, resting: _Polytope) -> BoolArray:
@@ -459,7 +470,7 @@ class _Path:
 
 def _support(normals: FloatArray, points: FloatArray) -> FloatArray:
     """How far points reach along each normal, shape (k,)."""
-    if len(normals) * len(points) > _BLOCK:
+    if len(normals) * len(points) > _MANY:
         points = points[ConvexHull(points, qhull_options="QJ").vertices]
-    blocks = np.array_split(normals, 1 + len(normals) * len(points) // _BLOCK)
+    blocks = np.array_split(normals, 1 + len(normals) * len(points) // _CACHED)
     return np.concatenate([(block @ points.T).max(axis=1) for block in blocks])

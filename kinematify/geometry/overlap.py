@@ -146,6 +146,11 @@ def _reach_into(body: Solid, other: Solid, T: FloatArray) -> FloatArray:
 def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: float) -> FloatArray:
     """`Overlap.passed` for the walls of `body` and the points of `other`."""
     path = _posed(other.points + _SHRINK * (other.middle - other.points), T)
+    few = max(1, int(_FEW * path.shape[1]))
+    near = all_three((path.min(axis=0) <= body.high) & (path.max(axis=0) >= body.low))
+    if np.count_nonzero(near) < few:
+        return np.zeros(len(T))
+    path = path[:, near]
     steps = np.diff(path, axis=0)
     way = np.cumsum(lengths_of(steps), axis=0)
     last_free = np.maximum.accumulate(np.where(hit, 0, np.arange(len(T))))
@@ -165,7 +170,6 @@ def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: flo
             through = (crossings > 0) & (body.inside(path[0]) == 0.0)
             through[through] = body.inside(path[through]) == 0.0
             beyond[through] = np.maximum(beyond[through], body.beside_closed(path[through]))
-    few = max(1, int(_FEW * path.shape[1]))
     return np.asarray(np.partition(beyond, -few, axis=1)[:, -few])
 
 

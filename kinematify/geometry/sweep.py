@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,6 +89,7 @@ class Sweeper:
     def __init__(self, scene: Scene, overlap: Overlap, allowance: Allowance) -> None:
         """Keep what is shared by all joints."""
         self._scene, self._overlap, self._allowance = scene, overlap, allowance
+        self._way = lru_cache(maxsize=2)(self._way_to_end)  # one joint's pairs are asked about in a row
 
     @classmethod
     def of(cls, scene: Scene) -> Sweeper:
@@ -108,9 +110,8 @@ class Sweeper:
 
     def meeting(self, leader: int, pair: Pair, sign: float) -> Meeting | None:
         """What one pair meets within the declared range on the way to one side, as in `sweep`."""
-        travel = self._scene.travels[leader]
-        values = self._to(leader, travel.rest, travel.upper if sign > 0 else travel.lower, sign)
-        return self._within(leader, pair, values, relative(self._scene.poses(self.rows(leader, values)), pair))
+        values, poses = self._way(leader, sign)
+        return self._within(leader, pair, values, relative(poses, pair))
 
     def free_end(self, leader: int, sign: float) -> float:
         """Value on the way to the declared end of one side up to which no pair meets [rad or m]."""
@@ -132,9 +133,7 @@ class Sweeper:
 
     def _side(self, leader: int, sign: float, own: frozenset[Pair]) -> Side:
         travel, scene = self._scene.travels[leader], self._scene
-        declared = travel.upper if sign > 0 else travel.lower
-        values = self._to(leader, travel.rest, declared, sign)
-        poses = scene.poses(self.rows(leader, values))
+        values, poses = self._way(leader, sign)
         found = {pair: self._within(leader, pair, values, relative(poses, pair)) for pair in scene.affected[leader]}
         beyond = self._to(leader, float(values[-1]), self._far_end(travel, sign), sign)
         for pair in own:
@@ -147,6 +146,12 @@ class Sweeper:
             meetings=tuple(meetings),
             gaps=tuple(gap for pair in sorted(own) for gap in self._widest(pair, values, relative(poses, pair))),
         )
+
+    def _way_to_end(self, leader: int, sign: float) -> tuple[FloatArray, FloatArray]:
+        """Values (n,) from rest to the declared end of one side, and the poses of all bodies there, (n, B, 4, 4)."""
+        travel = self._scene.travels[leader]
+        values = self._to(leader, travel.rest, travel.upper if sign > 0 else travel.lower, sign)
+        return values, self._scene.poses(self.rows(leader, values))
 
     def _far_end(self, travel: Travel, sign: float) -> float:
         """How far it is worth looking: one more range, at most half a turn from rest, never less than declared."""

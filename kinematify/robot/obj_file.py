@@ -270,18 +270,23 @@ def write_obj(
     Raises:
         OSError: It cannot be written.
     """
-    text = repr if digits is None else f"{{:.{digits}g}}".format
+    number = "%r" if digits is None else f"%.{digits}g"
     with path.open("w", encoding="ascii") as file:
         if appearance is not None:
             file.write(f"mtllib {path.stem}.mtl\n")
-        file.writelines(f"v {text(x)} {text(y)} {text(z)}\n" for x, y, z in vertices.tolist())
+        file.write(_formatted(f"v {number} {number} {number}\n", vertices))
         if appearance is not None:
             _write_painted_faces(file, path, faces, appearance)
         elif uv is not None:
-            file.writelines(f"vt {u:.6g} {v:.6g}\n" for u, v in uv.tolist())
-            file.writelines(f"f {a}/{a} {b}/{b} {c}/{c}\n" for a, b, c in (faces + 1).tolist())
+            file.write(_formatted("vt %.6g %.6g\n", uv))
+            file.write(_formatted("f %d/%d %d/%d %d/%d\n", np.repeat(faces + 1, 2, axis=1)))
         else:
-            file.writelines(f"f {a} {b} {c}\n" for a, b, c in (faces + 1).tolist())
+            file.write(_formatted("f %d %d %d\n", faces + 1))
+
+
+def _formatted(line: str, rows: FloatArray | IntArray) -> str:
+    """A line for every row; one long format takes half the time of many."""
+    return line * len(rows) % tuple(rows.reshape(-1).tolist())
 
 
 def _write_painted_faces(file: TextIO, path: Path, faces: IntArray, appearance: Appearance) -> None:

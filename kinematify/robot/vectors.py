@@ -45,5 +45,5 @@ def highest(points: FloatArray) -> FloatArray:
 
 
 def all_three(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """True where x, y and z are, as ``flags.all(axis=1)``, (n, 3) -> (n,)."""
-    return np.asarray(flags[:, 0] & flags[:, 1] & flags[:, 2])
+    """True where x, y and z are, as ``flags.all(axis=-1)``, (..., 3) -> (...)."""
+    return np.asarray(flags[..., 0] & flags[..., 1] & flags[..., 2])

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematify.joints.hypotheses.centres import centre_lines
 from kinematify.joints.hypotheses.frames import UP
-from kinematify.joints.measure.sweep import moving_points, sweep_turns
+from kinematify.joints.measure.sweep import moving_points, turn_paths
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
@@ -92,13 +92,9 @@ def rank_turns(scene: JointScene, config: JointsConfig, given: Sequence[Line] = 
     lines = propose_lines(scene, config, given)
     points = moving_points(scene.cache, scene.child, config.sweep)
     limit = np.radians(config.panels.sweep_deg)
-    with_parent = sweep_turns(
-        scene.cache, points, lines.axes, lines.pivots, (scene.parent,), limit=limit, config=config.sweep
-    )
-    with_others = sweep_turns(
-        scene.cache, points, lines.axes, lines.pivots, scene.others, limit=limit, config=config.sweep
-    )
-    everything = with_parent.joined(with_others)
+    paths = turn_paths(scene.cache, points, lines.axes, lines.pivots, limit=limit, config=config.sweep)
+    with_parent = paths.against((scene.parent,))
+    everything = with_parent.joined(paths.against(scene.others))
     outward = _outwardness(scene, lines)
     cues = {
         **_motion_cues(scene, lines, with_parent, everything, outward, config=config),

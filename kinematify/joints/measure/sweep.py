@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.robot.vectors import crossed, lengths_of
+from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,6 +62,62 @@ def moving_points(cache: PartCache, part: int, config: SweepConfig) -> FloatArra
     return np.asarray(centre + (1.0 - config.shrink) * (chosen - centre))
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Paths:
+    """The ways of points in both directions of several candidates, in straight pieces."""
+
+    cache: PartCache
+    ends: tuple[FloatArray, FloatArray]
+    """Ends of the pieces of every counted point, along + and - [m], shape (k + 1, m, 3) each.
+
+    NumPy is five times as fast along a first axis."""
+    motions: FloatArray
+    """Motion at these ends [rad or m], shape (k + 1, m)."""
+    counted: FloatArray
+    """As in `Sweep`; m of them are not 0."""
+    limit: float
+    """As in `Sweep`."""
+
+    def against(self, obstacles: Sequence[int]) -> Sweep:
+        """First hits of some parts."""
+        hits = np.full((len(self.counted), 2, self.counted.shape[1]), np.inf)
+        for side, ends in enumerate(self.ends):
+            if ends.size:
+                way = self.motions[:-1] + _fractions(self.cache, ends, obstacles) * np.diff(self.motions, axis=0)
+                hits[:, side][self.counted > 0] = way.min(axis=0)
+        return Sweep(hits=hits, counted=self.counted, limit=self.limit)
+
+
+def turn_paths(
+    cache: PartCache, points: FloatArray, axes: FloatArray, pivots: FloatArray, *, limit: float, config: SweepConfig
+) -> Paths:
+    """Ways of points that turn about several lines.
+
+    Args:
+        cache: Ray-casting scenes.
+        points: Points of the moving part, world frame [m], shape (n, 3).
+        axes: Unit directions, shape (c, 3).
+        pivots: Points on the lines [m], shape (c, 3).
+        limit: Largest angle [rad].
+        config: Step, shrinkage, hinge zone and grace distance.
+    """
+    offset = points[None] - pivots[:, None]
+    along = np.einsum("cnk,ck->cn", offset, axes)
+    feet = pivots[:, None] + along[..., None] * axes[:, None]
+    radial = points[None] - feet
+    radius = lengths_of(radial)
+    tangent = crossed(axes[:, None], radial)
+    use = radius > config.hinge_zone * radius.max(axis=1, keepdims=True)
+    # Parts that overlap a little where they touch leave the overlap during the grace distance.
+    start = np.minimum(config.grace * cache.diagonal / np.maximum(radius[use], 1e-12), 0.5 * limit)
+    n_steps = max(1, int(np.ceil(limit / np.radians(config.step_deg))))
+    motions = start + (limit - start) * (np.arange(n_steps + 1) / n_steps)[:, None]
+    straight = feet[use] + np.cos(motions)[..., None] * radial[use]
+    aside = np.sin(motions)[..., None] * tangent[use]
+    ends = straight + aside, straight - aside
+    return Paths(cache=cache, ends=ends, motions=motions, counted=use.astype(np.float64), limit=limit)
+
+
 def sweep_turns(
     cache: PartCache,
     points: FloatArray,
@@ -72,35 +128,8 @@ def sweep_turns(
     limit: float,
     config: SweepConfig,
 ) -> Sweep:
-    """Turn points about several lines, both ways.
-
-    Args:
-        cache: Ray-casting scenes.
-        points: Points of the moving part, world frame [m], shape (n, 3).
-        axes: Unit directions, shape (c, 3).
-        pivots: Points on the lines [m], shape (c, 3).
-        obstacles: Parts that may be hit.
-        limit: Largest angle [rad].
-        config: Step, shrinkage, hinge zone and grace distance.
-    """
-    offset = points[None] - pivots[:, None]
-    along = np.einsum("cnk,ck->cn", offset, axes)
-    feet = pivots[:, None] + along[..., None] * axes[:, None]
-    radial = points[None] - feet
-    radius = lengths_of(radial)
-    tangent = crossed(axes[:, None], radial)
-    reach = radius.max(axis=1, keepdims=True)
-    counted = (radius > config.hinge_zone * reach).astype(np.float64)
-    # Parts that overlap a little where they touch leave the overlap during the grace distance.
-    start = np.minimum(config.grace * cache.diagonal / np.maximum(radius, 1e-12), 0.5 * limit)
-    n_steps = max(1, int(np.ceil(limit / np.radians(config.step_deg))))
-    grid = start[..., None] + (limit - start)[..., None] * (np.arange(n_steps + 1) / n_steps)
-    hits = np.full((len(axes), 2, len(points)), np.inf)
-    straight = feet[:, :, None] + np.cos(grid)[..., None] * radial[:, :, None]
-    aside = np.sin(grid)[..., None] * tangent[:, :, None]
-    for side, sign in enumerate((1.0, -1.0)):
-        hits[:, side] = _first_hits(cache, straight + sign * aside, grid, counted, obstacles)
-    return Sweep(hits=hits, counted=counted, limit=limit)
+    """Turn points about several lines, both ways, among the parts that are obstacles; arguments as in `turn_paths`."""
+    return turn_paths(cache, points, axes, pivots, limit=limit, config=config).against(obstacles)
 
 
 def sweep_slides(
@@ -114,42 +143,25 @@ def sweep_slides(
 ) -> Sweep:
     """Slide points along several directions, both ways, up to `limit` [m]; arguments as in `sweep_turns`."""
     start = min(config.grace * cache.diagonal, 0.5 * limit)
-    shape = (len(axes), len(points))
-    grid = np.broadcast_to(np.array([start, limit]), (*shape, 2))
-    counted = np.ones(shape)
-    hits = np.full((len(axes), 2, len(points)), np.inf)
-    for side, sign in enumerate((1.0, -1.0)):
-        path = points[None, :, None] + sign * grid[..., None] * axes[:, None, None]
-        hits[:, side] = _first_hits(cache, path, grid, counted, obstacles)
-    return Sweep(hits=hits, counted=counted, limit=limit)
+    counted = np.ones((len(axes), len(points)))
+    motions = np.broadcast_to(np.array([[start], [limit]]), (2, counted.size))
+    resting, way = np.tile(points, (len(axes), 1)), motions[..., None] * np.repeat(axes, len(points), axis=0)
+    paths = Paths(cache=cache, ends=(resting + way, resting - way), motions=motions, counted=counted, limit=limit)
+    return paths.against(obstacles)
 
 
-def _first_hits(
-    cache: PartCache, path: FloatArray, grid: FloatArray, counted: FloatArray, obstacles: Sequence[int]
-) -> FloatArray:
-    """Motion at the first hit of each path (c, n, k + 1, 3) at motions `grid` (c, n, k + 1); inf if none, (c, n)."""
-    use = counted > 0
-    used = path[use]
-    pieces = np.full((*grid.shape[:2], grid.shape[2] - 1), np.inf)
-    if len(used):
-        pieces[use] = _fractions(cache, used, obstacles)
-    motions = grid[:, :, :-1] + pieces * np.diff(grid, axis=2)
-    return np.asarray(motions.min(axis=2))
-
-
-def _fractions(cache: PartCache, paths: FloatArray, obstacles: Sequence[int]) -> FloatArray:
-    """Fraction of each piece of paths (m, k + 1, 3) up to its first hit; inf where it meets nothing, (m, k)."""
-    ends = np.ascontiguousarray(paths.transpose(1, 0, 2))  # along the first axis NumPy is five times as fast
+def _fractions(cache: PartCache, ends: FloatArray, obstacles: Sequence[int]) -> FloatArray:
+    """Fraction of each piece of paths (k + 1, m, 3) up to its first hit; inf where it meets nothing, (k, m)."""
     low, high = ends.min(axis=0), ends.max(axis=0)
     lowest, highest = low.min(axis=0), high.max(axis=0)
-    steps = np.diff(paths, axis=1)
-    fraction = np.full(steps.shape[:2], np.inf)
+    fraction = np.full((len(ends) - 1, ends.shape[1]), np.inf)
     for part in obstacles:
         lower, upper = cache.assembly.parts[part].bounds
         if (lower > highest).any() or (upper < lowest).any():
             continue  # of many parts only a few are ever near
-        rows = np.flatnonzero(((low <= upper) & (high >= lower)).all(axis=1))
+        rows = np.flatnonzero(all_three((low <= upper) & (high >= lower)))
         if len(rows):
-            found = cache.first_hits(part, paths[rows, :-1].reshape(-1, 3), steps[rows].reshape(-1, 3))
-            fraction[rows] = np.minimum(fraction[rows], found.reshape(len(rows), -1))
+            near = ends[:, rows]
+            found = cache.first_hits(part, near[:-1].reshape(-1, 3), np.diff(near, axis=0).reshape(-1, 3))
+            fraction[:, rows] = np.minimum(fraction[:, rows], found.reshape(-1, len(rows)))
     return fraction
