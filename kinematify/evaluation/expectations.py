@@ -37,6 +37,7 @@ SETS = {
     "first_sight": "sixty more of people who walk in, committed before anything was added, tried after",
     "passers_by": "sixty more of people who walk in, committed before the parser was opened again, tried after",
     "drop_ins": "sixty more of people who walk in, committed after that was mended and before they were tried",
+    "off_the_street": "sixty more of people who walk in, committed before more objects were added, tried after",
     "composed": "composed of mechanisms on a body, written with its words at hand",
     "senseless": "senseless ones",
 }
