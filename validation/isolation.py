@@ -71,7 +71,7 @@ class Stage:
     imports: tuple[str, ...] = ()
     """Modules that it needs, loaded once for all stages."""
     library: str | None = None
-    """Module of an engine, which only a server loads beforehand: it does things to a process that others use."""
+    """Module that only a server loads beforehand: not every model needs it, or it changes a process that others use."""
 
 
 @dataclass(frozen=True, kw_only=True)

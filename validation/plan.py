@@ -23,7 +23,13 @@ CheckKey = tuple[str, str | None]
 def asset_stage() -> Stage:
     """Meshes and declared physics; what comes later needs readable meshes."""
     imports = ("kinematify.validation.asset.bodies", "kinematify.validation.asset.mesh_look")
-    return Stage(name="asset", run=asset.run, checks=keys(checks_of("KV15", "KV2")), imports=imports)
+    return Stage(
+        name="asset",
+        run=asset.run,
+        checks=keys(checks_of("KV15", "KV2")),
+        imports=imports,
+        library="trimesh.creation",  # for boxes, cylinders and spheres
+    )
 
 
 def later_stages(chosen: Sequence[str]) -> list[Stage]:

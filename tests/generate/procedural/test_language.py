@@ -8,9 +8,11 @@ import pytest
 from kinematify.errors import InputError
 from kinematify.evaluation.expectations import SETS, broken_expectations, load_sentences
 from kinematify.evaluation.studies.sentences import RIGHT, WRONG, outcome
+from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.language.understand import understand
+from kinematify.generate.procedural.language.understand import _bare, _family, _vocabulary, understand
+from kinematify.generate.procedural.language.words import tokens_of
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
 from kinematify.generate.procedural.request import from_text
@@ -25,6 +27,15 @@ def test_sentences_come_out_as_a_reader_expects_or_are_refused(name):
     assert [record for record in records if record["came"] == WRONG] == []
     if name in ("written", "other_words", "senseless"):
         assert sum(record["came"] == RIGHT for record in records) >= EXACT_SHARE * len(records)
+
+
+def test_every_name_of_an_object_names_it():
+    families = known_families()
+    vocabulary = _vocabulary(families.values())
+    names = [(_bare(word, vocabulary), family) for family in families.values() for word in family.words]
+    for family in families.values():
+        for word in family.words:
+            assert _family(word, tokens_of(word, vocabulary, mend=False), names, vocabulary)[0] is family, word
 
 
 def test_what_is_built_instead_counts_as_wrong():

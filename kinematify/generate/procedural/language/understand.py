@@ -259,7 +259,7 @@ def _vocabulary(families: Iterable[Family]) -> set[str]:
 def _bare(phrase: str, words: set[str]) -> tuple[str, ...]:
     """The words of a name, singular where the singular means something by itself; glasses are not made of glasses."""
     substances = {word for material in MATERIALS.values() for word in material.words}
-    return tuple(singular(word, frozenset(words - {word} - substances)) for word in phrase.split())
+    return tuple(singular(word, frozenset(words - substances)) for word in phrase.split())
 
 
 def _choice_words(parameter: Parameter, choice: str) -> tuple[str, ...]:
