@@ -14,7 +14,8 @@ from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.measurements import measure
+from kinematify.joints.measure.cloud import point_cloud
+from kinematify.joints.measure.measurements import Hypotheses, measure
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import PartCache
 from tests.joints.joint_scenes import CONFIG, evidence
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.joints.choice.weighed import WeighedJoints
+    from kinematify.joints.measure.cloud import Cloud
     from kinematify.joints.measure.measurements import Values
+    from kinematify.robot.arrays import IntArray
 
 
 def weighed_joints(name: str) -> WeighedJoints:
@@ -42,27 +45,42 @@ def measured_of(weighed: WeighedJoints) -> Values:
     return {**measure(weighed.scene, hypotheses_of(weighed)), **cues_of(weighed), **verdicts_of(weighed)}
 
 
+def cloud_of(weighed: WeighedJoints) -> Cloud:
+    """The points that the scorer sees."""
+    scene = weighed.scene
+    return point_cloud(scene.cache, scene.parent, scene.child, scene.others, scene.frame.diagonal)
+
+
+def in_order(hypotheses: Hypotheses, order: IntArray) -> Hypotheses:
+    """The same in another order."""
+    return Hypotheses(
+        kinds=hypotheses.kinds[order],
+        axes=hypotheses.axes[order],
+        pivots=hypotheses.pivots[order],
+        sources=tuple(hypotheses.sources[k] for k in order),
+    )
+
+
 def test_probabilities_follow_the_hypotheses_in_any_order() -> None:
     weighed = weighed_joints("drawer")
-    hypotheses = hypotheses_of(weighed)
-    measured = measured_of(weighed)
-    likely = shipped_scorer().probabilities(hypotheses.kinds, measured)
+    hypotheses, measured, cloud = hypotheses_of(weighed), measured_of(weighed), cloud_of(weighed)
+    likely = shipped_scorer().probabilities(hypotheses, measured, cloud)
     assert likely.sum() == pytest.approx(1.0)
     order = np.random.default_rng(0).permutation(len(likely))
     shuffled = {name: value[order] for name, value in measured.items()}
-    np.testing.assert_allclose(shipped_scorer().probabilities(hypotheses.kinds[order], shuffled), likely[order])
+    again = shipped_scorer().probabilities(in_order(hypotheses, order), shuffled, cloud)
+    np.testing.assert_allclose(again, likely[order], rtol=1e-5)
 
 
 def test_what_is_not_finite_counts_as_not_known() -> None:
     weighed = weighed_joints("drawer")
-    hypotheses = hypotheses_of(weighed)
-    measured = measured_of(weighed)
+    hypotheses, measured, cloud = hypotheses_of(weighed), measured_of(weighed), cloud_of(weighed)
     broken = {**measured, "slip_contact": np.full(len(hypotheses), np.inf)}
     missing = {name: value for name, value in measured.items() if name != "slip_contact"}
     scorer = shipped_scorer()
-    found = scorer.probabilities(hypotheses.kinds, broken)
+    found = scorer.probabilities(hypotheses, broken, cloud)
     assert np.isfinite(found).all()
-    np.testing.assert_array_equal(found, scorer.probabilities(hypotheses.kinds, missing))
+    np.testing.assert_array_equal(found, scorer.probabilities(hypotheses, missing, cloud))
 
 
 def test_the_measurements_are_those_that_were_fitted() -> None:

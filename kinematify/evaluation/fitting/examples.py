@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,9 +14,10 @@ from kinematify.evaluation.axis_metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.choice.judge import cues_of, hypotheses_of, verdicts_of
+from kinematify.joints.choice.judge import cues_of, hypotheses_of, rightness, verdicts_of
 from kinematify.joints.choice.twins import alike_edges
 from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.measure.cloud import Cloud, point_cloud
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
 from kinematify.joints.measure.opening_direction import measure_sides
 from kinematify.joints.measure.scene import part_frames
@@ -39,9 +40,7 @@ CUES = "cues"
 VERDICTS = "verdicts"
 """Group of what the weighted cues say (`judge.verdicts_of`)."""
 
-_ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
 _WHOLE_TURN = 2.0 * np.pi - 0.1  # [rad]
-_DISTANCE = 0.05  # of the child's diagonal, the same for a line
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,6 +68,8 @@ class Example:
     """Between each axis and that of the true joint which it fits best [deg]; 90 for fixed, shape (h,)."""
     types_right: IntArray
     """1 where the type is that of this joint, shape (h,)."""
+    cloud: Cloud
+    """Points of both parts and around them."""
     by_cues: int
     """Position of what the weighted cues alone would choose."""
     alike: int
@@ -162,6 +163,7 @@ def examples_of(
                 right=right,
                 angles=angles,
                 types_right=same.astype(np.int64),
+                cloud=point_cloud(cache, *edge, weighed.scene.others, size),
                 by_cues=0 if stuck else 1 + (len(weighed.turns.scores) if slides else 0),
                 alike=next((number for number, group in enumerate(alike) if edge in group), -1),
                 broken=broken,
@@ -194,12 +196,12 @@ def _rightness(
     if kind == FIXED:
         return same, np.where(h.kinds == FIXED, 0.0, 90.0), same
     angles = np.degrees(np.arccos(np.clip(np.abs(h.axes @ joint.axis), 0.0, 1.0)))
-    right = same * np.exp(-((angles / _ANGLE) ** 2))
+    right = same * rightness(angles, np.zeros(len(h)))
     if kind == TURN:
         foot = joint.pivot + joint.axis * float((near - joint.pivot) @ joint.axis)
         apart = np.linalg.norm(np.cross(foot - h.pivots, h.axes), axis=1) / size
         # The far term says which line is nearer where none is near.
-        right = right * (np.exp(-((apart / _DISTANCE) ** 2)) + 1e-3 * np.exp(-((apart / 0.3) ** 2)))
+        right = same * rightness(angles, apart) + 1e-3 * right * np.exp(-((apart / 0.3) ** 2))
     return right, angles, same
 
 
@@ -215,6 +217,7 @@ def write_examples(path: Path, examples: Sequence[Example]) -> None:
         arrays[f"values_{k}"] = np.array([example.measured[name] for name in names], dtype=np.float32)
         labels = (example.kinds, example.right, example.angles, example.types_right)
         arrays[f"sides_{k}"] = np.array([example.sides[name] for name in sorted(example.sides)], dtype=np.float32)
+        arrays |= {f"cloud_{name}_{k}": np.asarray(value, np.float32) for name, value in vars(example.cloud).items()}
         arrays[f"labels_{k}"] = np.column_stack([*labels, example.hypotheses.axes, example.hypotheses.pivots])
         facts.append(
             {
@@ -255,6 +258,7 @@ def read_examples(path: Path) -> list[Example]:
             )
             measured = dict(zip(facts.pop("names"), stored[f"values_{k}"], strict=True))
             sides = dict(zip(facts.pop("side_names"), stored[f"sides_{k}"], strict=True))
+            cloud = {field.name: stored[f"cloud_{field.name}_{k}"] for field in fields(Cloud)}
             found.append(
                 Example(
                     **facts,
@@ -262,6 +266,7 @@ def read_examples(path: Path) -> list[Example]:
                     right=right,
                     angles=angles,
                     types_right=same.astype(np.int64),
+                    cloud=Cloud(**cloud | {"labels": cloud["labels"].astype(np.int64), "unit": float(cloud["unit"])}),
                     measured=measured,
                     sides=sides,
                 )

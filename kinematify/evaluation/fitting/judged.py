@@ -14,6 +14,7 @@ from kinematify.evaluation.fitting.categories import category_of
 from kinematify.evaluation.fitting.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
 from kinematify.evaluation.fitting.edges import edges_row, fit_edges
 from kinematify.evaluation.fitting.trees import (
+    Seeds,
     fit_opening,
     fit_rigidity,
     fit_scorer,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from kinematify.config import ConfidenceConfig
     from kinematify.evaluation.fitting.edges import EdgesRow, TreeExample
     from kinematify.evaluation.fitting.examples import Example
+    from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
 
 _Kind = TypeVar("_Kind", "Example", "TreeExample")
@@ -101,9 +103,14 @@ def judge_left_out(
             continue
         kept = [at != fold or k in found for k, at in enumerate(folds)]
         fitted = [example for example, stays in zip(examples, kept, strict=True) if example.fits and stays]
-        scorer = fit_scorer(fitted, seeds=(0,), network_seeds=(0,), provenance={})
-        found |= {k: scorer.probabilities(examples[k].kinds, examples[k].measured) for k in judged}
+        scorer = fit_scorer(fitted, seeds=Seeds(), provenance={})
+        found |= {k: _likely(scorer, examples[k]) for k in judged}
     return agreed_examples(examples, [found[k] for k in range(len(examples))])
+
+
+def _likely(scorer: Scorer, example: Example) -> FloatArray:
+    """What the scorer says of the hypotheses of an edge, shape (h,)."""
+    return scorer.probabilities(example.hypotheses, example.measured, example.cloud)
 
 
 def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -> list[FloatArray]:

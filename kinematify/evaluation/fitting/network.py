@@ -117,7 +117,7 @@ def _fitted(
             edge = torch.from_numpy(np.repeat(np.arange(len(chosen)), np.diff(starts)[chosen]))
             untold = torch.from_numpy(rng.random(len(chosen)) < PARAMETERS["verdict_dropout"])[edge]
             seen = torch.where(untold[:, None], every[rows] * told, every[rows])
-            logs = _log_probabilities(model(seen, edge, len(chosen)), edge, len(chosen))
+            logs = log_probabilities_of(model(seen, edge, len(chosen)), edge, len(chosen))
             weighed = torch.from_numpy(weights[chosen].astype(np.float32))[edge] * aims[rows] * logs
             loss = -weighed.sum() / len(chosen)
             optimizer.zero_grad()
@@ -159,7 +159,7 @@ def _model(inputs: int) -> nn.Module:
     return Scores()
 
 
-def _log_probabilities(scores: Tensor, edge: Tensor, edges: int) -> Tensor:
+def log_probabilities_of(scores: Tensor, edge: Tensor, edges: int) -> Tensor:
     """Within each edge, shape (rows,)."""
     import torch  # noqa: PLC0415 - as above
 

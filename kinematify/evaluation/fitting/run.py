@@ -40,6 +40,7 @@ from kinematify.evaluation.fitting.judged import (
     surprise_of,
 )
 from kinematify.evaluation.fitting.trees import (
+    Seeds,
     data_key,
     fit_opening,
     fit_rigidity,
@@ -69,7 +70,8 @@ if TYPE_CHECKING:
 
     Likely = Mapping[str, Sequence[FloatArray]]
 
-_SEEDS, _NETWORK_SEEDS = (0, 1, 2, 3), (0, 1, 2, 3, 4, 5)
+_SEEDS = (0, 1, 2, 3)
+_SHIPPED = Seeds(trees=_SEEDS, networks=(0, 1, 2, 3, 4, 5), points=(0, 1))
 _LEAST = 10  # joints below which calibration says nothing
 _FEWEST_STYLES = 5  # ways of modelling, so that leaving some out leaves others
 _LEARNING = (0.25, 0.5, 1.0)
@@ -138,7 +140,7 @@ def fit_and_judge(
         "recipe": recipe_key(list({name for example in fitted for name in example.measured})),
         "real": sorted({example.object for example in fitted if example.origin not in GENERATED}),
     }
-    scorer = fit_scorer(fitted, seeds=_SEEDS, network_seeds=_NETWORK_SEEDS, provenance=provenance)
+    scorer = fit_scorer(fitted, seeds=_SHIPPED, provenance=provenance)
     out.mkdir(parents=True, exist_ok=True)
     write_scorer(scorer, out / WEIGHTS)
     write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
@@ -149,7 +151,7 @@ def fit_and_judge(
     likely = {"left out by category": judge_left_out(examples, category_of, progress)}
     if len({example.source for example in examples}) > 1:
         likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
-    shipped = [scorer.probabilities(example.kinds, example.measured) for example in examples]
+    shipped = [scorer.probabilities(example.hypotheses, example.measured, example.cloud) for example in examples]
     likely["shipped weights"] = agreed_examples(examples, shipped)
     report = {
         "schema": 2,

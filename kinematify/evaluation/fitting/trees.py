@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import Counter
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,9 +15,11 @@ from kinematify.errors import EnvironmentFault, InputError
 from kinematify.evaluation.fitting.examples import CUES, VERDICTS, content_key
 from kinematify.evaluation.fitting.network import PARAMETERS as NETWORK_PARAMETERS
 from kinematify.evaluation.fitting.network import fit_network
+from kinematify.evaluation.fitting.point_network import PARAMETERS as POINT_PARAMETERS
+from kinematify.evaluation.fitting.point_network import fit_points
 from kinematify.joints.choice.opening import side_columns
 from kinematify.joints.choice.rigid import rigid_columns
-from kinematify.joints.choice.scorer import FORMAT, NETWORK, SUMMARIES, Scorer, base_columns, stacked
+from kinematify.joints.choice.scorer import FORMAT, NETWORK, POINTS, SUMMARIES, Scorer, base_columns, stacked
 from kinematify.joints.choice.turning import turning_columns
 
 if TYPE_CHECKING:
@@ -57,10 +60,17 @@ _SHARE = {"family": 0.6, "programmed": 0.6, "composed": 0.05}
 """Weight of an example of such an origin beside one of a real object."""
 
 
-def fit_scorer(
-    examples: Sequence[Example], *, seeds: Sequence[int], network_seeds: Sequence[int], provenance: Mapping[str, Any]
-) -> Scorer:
-    """Fit the scorer to examples: trees of several seeds, and networks of several seeds.
+@dataclass(frozen=True, kw_only=True)
+class Seeds:
+    """How many of each are fitted, and from which seeds."""
+
+    trees: Sequence[int] = (0,)
+    networks: Sequence[int] = (0,)
+    points: Sequence[int] = (0,)
+
+
+def fit_scorer(examples: Sequence[Example], *, seeds: Seeds, provenance: Mapping[str, Any]) -> Scorer:
+    """Fit the scorer to examples: trees, networks and networks that look at points, of several seeds each.
 
     Raises:
         InputError: There is nothing to fit to.
@@ -80,14 +90,19 @@ def fit_scorer(
     weights = of_edges[np.repeat(np.arange(len(usable)), np.diff(starts))]
     begun = np.concatenate([base_columns(example.kinds, example.measured) for example in usable])
     base = _fit_base(begun, starts, target, weights)
-    trees = [_boost(columns, begun @ base, starts, target, weights, seed=seed) for seed in seeds]
+    trees = [_boost(columns, begun @ base, starts, target, weights, seed=seed) for seed in seeds.trees]
     of_cues = {name for example in usable for name in example.groups[VERDICTS]}
     verdicts = np.zeros(columns.shape[1], dtype=bool)
     hidden = 3 + np.array([k for k, name in enumerate(names) if name in of_cues])
     verdicts[[*hidden, *(hidden + len(names))]] = True
-    network = fit_network(columns, starts, target, of_edges, verdicts, seeds=network_seeds)
     return Scorer(
-        measurements=names, base=base, temperature=1.0, provenance=dict(provenance), network=network, **_arrays(trees)
+        measurements=names,
+        base=base,
+        temperature=1.0,
+        provenance=dict(provenance),
+        network=fit_network(columns, starts, target, of_edges, verdicts, seeds=seeds.networks),
+        points=fit_points(usable, of_edges, seeds=seeds.points),
+        **_arrays(trees),
     )
 
 
@@ -157,7 +172,8 @@ def is_fixed(example: Example) -> bool:
 
 def recipe_key(measurements: Sequence[str]) -> str:
     """Hash of how weights are fitted: of what measurements, from which start, with which parameters."""
-    return content_key(sorted(measurements), SUMMARIES, FORMAT, _PARAMETERS, _ROUNDS, NETWORK_PARAMETERS, _SHARE)
+    options = (_PARAMETERS, _ROUNDS, NETWORK_PARAMETERS, POINT_PARAMETERS)
+    return content_key(sorted(measurements), SUMMARIES, FORMAT, *options, _SHARE)
 
 
 def rigidity_recipe_key(measurements: Sequence[str]) -> str:
@@ -205,6 +221,8 @@ def write_scorer(scorer: Scorer, path: Path) -> None:
         del network["scale"]
         small = {name: layer if name == "verdicts" else layer.astype(np.float16) for name, layer in network.items()}
         arrays |= {f"{NETWORK}{name}": layer for name, layer in {**scale, **small}.items()}
+    if scorer.points is not None:
+        arrays |= {f"{POINTS}{name}": layer.astype(np.float16) for name, layer in vars(scorer.points).items()}
     np.savez_compressed(path, facts=json.dumps(facts), **arrays)
 
 

@@ -12,6 +12,7 @@ from kinematify.joints.candidate import JointCandidate, JointType
 from kinematify.joints.choice.part_names import kind_said
 from kinematify.joints.choice.rigid import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
+from kinematify.joints.measure.cloud import point_cloud
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 _SAME_COSINE = float(np.cos(np.radians(5.0)))
 _SAME_LINE = 0.02
 _ODDS = 8.0  # what cues say of the type counts no more than this
+_ANGLE = 4.0  # [deg] off by this much, a direction counts 1/e
+_DISTANCE = 0.05  # of the child's diagonal, the same for a line
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,32 +59,48 @@ class Judgement:
 
     @cached_property
     def scores(self) -> FloatArray:
-        """Log probability of each hypothesis with all that say the same, shape (h,); -inf for fixed.
+        """Log of how right each hypothesis is expected to be, shape (h,); -inf for fixed.
 
         The lead is in the choice alone: what it puts first stands level with the likeliest, so that votes and
         simulations are not weighed against it twice.
         """
         moving = self.hypotheses.kinds != FIXED
-        found = np.where(moving, np.log(np.maximum(self._same @ self.likely, 1e-12)), -np.inf)
+        found = np.where(moving, np.log(np.maximum(self._worth @ self.likely, 1e-12)), -np.inf)
         return np.where(self._same[self.best], found.max(), found)
 
     @cached_property
     def best(self) -> int:
-        """Position of the chosen hypothesis.
+        """Position of the chosen hypothesis: of the one that is expected to be nearest to right.
 
         Among those that say the same it is the one that cues rank first: a bearing is exact, and an edge of the box
         beside it is not.
         """
         moving = self.hypotheses.kinds != FIXED
-        first = int(np.argmax(np.where(moving, self._same @ self.believed, -1.0)))
+        first = int(np.argmax(np.where(moving, self._worth @ self.believed, -1.0)))
         return int(np.argmax(np.where(self._same[first], self.support, -np.inf)))
+
+    @cached_property
+    def _worth(self) -> FloatArray:
+        """How right each hypothesis would be where another one is the true joint (`rightness`), shape (h, h).
+
+        So lines that lie side by side share what is likely of a hinge there, and none loses to a slide alone.
+        """
+        h = self.hypotheses
+        degrees = np.degrees(np.arccos(np.clip(np.abs(h.axes @ h.axes.T), 0.0, 1.0)))
+        apart = np.where((h.kinds == TURN)[:, None], np.minimum(self._apart, self._apart.T), 0.0)
+        return np.asarray((h.kinds[:, None] == h.kinds) * rightness(degrees, apart / self.size))
+
+    @cached_property
+    def _apart(self) -> FloatArray:
+        """Distance of the pivot of each hypothesis from the line of each other one [m], shape (h, h)."""
+        h = self.hypotheses
+        return np.asarray(np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2))
 
     @cached_property
     def _same(self) -> NDArray[np.bool_]:
         """Which say the same: type, direction to 5 deg, and line to a fiftieth of the part, shape (h, h)."""
         h = self.hypotheses
-        apart = np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2)
-        near = (apart < _SAME_LINE * self.size) | (h.kinds == SLIDE)[:, None]
+        near = (self._apart < _SAME_LINE * self.size) | (h.kinds == SLIDE)[:, None]
         return np.asarray(self._agree & near & near.T)
 
     @cached_property
@@ -126,6 +145,16 @@ class Judgement:
         )
 
 
+def rightness(degrees: FloatArray, apart: FloatArray) -> FloatArray:
+    """How right a joint of the right type is, in [0, 1]: what the fit aims at, and what the choice expects.
+
+    Args:
+        degrees: Angle between its direction and the true one [deg].
+        apart: Distance of its line from the true one, in diagonals of the child; 0 for slides. Same shape.
+    """
+    return np.asarray(np.exp(-((degrees / _ANGLE) ** 2) - (apart / _DISTANCE) ** 2))
+
+
 def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
     """Measure every proposed joint of an edge and score them together.
 
@@ -136,7 +165,9 @@ def judge(weighed: WeighedJoints, config: ConfidenceConfig) -> Judgement:
     hypotheses = hypotheses_of(weighed)
     measured = {**measure(weighed.scene, hypotheses), **cues_of(weighed), **verdicts_of(weighed)}
     slides = weighed.decision.kind is JointType.PRISMATIC
-    likely = shipped_scorer().probabilities(hypotheses.kinds, measured)
+    scene = weighed.scene
+    cloud = point_cloud(scene.cache, scene.parent, scene.child, scene.others, scene.frame.diagonal)
+    likely = shipped_scorer().probabilities(hypotheses, measured, cloud)
     odds = rigid_odds(hypotheses.kinds, measured)
     said = kind_said(weighed.scene.cache.assembly.parts[weighed.scene.child].name)
     if said is not None:

@@ -68,15 +68,15 @@ class Network:
         told = self.scale.inputs(columns)
         untold = np.where(self.verdicts, 0.0, told)
         asked = np.stack([told, untold])[:, None]
-        own = _swish(asked @ self.embed + self.embed_bias[:, None])
+        own = swish(asked @ self.embed + self.embed_bias[:, None])
         shared = own @ self.share + self.share_bias[:, None]
         of_all = np.concatenate([shared.mean(axis=2), shared.max(axis=2)], axis=2)[:, :, None]
         beside = np.broadcast_to(of_all, (*own.shape[:3], of_all.shape[3]))
-        compared = _swish(np.concatenate([own, beside], axis=3) @ self.compare + self.compare_bias[:, None])
+        compared = swish(np.concatenate([own, beside], axis=3) @ self.compare + self.compare_bias[:, None])
         scores = np.einsum("psnh,sh->psn", compared, self.score)
         return np.asarray(log_softmax(scores, axis=2).mean(axis=(0, 1)))
 
 
-def _swish(values: FloatArray) -> FloatArray:
+def swish(values: FloatArray) -> FloatArray:
     """The activation x / (1 + exp(-x)) (Elfwing et al. 2018)."""
     return np.asarray(values / (1.0 + np.exp(-values)))

@@ -1,10 +1,10 @@
 """The fitted choice: one score for every hypothesis of an edge, from what is measured of it.
 
-Gradient-boosted trees (Friedman 2001) and a small network (`network.py`) that were fitted listwise: with scores s_i of
-the hypotheses of an edge, the probability of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the
-likelihood of the right ones. So type, line and confidence come out at once. Trees err where the network does not and
-the other way round; the mean of their log probabilities is what counts. Evaluated in numpy; what fitted them is not
-needed.
+Gradient-boosted trees (Friedman 2001), a small network that reads the same (`network.py`) and one that looks at points
+of both parts (`point_network.py`), all fitted listwise: with scores s_i of the hypotheses of an edge, the probability
+of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the likelihood of the right ones. So type, line and
+confidence come out at once. Each errs where the others do not; the mean of their log probabilities is what counts.
+Evaluated in numpy; what fitted them is not needed.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from scipy.special import log_softmax, softmax
 
 from kinematify.errors import EnvironmentFault
 from kinematify.joints.choice.network import Network, Scale
+from kinematify.joints.choice.point_network import PointNetwork
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:
@@ -27,14 +28,18 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kinematify.joints.measure.cloud import Cloud
+    from kinematify.joints.measure.measurements import Hypotheses
     from kinematify.robot.arrays import FloatArray, IntArray
 
 WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
 OPENING_WEIGHTS = "opening.npz"
 TURNING_WEIGHTS = "turning.npz"
-NETWORK = "network_"
-"""Before the names of its arrays in a file of weights."""
+NETWORK, POINTS = "network_", "points_"
+"""Before the names of the arrays of either network in a file of weights."""
+POINTS_SHARE = 0.2
+"""How much the points count in the mean log probability of what moves; trees and network share the rest."""
 _ARRAYS = ("base", "feature", "threshold", "missing_left", "left", "right", "value")
 FORMAT = 2
 """Raised where the meaning of the file changes."""
@@ -81,22 +86,33 @@ class Scorer:
     provenance: Mapping[str, Any]
     network: Network | None = None
     """Asked beside the trees which hypothesis is right; without it, trees answer alone."""
+    points: PointNetwork | None = None
+    """Asked which of those that move is right; None as above."""
 
-    def probabilities(self, kinds: IntArray, measured: Mapping[str, FloatArray]) -> FloatArray:
+    def probabilities(self, hypotheses: Hypotheses, measured: Mapping[str, FloatArray], cloud: Cloud) -> FloatArray:
         """How likely each hypothesis of an edge is the right one.
 
         Args:
-            kinds: FIXED, TURN or SLIDE, shape (h,).
+            hypotheses: Of the edge.
             measured: Name -> values, shape (h,) each; NaN or absent where a measurement does not apply.
+            cloud: Points of the edge.
 
         Returns:
             Shape (h,), sum 1.
         """
+        kinds = hypotheses.kinds
         columns = stacked(kinds, measured, self.measurements)
         logs = log_softmax((base_columns(kinds, measured) @ self.base + self.sums(columns)) / self.temperature)
         if self.network is not None:
             logs = 0.5 * (logs + self.network.log_probabilities(columns))
-        return np.asarray(softmax(logs))
+        likely = np.asarray(softmax(logs))
+        moving = kinds != FIXED
+        if self.points is None or not moving.any():
+            return likely
+        seen = self.points.log_probabilities(cloud, hypotheses)[moving]
+        shared = softmax((1.0 - POINTS_SHARE) * logs[moving] + POINTS_SHARE * seen)
+        likely[moving] = float(likely[moving].sum()) * shared
+        return likely
 
     def sums(self, columns: NDArray[Any]) -> FloatArray:
         """What the trees say of each row of columns (n, f), shape (n,)."""
@@ -194,7 +210,7 @@ def _shipped(name: str, of: str) -> Scorer:
         with path.open("rb") as file, np.load(file) as stored:
             facts = json.loads(str(stored["facts"]))
             arrays = {key: stored[key] for key in _ARRAYS}
-            network = _network(stored)
+            network, points = _network(stored), _points(stored)
     except (OSError, ValueError, KeyError) as error:
         raise EnvironmentFault(f"The weights of {of} ({name}) cannot be read. {remedy}") from error
     if facts.get("format") != FORMAT:
@@ -207,6 +223,7 @@ def _shipped(name: str, of: str) -> Scorer:
         temperature=float(facts["temperature"]),
         provenance=facts["provenance"],
         network=network,
+        points=points,
         **arrays,
     )
 
@@ -219,3 +236,11 @@ def _network(stored: Mapping[str, NDArray[Any]]) -> Network | None:
     scale = Scale(**{field.name: arrays.pop(field.name) for field in fields(Scale)})
     layers: dict[str, Any] = {name: layer.astype(np.float32) for name, layer in arrays.items() if name != "verdicts"}
     return Network(scale=scale, verdicts=arrays["verdicts"], **layers)
+
+
+def _points(stored: Mapping[str, NDArray[Any]]) -> PointNetwork | None:
+    """The network that looks at points of a file of weights, if there is one."""
+    arrays: dict[str, Any] = {
+        key.removeprefix(POINTS): stored[key].astype(np.float32) for key in stored if key.startswith(POINTS)
+    }
+    return PointNetwork(**arrays) if arrays else None

@@ -1,0 +1,104 @@
+"""The network that looks at points: what it reads, and that it answers as the one that was fitted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from kinematify.evaluation.fitting.point_network import unfitted_model, written
+from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
+from kinematify.joints.choice.scorer import shipped_scorer
+from kinematify.joints.measure.cloud import CARRIED, CHILD, OTHER, PARENT, Cloud
+from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses
+
+
+def some_cloud(seed: int, *, others: bool = True) -> Cloud:
+    """Random points of all parts."""
+    rng = np.random.default_rng(seed)
+    labels = np.repeat([CHILD, PARENT, OTHER, CARRIED] if others else [CHILD, PARENT], 12)
+    normals = rng.normal(size=(len(labels), 3))
+    return Cloud(
+        points=rng.normal(size=(len(labels), 3)),
+        normals=normals / np.linalg.norm(normals, axis=1)[:, None],
+        gaps=rng.uniform(0.0, 0.5, len(labels)),
+        labels=labels,
+        centre=rng.normal(size=3),
+        parent_centre=rng.normal(size=3),
+        unit=1.3,
+        sizes=np.array([-0.4, -0.9]),
+    )
+
+
+def some_hypotheses(seed: int) -> Hypotheses:
+    """Fixed, turns and slides about random lines."""
+    rng = np.random.default_rng(seed)
+    axes = rng.normal(size=(9, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    axes[0] = 0.0
+    kinds = np.array([FIXED, *[TURN] * 5, *[SLIDE] * 3])
+    return Hypotheses(kinds=kinds, axes=axes, pivots=rng.normal(size=(9, 3)), sources=("any",) * 9)
+
+
+MOVING = np.arange(1, 9)
+
+
+def test_inputs_know_no_sign_of_an_axis_and_no_heading() -> None:
+    cloud, hypotheses = some_cloud(0), some_hypotheses(1)
+    points, lines = point_inputs(cloud, hypotheses, MOVING)
+    assert points.shape == (8, len(cloud.points), POINT_INPUTS)
+    assert lines.shape == (8, LINE_INPUTS)
+    turned = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    moved = replace(
+        cloud,
+        points=cloud.points @ turned.T + 2.0,
+        normals=cloud.normals @ turned.T,
+        centre=turned @ cloud.centre + 2.0,
+        parent_centre=turned @ cloud.parent_centre + 2.0,
+    )
+    reversed_ = replace(hypotheses, axes=-hypotheses.axes @ turned.T, pivots=hypotheses.pivots @ turned.T + 2.0)
+    for mine, yours in zip((points, lines), point_inputs(moved, reversed_, MOVING), strict=True):
+        np.testing.assert_allclose(mine, yours, atol=1e-5)
+
+
+def test_a_slide_has_no_line_of_its_own_and_a_turn_is_the_same_from_any_point_of_its_line() -> None:
+    cloud, hypotheses = some_cloud(2), some_hypotheses(3)
+    along = hypotheses.pivots + 0.7 * hypotheses.axes
+    along[hypotheses.kinds == SLIDE] += 0.3
+    for mine, yours in zip(
+        point_inputs(cloud, hypotheses, MOVING),
+        point_inputs(cloud, replace(hypotheses, pivots=along), MOVING),
+        strict=True,
+    ):
+        np.testing.assert_allclose(mine, yours, atol=1e-5)
+
+
+@pytest.mark.parametrize("others", [True, False])
+def test_arrays_say_what_the_fitted_network_says(others: bool) -> None:
+    torch.manual_seed(0)
+    models = [unfitted_model().eval() for _ in range(2)]
+    cloud, hypotheses = some_cloud(4, others=others), some_hypotheses(5)
+    points, lines = map(torch.from_numpy, point_inputs(cloud, hypotheses, MOVING))
+    with torch.no_grad():
+        edge, counts = torch.zeros(8, dtype=torch.long), (12, 12, 24)
+        if not others:  # the rest is filled up with points of the child, which count for nothing
+            points, counts = torch.cat([points, points[:, :1]], dim=1), (12, 12, 1)
+        scores = torch.stack([model(points, lines, edge, counts) for model in models])
+    wanted = torch.log_softmax(scores, dim=1).mean(dim=0).numpy()
+    found = written(models).log_probabilities(cloud, hypotheses)
+    assert found[0] == -np.inf
+    np.testing.assert_allclose(found[1:], wanted, atol=5e-3)  # written with half the digits
+
+
+def test_points_move_nothing_between_what_is_fixed_and_what_moves() -> None:
+    torch.manual_seed(1)
+    cloud, hypotheses = some_cloud(6), some_hypotheses(7)
+    shipped = shipped_scorer()
+    odds = {"rules_score": np.linspace(-2.0, 0.0, 9), "rules_odds": np.zeros(9)}
+    without = replace(shipped, points=None).probabilities(hypotheses, odds, cloud)
+    seen = replace(shipped, points=written([unfitted_model().eval()])).probabilities(hypotheses, odds, cloud)
+    assert seen[0] == pytest.approx(without[0])
+    assert seen.sum() == pytest.approx(1.0)
+    assert not np.allclose(seen[1:], without[1:])
