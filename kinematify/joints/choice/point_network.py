@@ -104,7 +104,8 @@ def point_inputs(
     """What the network reads of every point as some hypotheses move it, and of their lines.
 
     Lengths are in diagonals of the child. Axes are turned away from the parent first, so that nothing depends on their
-    sign; nor does anything on the heading of the object.
+    sign; nor does anything on the heading of the object, unless both parts have their middle on one upright line, where
+    no direction across it is any better than another.
 
     Args:
         cloud: Points of the edge.
