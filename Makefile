@@ -83,7 +83,7 @@ format: setup
 	$(IN_VENV) ruff format .
 
 types: setup
-	$(IN_VENV) mypy -p kinematify -p tools
+	$(IN_VENV) mypy -p kinematify -p benchmarks -p tools
 
 bench: setup
 	$(IN_VENV) kinematify bench $(if $(filter pip,$(DATA)),--data pip,$(DATA)) -o results

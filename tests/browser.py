@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kinematify.errors import EnvironmentFault
-from kinematify.evaluation.browser import open_browser
+from benchmarks.browser import open_browser
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -24,7 +24,7 @@ ORDER = (
 def modules() -> dict[str, Path]:
     """File of every module of the package and of its tests by dotted name, through the symlinks too."""
     found = {}
-    for top in ("kinematify", "tests", "tools"):
+    for top in ("kinematify", "benchmarks", "tests", "tools"):
         for folder, _, files in os.walk(ROOT / top, followlinks=True):
             for path in sorted(Path(folder, file) for file in files if file.endswith(".py")):
                 found[".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")] = path
@@ -69,4 +69,4 @@ def _modules_of(name: str) -> set[str]:
         return {module for module in modules() if module.rpartition(".")[0] == name[:-2]}
     while name and name not in modules():
         name = name.rpartition(".")[0]
-    return {name} - {"", "kinematify", "tests", "tools"}
+    return {name} - {"", "kinematify", "benchmarks", "tests", "tools"}

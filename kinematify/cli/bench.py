@@ -47,7 +47,7 @@ def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> N
 
 def _write_results_page(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
     if asked:
-        from kinematify.evaluation.results_page import write_results_page
+        from benchmarks.results_page import write_results_page
 
         write_results_page(Path("docs/results.md"), Path("results"))
         click.echo("docs/results.md has the results of the reports in results/.")
@@ -172,7 +172,7 @@ def command(
     from kinematify.evaluation.record import as_json, load_report, write_report
     from kinematify.evaluation.regression import find_regressions
     from kinematify.evaluation.run import RESULTS, BenchmarkRequest, run_benchmark
-    from kinematify.evaluation.tables import benchmark_blocks
+    from benchmarks.tables import benchmark_blocks
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
@@ -193,7 +193,7 @@ def command(
         report = run_benchmark(request, progress)
         written = write_report(report, RESULTS, benchmark_blocks(report, earlier), out, name=name, title=name)
         if shown is not None:
-            from kinematify.evaluation.errors import write_error_gallery
+            from benchmarks.errors import write_error_gallery
 
             page = write_error_gallery(report, request, out, name=f"{name}_errors", count=shown, progress=progress)
             written = (*written, page)
@@ -225,7 +225,7 @@ def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
 
 def _describe(report: Report[JobResult]) -> str:
     """Return the means per configuration and kind of object, the paper's below them."""
-    from kinematify.evaluation.paper import TABLE_I, mean_over_robots
+    from benchmarks.paper import TABLE_I, mean_over_robots
 
     rows = [
         _summary_row(key, [run for run in report.records if (run.variant, run.kind, run.input) == key])

@@ -51,8 +51,8 @@ def command(
     alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
     To ship new weights, copy the .npz files and edges.json into kinematify/joints/choice.
     """
-    from kinematify.evaluation.fitting.packages import write_installed
-    from kinematify.evaluation.fitting.run import as_markdown, run_fit
+    from benchmarks.fit.packages import write_installed
+    from benchmarks.fit.run import as_markdown, run_fit
 
     if packages:
         write_installed(out / "packages")

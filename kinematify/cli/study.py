@@ -16,12 +16,12 @@ from kinematify.errors import ExitStatus
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
-    from kinematify.evaluation.study import Options, Study
+    from benchmarks.study import Options, Study
 
 
 def study_command(name: str) -> click.Command | None:
     """Return the command of a study, None if there is none of this name."""
-    from kinematify.evaluation.study import load_study, study_names, study_text
+    from benchmarks.study import load_study, study_names, study_text
 
     if name not in study_names():
         return None
@@ -45,7 +45,7 @@ def study_command(name: str) -> click.Command | None:
 
 def print_studies() -> None:
     """Print name and question of every study."""
-    from kinematify.evaluation.study import study_names, study_text
+    from benchmarks.study import study_names, study_text
 
     rows = [(name, study_text(name).partition("\n")[0]) for name in study_names()]
     click.echo(format_table(("study", "what it answers"), rows))
@@ -64,7 +64,7 @@ def _option(name: str, info: FieldInfo) -> click.Option:
 def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
     from kinematify.batch.pool import WORK_FOLDER, Pool
     from kinematify.evaluation.record import as_json, load_report
-    from kinematify.evaluation.study import RECORDS, file_stem, run_study, write_study
+    from benchmarks.study import RECORDS, file_stem, run_study, write_study
 
     stem = values["stem"] or file_stem(name)
     if values["tables"]:

@@ -14,7 +14,7 @@ from trimesh.intersections import slice_faces_plane
 
 from kinematify.assembly.assemble import simplified
 from kinematify.contact.build import build_contact_graph
-from kinematify.evaluation.degrade import DEGRADATIONS, with_parts
+from benchmarks.degrade import DEGRADATIONS, with_parts
 from kinematify.evaluation.prediction import Prediction
 from kinematify.geometry.surface import part_surfaces
 from kinematify.robot.joint_type import JointType
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from kinematify.evaluation.degrade import Degrade
+    from benchmarks.degrade import Degrade
     from kinematify.robot.arrays import FloatArray
 
 CLEAN = "clean"

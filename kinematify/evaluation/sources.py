@@ -13,7 +13,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 NOT_INFERRING = (
     "batch", "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view",
     "vision",
-    "evaluation/studies", "evaluation/nightly", "evaluation/mutants", "evaluation/corruption",
+    "benchmarks/studies", "evaluation/nightly", "evaluation/mutants", "evaluation/corruption",
     *(
         f"evaluation/{name}.py"
         for name in (

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.evaluation.studies.batch import Killed, killed_run, workers_of
+from benchmarks.studies.batch import Killed, killed_run, workers_of
 from tests.batch.assets import kill, manifest_lines, wait_for, write_assets, write_knob
 
 INFER = ("--steps", "infer", "--up", "z")

@@ -14,7 +14,7 @@ from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.record import Header, Report
 from kinematify.evaluation.regression import find_regressions
 from kinematify.evaluation.run import BenchmarkRequest
-from kinematify.evaluation.tables import benchmark_blocks
+from benchmarks.tables import benchmark_blocks
 from kinematify.evaluation.tree_metrics import TreeDistance
 
 NO_DISTANCE = TreeDistance(value=0, exact=True)

@@ -14,7 +14,7 @@ from PIL import Image
 
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
-from kinematify.evaluation.studies.colors import (
+from benchmarks.studies.colors import (
     dressed,
     make_object,
     seen_of_glb,

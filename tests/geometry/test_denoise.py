@@ -9,7 +9,7 @@ import trimesh
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
-from kinematify.evaluation.degrade import voxels as voxels_of
+from benchmarks.degrade import voxels as voxels_of
 from kinematify.geometry.surface import FACETED, PartSurface, part_surfaces
 from kinematify.joints.hypotheses.bearing import fit_bearings
 

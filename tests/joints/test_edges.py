@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault
-from kinematify.evaluation.fitting.edges import (
+from benchmarks.fit.edges import (
     TreeExample,
     edge_recipe_key,
     edges_row,

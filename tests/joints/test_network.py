@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from kinematify.evaluation.fitting.network import fit_network, scale_of
+from benchmarks.fit.network import fit_network, scale_of
 from kinematify.joints.choice.network import Network
 
 EDGES, HYPOTHESES, COLUMNS = 800, 5, 4

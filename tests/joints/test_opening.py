@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.evaluation.fitting.trees import opening_recipe_key
+from benchmarks.fit.trees import opening_recipe_key
 from kinematify.generate.procedural.solids import box
 from kinematify.joints.choice.opening import opening_odds, side_columns, turn_sign
 from kinematify.joints.choice.scorer import shipped_opening

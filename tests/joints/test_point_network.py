@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from kinematify.evaluation.fitting.point_network import unfitted_model, written
+from benchmarks.fit.point_network import unfitted_model, written
 from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
 from kinematify.joints.choice.scorer import shipped_scorer
 from kinematify.joints.measure.cloud import CARRIED, CHILD, OTHER, PARENT, Cloud

@@ -9,7 +9,7 @@ import trimesh
 from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.truth import GroundTruth
 from kinematify.contact.build import build_contact_graph
-from kinematify.evaluation.fitting.broken_off import with_pieces_broken_off
+from benchmarks.fit.broken_off import with_pieces_broken_off
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.decide import estimate_joints

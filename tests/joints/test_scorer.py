@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kinematify.errors import EnvironmentFault
-from kinematify.evaluation.fitting.trees import recipe_key
+from benchmarks.fit.trees import recipe_key
 from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.evaluation.fitting.trees import turning_recipe_key
+from benchmarks.fit.trees import turning_recipe_key
 from kinematify.generate.procedural.solids import box, cylinder
 from kinematify.joints.choice.scorer import shipped_turning
 from kinematify.joints.choice.turning import goes_round, turning_columns

@@ -14,9 +14,9 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.errors import InputError
-from kinematify.evaluation.paper_configurations import with_types
+from benchmarks.paper_configurations import with_types
 from kinematify.evaluation.prediction import Prediction
-from kinematify.evaluation.study import load_study_report
+from benchmarks.study import load_study_report
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded

@@ -21,8 +21,8 @@ from kinematify.errors import InputError
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
 from kinematify.evaluation.prediction import Prediction
-from kinematify.evaluation.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
-from kinematify.evaluation.study import load_study_report
+from benchmarks.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
+from benchmarks.study import load_study_report
 from kinematify.evaluation.tree_metrics import TreeDistance
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from kinematify.errors import KinematifyError
-from kinematify.evaluation.corruption.bases import Base, built_base
-from kinematify.evaluation.corruption.cases import KINDS, write_case
+from benchmarks.corruption.bases import Base, built_base
+from benchmarks.corruption.cases import KINDS, write_case
 from kinematify.manipulation.arm import write_arm
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from kinematify.evaluation.corruption.bases import Base, built_base
-from kinematify.evaluation.corruption.cases import KINDS, write_case
-from kinematify.evaluation.corruption.validation import READY, CorruptionTask, run_case
+from benchmarks.corruption.bases import Base, built_base
+from benchmarks.corruption.cases import KINDS, write_case
+from benchmarks.corruption.validation import READY, CorruptionTask, run_case
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.plan import later_stages, needed
 from kinematify.validation.run import validate

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from kinematify.cli.app import run
-from kinematify.evaluation.studies.colors import make_object, unlike
+from benchmarks.studies.colors import make_object, unlike
 from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes

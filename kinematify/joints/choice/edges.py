@@ -2,7 +2,7 @@
 
 A spanning tree T has the probability exp(sum of s_e over its edges) / Z, where s_e = w . x_e is linear in the
 measurements x_e and Z sums over all spanning trees of the contact graph (matrix-tree theorem, Kirchhoff 1847). The fit
-maximised the likelihood of the true trees (`evaluation/fitting/edges.py`). The most likely tree is the maximum spanning
+maximised the likelihood of the true trees (`benchmarks/fit/edges.py`). The most likely tree is the maximum spanning
 tree of s, and so of every growing function of it.
 """
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from kinematify.errors import InputError
-from kinematify.evaluation.expectations import SETS, broken_expectations, load_sentences
-from kinematify.evaluation.studies.sentences import RIGHT, WRONG, outcome
+from benchmarks.expectations import SETS, broken_expectations, load_sentences
+from benchmarks.studies.sentences import RIGHT, WRONG, outcome
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build

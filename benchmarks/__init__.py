@@ -1,0 +1,1 @@
+"""Studies, fits and what makes `results/`: beside the package, not in its wheel; `kinematify bench` and `fit` find it."""

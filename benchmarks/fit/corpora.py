@@ -1,0 +1,295 @@
+"""What the choice is fitted to and judged on: generated objects in ways of modelling, random mechanisms, real ones.
+
+Objects that files describe judge alone: with them in the fit, no more that was left out is right (results/choice.md).
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from contextlib import closing
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinematify.assembly.erase import erase
+from kinematify.assembly.part import Assembly
+from kinematify.batch.engine import TaskFailure
+from kinematify.batch.pool import run_tasks
+from kinematify.batch.processes import Processes
+from kinematify.config import load_config
+from kinematify.errors import EnvironmentFault, InputError, KinematifyError
+from benchmarks.fit.broken_off import with_pieces_broken_off
+from benchmarks.fit.composed import compose
+from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
+from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
+from benchmarks.fit.modelling import WAYS, remodelled
+from benchmarks.recipes import OBJECTS, drawn_object
+from kinematify.generate.described import known_families
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+from kinematify.generate.procedural.truth import ground_truth
+from kinematify.robot.read import read_robot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kinematify.assembly.part import Part
+    from kinematify.assembly.truth import GroundTruth
+    from benchmarks.fit.edges import TreeExample
+    from benchmarks.fit.examples import Example
+    from kinematify.generate.blueprint import Blueprint
+
+FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
+_RESEARCH = ("partnet", "shapenet", "research", "non-commercial")
+"""Words of licences under which an object judges and never enters weights that ship."""
+_MOST_JOINTS = 14  # of a generated object: a hand or hexapod would outweigh the rest
+_BROKEN_ROUNDS = 2
+_TREE_ROUNDS = 2
+_MOST_PARTS = 25  # of an object with pieces broken off
+_AJAR = 0.25  # of the generated objects
+_TIMEOUT = 3600.0  # [s] of one object, on a busy machine
+_REUSE = 50  # objects of one worker: libraries leak
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """One object to measure; small and picklable."""
+
+    origin: str
+    """One of `GENERATED`, or the name of the folder of real objects."""
+    name: str
+    number: int = 0
+    """Of a generated object."""
+    folder: Path | None = None
+    """Of a real one, with its ``model.urdf`` and ``source.json``."""
+    broken: bool = False
+    """With pieces broken off."""
+
+
+def generated_sources(rounds: int, composed: int) -> list[Source]:
+    """`rounds` objects of every family and recipe, each modelled in another way, and `composed` random mechanisms."""
+    named = [(FAMILY if name in FAMILIES else DESCRIBED, name) for name in sorted(known_families())]
+    named += [(PROGRAMMED, name) for name in sorted(OBJECTS)]
+    found = [Source(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
+    return found + [Source(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
+
+
+def real_sources(folder: Path) -> list[Source]:
+    """Every object of a folder of objects, or of a folder of such folders.
+
+    Raises:
+        InputError: There is none.
+    """
+    found = [
+        Source(origin=path.parent.parent.name, name=path.parent.name, folder=path.parent)
+        for path in sorted([*folder.glob("*/model.urdf"), *folder.glob("*/*/model.urdf")])
+    ]
+    if not found:
+        raise InputError(f"{folder} holds no object: a folder with a model.urdf and a source.json. Give one that does.")
+    return found
+
+
+def broken_sources(sources: Sequence[Source]) -> list[Source]:
+    """Of every real object, and of two of every recipe, the same with pieces broken off."""
+    return [
+        replace(source, broken=True)
+        for source in sources
+        if source.folder is not None or (source.origin == PROGRAMMED and source.number < _BROKEN_ROUNDS)
+    ]
+
+
+def tree_sources(sources: Sequence[Source]) -> list[Source]:
+    """Those whose contacts the edges of the tree are fitted to: whole ones, and two of every family and recipe."""
+    return [
+        source
+        for source in sources
+        if not source.broken and (source.number < _TREE_ROUNDS or source.origin == COMPOSED)
+    ]
+
+
+def gather_examples(
+    sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
+) -> list[Example]:
+    """Measure objects, or read what an earlier run has measured of them.
+
+    Args:
+        sources: The objects.
+        cache: Folder with one file per object that was measured.
+        seed: Draws the generated objects.
+        workers: Processes at a time.
+        progress: Told the object and the share done.
+
+    Raises:
+        EnvironmentFault: An object killed its worker or took an hour.
+    """
+    paths = _gathered(_measure, sources, cache, seed=seed, workers=workers, progress=progress)
+    return [example for path in paths for example in read_examples(path)]
+
+
+def gather_trees(
+    sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
+) -> list[TreeExample]:
+    """The contact graphs of objects and their true trees; arguments as of `gather_examples`.
+
+    Raises:
+        EnvironmentFault: An object killed its worker or took an hour.
+    """
+    paths = _gathered(_measure_tree, sources, cache, seed=seed, workers=workers, progress=progress)
+    return [example for path in paths for example in read_tree_examples(path)]
+
+
+def _gathered(
+    measure: Callable[[Source, Path, int], None],
+    sources: Sequence[Source],
+    cache: Path,
+    *,
+    seed: int,
+    workers: int,
+    progress: Callable[[str, float], None],
+) -> list[Path]:
+    """One file for every object, written by `measure` where there is none yet."""
+    cache.mkdir(parents=True, exist_ok=True)
+    paths = [cache / f"{_key(source, seed)}.npz" for source in sources]
+    missing = {path: source for source, path in zip(sources, paths, strict=True) if not path.exists()}
+    tasks = [(str(path), partial(measure, source, path, seed)) for path, source in missing.items()]
+    running = run_tasks(tasks, Processes(workers, preload=(__name__,)), timeout=_TIMEOUT, reuse=_REUSE)
+    with closing(running):
+        for done, (path, failure) in enumerate(running, start=len(sources) - len(missing) + 1):
+            name = missing[Path(path)].name
+            if isinstance(failure, TaskFailure):
+                raise EnvironmentFault(
+                    f"{name} could not be measured: {failure.message}. Start again; {cache} keeps what was measured."
+                )
+            progress(name, done / len(sources))
+    return paths
+
+
+def _key(source: Source, seed: int) -> str:
+    """Hash of what the measurements depend on, but not of the code: an emptied folder measures anew."""
+    files = [] if source.folder is None else sorted(source.folder.rglob("*.*"))
+    sizes = [(path.name, path.stat().st_size) for path in files]
+    facts = asdict(source) | {"folder": None}
+    return content_key(facts, sizes, seed, load_config().joints.model_dump(mode="json"))
+
+
+def _measure(source: Source, path: Path, seed: int) -> None:
+    """Measure one object; one that cannot be built or read gives no example."""
+    opened = _opened(source, seed)
+    if opened is None:
+        write_examples(path, [])
+        return
+    name = _name(source)
+    parts, truth = opened.parts, opened.truth
+    if source.broken:
+        parts, truth = with_pieces_broken_off(parts, truth, np.random.default_rng(zlib.crc32(name.encode())))
+        if not len(opened.parts) < len(parts) <= _MOST_PARTS:
+            write_examples(path, [])
+            return
+    found = examples_of(
+        Assembly(parts=parts, source=name),
+        truth,
+        load_config(),
+        category=opened.category,
+        origin=source.origin,
+        source=opened.source,
+        fits=opened.fits,
+        style=opened.style,
+        broken=source.broken,
+    )
+    write_examples(path, found)
+
+
+def _measure_tree(source: Source, path: Path, seed: int) -> None:
+    """The same of the contacts of an object."""
+    opened = _opened(source, seed)
+    if opened is None:
+        write_tree_examples(path, [])
+        return
+    example = tree_example(
+        Assembly(parts=opened.parts, source=_name(source)),
+        opened.truth,
+        load_config(),
+        category=opened.category,
+        origin=source.origin,
+        source=opened.source,
+        fits=opened.fits,
+    )
+    write_tree_examples(path, [example])
+
+
+def _name(source: Source) -> str:
+    """Of an object, among those of its origin."""
+    return f"{source.name}_{source.number}" if source.folder is None else source.name
+
+
+def _opened(source: Source, seed: int) -> _Opened | None:
+    """The object; None where it cannot be built or read."""
+    try:
+        return _generated(source, seed) if source.folder is None else _read(source.folder)
+    except (KinematifyError, ValueError):
+        return None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Opened:
+    """An object as it is measured."""
+
+    parts: tuple[Part, ...]
+    truth: GroundTruth
+    category: str
+    source: str
+    """Whose work it is."""
+    fits: bool
+    """It may enter weights that ship."""
+    style: str = ""
+    """Way of modelling that was drawn."""
+
+
+def _read(folder: Path) -> _Opened:
+    facts = json.loads((folder / "source.json").read_text(encoding="utf-8"))
+    erased = erase(read_robot(folder / "model.urdf", geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
+    licence = str(facts.get("license", "research")).lower()
+    # "osrf/gazebo_models @ 8163eb4, cessna/model.sdf" is of osrf/gazebo_models.
+    written = str(facts.get("source", "unknown")).partition(",")[0].partition("@")[0]
+    return _Opened(
+        parts=erased.assembly.parts,
+        truth=erased.truth,
+        category=str(facts.get("category", "unknown")),
+        source=str(facts.get("dataset", written)).strip(),
+        fits=not any(word in licence for word in _RESEARCH),
+    )
+
+
+def _generated(source: Source, seed: int) -> _Opened:
+    number = seed + source.number
+    blueprint = _drawn(source, number)
+    if len(blueprint.joints) > _MOST_JOINTS:
+        raise ValueError(f"{source.name} has {len(blueprint.joints)} joints, more than {_MOST_JOINTS}.")
+    # Random mechanisms have nothing in common: each is a category of its own.
+    category = f"{source.name} {number}" if source.origin == COMPOSED else source.name
+    return _Opened(
+        parts=blueprint.assembly.parts,
+        truth=ground_truth(blueprint),
+        category=category,
+        source=source.origin,
+        fits=source.origin != DESCRIBED,
+        style=str(blueprint.parameters.get("modelled", "")),
+    )
+
+
+def _drawn(source: Source, number: int) -> Blueprint:
+    ways = list(WAYS)
+    if source.origin == PROGRAMMED:
+        return drawn_object(source.name, number)
+    if source.origin == COMPOSED:
+        way = ways[number % len(ways)] if number % 3 == 0 else "as_drawn"
+        return remodelled(compose(number), way, rng=np.random.default_rng(number))
+    rng = np.random.default_rng([number, zlib.crc32(source.name.encode())])
+    ajar = round(float(rng.uniform(0.05, 0.6)), 2) if rng.random() < _AJAR else 0.0
+    drawn = int(rng.integers(2**31))
+    blueprint = build(known_families()[source.name], {"open": ajar}, seed=drawn, name=source.name)
+    return remodelled(blueprint, ways[(number + zlib.crc32(source.name.encode())) % len(ways)], rng=rng)

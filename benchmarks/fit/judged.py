@@ -1,0 +1,316 @@
+"""What the fitted choice is worth on what it was not fitted to, beside what it was, and beside the weighted cues."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from kinematify.config import load_config
+from benchmarks.fit.categories import category_of
+from benchmarks.fit.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
+from benchmarks.fit.edges import edges_row, fit_edges
+from benchmarks.fit.trees import (
+    Seeds,
+    fit_opening,
+    fit_rigidity,
+    fit_scorer,
+    fit_turning,
+    is_fixed,
+    rigidity_odds,
+    turns_known,
+    turns_of,
+)
+from kinematify.joints.choice.judge import Judgement, lead_of
+from kinematify.joints.choice.opening import opening_odds
+from kinematify.joints.choice.twins import agreed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from kinematify.config import ConfidenceConfig
+    from benchmarks.fit.edges import EdgesRow, TreeExample
+    from benchmarks.fit.examples import Example
+    from kinematify.joints.choice.scorer import Scorer
+    from kinematify.robot.arrays import FloatArray
+
+_Kind = TypeVar("_Kind", "Example", "TreeExample")
+_FOLDS = 5
+_GENERATED_SETS = {
+    FAMILY: "families",
+    DESCRIBED: "objects that files describe: never fitted to",
+    PROGRAMMED: "objects as people program them",
+    COMPOSED: "random mechanisms",
+}
+_RIGHT_DEG = 5.0
+_RIGHT = 0.2
+"""A hypothesis is right from here on: 5 deg off, or a sixteenth of the part beside the line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """Figures over the joints of a set; each object weighs the same in those that say so."""
+
+    joints: int
+    types: float
+    """Share of joints with the right type."""
+    within: float
+    """Share with the right type and an axis within 5 deg."""
+    angle_deg: float
+    """Mean over the joints; 90 where none is proposed."""
+    types_per_object: float
+    within_per_object: float
+
+
+def row_of(examples: Sequence[Example], picks: Sequence[int]) -> Row:
+    """Figures of what was picked."""
+    types = np.array([example.types_right[pick] for example, pick in zip(examples, picks, strict=True)], dtype=float)
+    angles = np.array([example.angles[pick] for example, pick in zip(examples, picks, strict=True)])
+    within = types * (angles < _RIGHT_DEG)
+    by_object: dict[str, list[int]] = {}
+    for k, example in enumerate(examples):
+        by_object.setdefault(f"{example.origin}/{example.object}", []).append(k)
+    groups = [np.array(rows) for rows in by_object.values()]
+    return Row(
+        joints=len(examples),
+        types=float(types.mean()),
+        within=float(within.mean()),
+        angle_deg=float(angles.mean()),
+        types_per_object=float(np.mean([types[rows].mean() for rows in groups])),
+        within_per_object=float(np.mean([within[rows].mean() for rows in groups])),
+    )
+
+
+def judge_left_out(
+    examples: Sequence[Example], group: Callable[[Example], str], progress: Callable[[str, float], None]
+) -> list[FloatArray]:
+    """Probabilities of the hypotheses of every example by trees whose fit had none of its group.
+
+    Groups (categories, sources or styles) fall into five folds; nothing of a fold is fitted to when it is judged. What
+    has no group is fitted to in all of them and not judged: all its hypotheses are alike.
+    """
+    found = {k: np.full(len(item.kinds), 1.0 / len(item.kinds)) for k, item in enumerate(examples) if not group(item)}
+    folds = folds_of(examples, group)
+    for fold in range(_FOLDS):
+        progress(f"left out {fold + 1} of {_FOLDS}", fold / _FOLDS)
+        judged = [k for k, at in enumerate(folds) if at == fold and k not in found]
+        if not judged:
+            continue
+        kept = [at != fold or k in found for k, at in enumerate(folds)]
+        fitted = [example for example, stays in zip(examples, kept, strict=True) if example.fits and stays]
+        scorer = fit_scorer(fitted, seeds=Seeds(), provenance={})
+        found |= {k: _likely(scorer, examples[k]) for k in judged}
+    return agreed_examples(examples, [found[k] for k in range(len(examples))])
+
+
+def _likely(scorer: Scorer, example: Example) -> FloatArray:
+    """What the scorer says of the hypotheses of an edge, shape (h,)."""
+    return scorer.probabilities(example.hypotheses, example.measured, example.cloud)
+
+
+def agreed_examples(examples: Sequence[Example], likely: Sequence[FloatArray]) -> list[FloatArray]:
+    """Probabilities after edges that are alike have agreed on a type, as the inference has it."""
+    groups: dict[tuple[str, str, int], list[int]] = {}
+    for k, example in enumerate(examples):
+        if example.alike >= 0:
+            groups.setdefault((example.origin, example.object, example.alike), []).append(k)
+    found = list(likely)
+    for rows in groups.values():
+        for k, given in zip(rows, agreed([examples[k].kinds for k in rows], [likely[k] for k in rows]), strict=True):
+            found[k] = given
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidityRow:
+    """How well fixed and moving parts of a set are told apart, left out by category."""
+
+    moving: int
+    lost: float | None
+    """Share of the moving parts that are taken for fixed."""
+    fixed: int
+    found: float | None
+    """Share of the fixed parts that are taken for fixed."""
+
+
+def judge_rigidity_left_out(examples: Sequence[Example]) -> dict[str, RigidityRow]:
+    """What is fixed, by trees whose fit had nothing of the category; by set."""
+    odds = np.zeros(len(examples))
+    folds = np.array(folds_of(examples, category_of))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
+        judged = np.flatnonzero(folds == fold).tolist()
+        scorer = fit_rigidity(fitted, seeds=(0,), provenance={})
+        odds[judged] = rigidity_odds(scorer, [examples[k] for k in judged])
+    taken = 1.0 / (1.0 + np.exp(-odds)) > load_config().joints.confidence.fixed
+    fixed = np.array([is_fixed(example) for example in examples])
+    return {
+        name: RigidityRow(
+            moving=int((~fixed[index]).sum()),
+            lost=_share(taken[index][~fixed[index]]),
+            fixed=int(fixed[index].sum()),
+            found=_share(taken[index][fixed[index]]),
+        )
+        for name, index in sets_of(examples).items()
+    }
+
+
+def judge_edges_left_out(examples: Sequence[TreeExample]) -> dict[str, EdgesRow]:
+    """How many edges of the true trees are found with weights whose fit had nothing of the category; by set."""
+    folds = folds_of(examples, category_of)
+    scores: dict[int, FloatArray] = {}
+    for fold in sorted(set(folds)):
+        fitted = [example for example, at in zip(examples, folds, strict=True) if example.fits and at != fold]
+        weights = fit_edges(fitted, {})
+        scores |= {k: weights.scores(examples[k].measured) for k, at in enumerate(folds) if at == fold}
+    return {
+        name: edges_row([examples[k] for k in index], [scores[k] for k in index])
+        for name, index in sets_of(examples).items()
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpeningRow:
+    """How well the side is told that the turns of a set open to, left out by category."""
+
+    turns: int
+    right: float
+
+
+def judge_opening_left_out(examples: Sequence[Example]) -> dict[str, OpeningRow]:
+    """Which way turns open, by trees whose fit had nothing of the category; by set."""
+    turning = [example for example in examples if example.sides]
+    right = np.zeros(len(turning))
+    folds = np.array(folds_of(turning, category_of))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(turning, folds, strict=True) if example.fits and at != fold]
+        scorer = fit_opening(fitted, seeds=(0,), provenance={})
+        for k in np.flatnonzero(folds == fold):
+            right[k] = opening_odds(scorer, turning[k].sides) > 0.0
+    return {
+        name: OpeningRow(turns=len(index), right=float(right[index].mean())) for name, index in sets_of(turning).items()
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class TurningRow:
+    """How well it is told which turns of a set go round, left out by category."""
+
+    rounds: int
+    found: float | None
+    """Share of those that go round which are taken for such."""
+    stopped: int
+    lost: float | None
+    """Share of the others that are taken to go round."""
+
+
+def judge_turning_left_out(examples: Sequence[Example]) -> dict[str, TurningRow]:
+    """What goes round, by trees whose fit had nothing of the category; by set. Links in series are told otherwise."""
+    turning = [example for example in examples if turns_known(example)]
+    taken = np.zeros(len(turning), dtype=bool)
+    folds = np.array(folds_of(turning, category_of))
+    for fold in sorted(set(folds.tolist())):
+        fitted = [example for example, at in zip(turning, folds, strict=True) if example.fits and at != fold]
+        scorer = fit_turning(fitted, seeds=(0,), provenance={})
+        judged = np.flatnonzero(folds == fold)
+        taken[judged] = scorer.sums(turns_of([turning[k] for k in judged], scorer.measurements)) > 0.0
+    rounds = np.array([bool(example.goes_round) for example in turning])
+    return {
+        name: TurningRow(
+            rounds=int(rounds[index].sum()),
+            found=_share(taken[index][rounds[index]]),
+            stopped=int((~rounds[index]).sum()),
+            lost=_share(taken[index][~rounds[index]]),
+        )
+        for name, index in sets_of(turning).items()
+    }
+
+
+def _share(taken: NDArray[np.bool_]) -> float | None:
+    return float(taken.mean()) if len(taken) else None
+
+
+def folds_of(examples: Sequence[_Kind], group: Callable[[_Kind], str]) -> list[int]:
+    """The fold of each example: by the name of its group alone, so that a new group moves no other."""
+    return [zlib.crc32(group(example).encode()) % _FOLDS for example in examples]
+
+
+def surprise_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> float:
+    """Mean over the objects of -log of the probability that is given to what is right; smoother than shares right."""
+    by_object: dict[str, list[float]] = {}
+    for example, given in zip(examples, likely, strict=True):
+        if example.right.max() >= _RIGHT:
+            value = -np.log(max(float(given[example.right >= _RIGHT].sum()), 1e-4))
+            by_object.setdefault(f"{example.origin}/{example.object}", []).append(value)
+    return float(np.mean([np.mean(values) for values in by_object.values()])) if by_object else 0.0
+
+
+def judgement_of(example: Example, probabilities: FloatArray) -> Judgement:
+    """What the inference would make of these probabilities, shape (h,)."""
+    by_cues = max(example.by_cues, 1)
+    return Judgement(
+        hypotheses=example.hypotheses,
+        likely=probabilities,
+        by_cues=by_cues,
+        support=example.measured["rules_score"],
+        size=example.size,
+        lead=lead_of(example.hypotheses.sources[by_cues], _confidence()),
+    )
+
+
+def picked(example: Example, probabilities: FloatArray) -> int:
+    """What the inference would choose with these probabilities, shape (h,)."""
+    return judgement_of(example, probabilities).best if example.by_cues else 0
+
+
+@cache
+def _confidence() -> ConfidenceConfig:
+    """As the inference has it; read once, since tables ask for it thousands of times."""
+    return load_config().joints.confidence
+
+
+CAUSES = ("none proposed", "wrong type", "wrong direction", "line beside")
+
+
+def cause_of(example: Example, pick: int) -> str | None:
+    """Why what was picked is wrong, one of `CAUSES`; None where it is right."""
+    if example.right[pick] >= _RIGHT:
+        return None
+    if example.right.max() < _RIGHT:
+        return CAUSES[0]
+    if not example.types_right[pick]:
+        return CAUSES[1]
+    return CAUSES[2] if example.angles[pick] >= _RIGHT_DEG else CAUSES[3]
+
+
+def calibration_of(examples: Sequence[Example], likely: Sequence[FloatArray]) -> dict[str, Any]:
+    """Mean confidence and share right of each fifth of the joints, least sure first, and what follows from them."""
+    judged = [judgement_of(*pair) for pair in zip(examples, likely, strict=True)]
+    sure = np.array([item.confidence for item in judged])
+    row = [e.types_right[j.best] and e.angles[j.best] < _RIGHT_DEG for e, j in zip(examples, judged, strict=True)]
+    right = np.array(row, dtype=float)
+    fifths = np.array_split(np.argsort(sure, kind="stable"), 5)
+    confidence, share = ([float(values[rows].mean()) for rows in fifths] for values in (sure, right))
+    wrong = 1.0 - right
+    return {
+        "confidence": confidence,
+        "right": share,
+        "error": float(np.mean(np.abs(np.subtract(confidence, share)))),
+        "errors_in_least_sure": float(wrong[fifths[0]].sum() / max(wrong.sum(), 1.0)),
+    }
+
+
+def sets_of(examples: Sequence[_Kind]) -> dict[str, list[int]]:
+    """Name of each set that has a row of its own -> positions of its examples."""
+    found: dict[str, list[int]] = {}
+    for k, example in enumerate(examples):
+        name = _GENERATED_SETS.get(example.origin, example.origin)
+        if example.origin not in GENERATED:
+            name += ", fitted to" if example.fits else ", for research only: never fitted to"
+        found.setdefault(name, []).append(k)
+    return found

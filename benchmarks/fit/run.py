@@ -1,0 +1,377 @@
+"""The whole fit: corpora, weights with their provenance, and the table of what they are worth."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections import Counter
+from dataclasses import asdict, replace
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kinematify import __version__
+from benchmarks.fit.categories import category_of
+from benchmarks.fit.corpora import (
+    GENERATED,
+    broken_sources,
+    gather_examples,
+    gather_trees,
+    generated_sources,
+    real_sources,
+    tree_sources,
+)
+from benchmarks.fit.edges import edges_row, fit_edges, write_edge_weights
+from benchmarks.fit.judged import (
+    CAUSES,
+    agreed_examples,
+    calibration_of,
+    cause_of,
+    judge_edges_left_out,
+    judge_left_out,
+    judge_opening_left_out,
+    judge_rigidity_left_out,
+    judge_turning_left_out,
+    picked,
+    row_of,
+    sets_of,
+    surprise_of,
+)
+from benchmarks.fit.trees import (
+    Seeds,
+    data_key,
+    fit_opening,
+    fit_rigidity,
+    fit_scorer,
+    fit_turning,
+    is_fixed,
+    opening_recipe_key,
+    recipe_key,
+    rigidity_recipe_key,
+    turning_recipe_key,
+    turns_known,
+    write_scorer,
+)
+from kinematify.evaluation.record import table
+from kinematify.joints.choice.edges import EDGE_WEIGHTS
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from pathlib import Path
+
+    from benchmarks.fit.edges import TreeExample
+    from benchmarks.fit.examples import Example
+    from kinematify.joints.choice.edges import EdgeWeights
+    from kinematify.joints.choice.scorer import Scorer
+    from kinematify.robot.arrays import FloatArray
+
+    Likely = Mapping[str, Sequence[FloatArray]]
+
+_SEEDS = (0, 1, 2, 3)
+_SHIPPED = Seeds(trees=_SEEDS, networks=(0, 1, 2, 3, 4, 5), points=(0, 1))
+_LEAST = 10  # joints below which calibration says nothing
+_FEWEST_STYLES = 5  # ways of modelling, so that leaving some out leaves others
+_LEARNING = (0.25, 0.5, 1.0)
+
+
+def run_fit(
+    folders: Sequence[Path],
+    out: Path,
+    *,
+    rounds: int,
+    composed: int,
+    seed: int,
+    workers: int,
+    cache: Path,
+    ablation: bool,
+    progress: Callable[[str, float], None],
+) -> dict[str, Any]:
+    """Fit the choice of joints, judge it left out, and write ``weights.npz``, ``choice.json`` and ``choice.md``.
+
+    Args:
+        folders: Of real objects.
+        out: Where the files go.
+        rounds: Objects of every generated family.
+        composed: Random mechanisms.
+        seed: Draws the generated objects.
+        workers: Processes at a time.
+        cache: Folder of what was measured, so that an interrupted run goes on.
+        ablation: Also fit without each group of measurements, and to a part of the objects.
+        progress: Told what is done and the share of it.
+
+    Returns:
+        What ``choice.json`` holds.
+
+    Raises:
+        InputError: There is nothing to fit to.
+        EnvironmentFault: LightGBM is not installed.
+    """
+    sources = generated_sources(rounds, composed) + [source for folder in folders for source in real_sources(folder)]
+    sources += broken_sources(sources)
+    examples = gather_examples(sources, cache, seed=seed, workers=workers, progress=progress)
+    trees = gather_trees(tree_sources(sources), cache / "trees", seed=seed, workers=workers, progress=progress)
+    drawn = {"seed": seed, "rounds": rounds, "composed": composed}
+    return fit_and_judge(examples, trees, out, drawn=drawn, ablation=ablation, progress=progress)
+
+
+def fit_and_judge(
+    examples: Sequence[Example],
+    trees: Sequence[TreeExample],
+    out: Path,
+    *,
+    drawn: Mapping[str, int],
+    ablation: bool,
+    progress: Callable[[str, float], None],
+) -> dict[str, Any]:
+    """What `run_fit` does of examples that are measured; `drawn` says how many were generated."""
+    everything, examples = examples, [example for example in examples if not example.broken]
+    fitted = [example for example in examples if example.fits]
+    provenance = {
+        "kinematify": __version__,
+        "lightgbm": _version(),
+        "date": datetime.now(UTC).date().isoformat(),
+        **drawn,
+        "objects": len({(example.origin, example.object) for example in fitted}),
+        "joints": len(fitted),
+        "data": data_key(fitted),
+        "recipe": recipe_key(list({name for example in fitted for name in example.measured})),
+        "real": sorted({example.object for example in fitted if example.origin not in GENERATED}),
+    }
+    scorer = fit_scorer(fitted, seeds=_SHIPPED, provenance=provenance)
+    out.mkdir(parents=True, exist_ok=True)
+    write_scorer(scorer, out / WEIGHTS)
+    write_scorer(_rigidity(everything, provenance), out / RIGID_WEIGHTS)
+    write_scorer(_opening(examples, provenance), out / OPENING_WEIGHTS)
+    write_scorer(_turning(examples, provenance), out / TURNING_WEIGHTS)
+    edges = fit_edges([example for example in trees if example.fits], provenance)
+    write_edge_weights(edges, out / EDGE_WEIGHTS)
+    likely = {"left out by category": judge_left_out(examples, category_of, progress)}
+    if len({example.source for example in examples}) > 1:
+        likely["left out by source"] = judge_left_out(examples, lambda example: example.source, progress)
+    shipped = [scorer.probabilities(example.hypotheses, example.measured, example.cloud) for example in examples]
+    likely["shipped weights"] = agreed_examples(examples, shipped)
+    report = {
+        "schema": 2,
+        "provenance": provenance,
+        "sets": {name: _rows(examples, index, likely) for name, index in sets_of(examples).items()},
+        "styles": _styles(examples, likely, progress),
+        "calibration": _calibration(examples, likely["left out by category"]),
+        "rigidity": {name: asdict(row) for name, row in judge_rigidity_left_out(everything).items()},
+        "opening": {name: asdict(row) for name, row in judge_opening_left_out(examples).items()},
+        "turning": {name: asdict(row) for name, row in judge_turning_left_out(examples).items()},
+        "edges": _edges(trees, edges),
+    }
+    if ablation:
+        report |= _ablation(examples, progress)
+    (out / "choice.json").write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+    (out / "choice.md").write_text(as_markdown(report), encoding="utf-8")
+    return report
+
+
+def _rigidity(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
+    """What tells fixed parts from others, fitted to all that may enter weights."""
+    fitted = [example for example in examples if example.fits]
+    facts = {
+        "joints": len(fitted),
+        "fixed": sum(map(is_fixed, fitted)),
+        "data": data_key(fitted),
+        "recipe": rigidity_recipe_key(list({name for example in fitted for name in example.measured})),
+    }
+    return fit_rigidity(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
+
+
+def _opening(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
+    """What tells which way a turn opens, fitted to all that may enter weights."""
+    fitted = [example for example in examples if example.fits and example.sides]
+    names = list({name for example in fitted for name in example.sides})
+    facts = {"joints": len(fitted), "recipe": opening_recipe_key(names)}
+    return fit_opening(fitted, seeds=_SEEDS, provenance={**provenance, **facts})
+
+
+def _turning(examples: Sequence[Example], provenance: Mapping[str, Any]) -> Scorer:
+    """What tells which turns go round, fitted to all that may enter weights."""
+    fitted = [example for example in examples if example.fits and turns_known(example)]
+    scorer = fit_turning(fitted, seeds=_SEEDS, provenance={})
+    facts = {"joints": len(fitted), "recipe": turning_recipe_key(scorer.measurements)}
+    return replace(scorer, provenance={**provenance, **facts})
+
+
+def _styles(
+    examples: Sequence[Example], likely: Likely, progress: Callable[[str, float], None]
+) -> dict[str, dict[str, Any]]:
+    """Figures of generated objects with a drawn way of modelling, left out by it too; nothing of too few ways."""
+    styled = [k for k, example in enumerate(examples) if example.style]
+    if len({examples[k].style for k in styled}) < _FEWEST_STYLES:
+        return {}
+    by_what = {**likely, "left out by style": judge_left_out(examples, lambda example: example.style, progress)}
+    return {
+        name: _rows(examples, [styled[k] for k in index], by_what)
+        for name, index in sets_of([examples[k] for k in styled]).items()
+    }
+
+
+def _edges(trees: Sequence[TreeExample], shipped: EdgeWeights) -> dict[str, Any]:
+    """True edges that the likeliest trees have, by set: left out by category, and with the weights that ship."""
+    left_out = judge_edges_left_out(trees)
+    found = {}
+    for name, index in sets_of(trees).items():
+        some = [trees[k] for k in index]
+        found[name] = {
+            "left out by category": asdict(left_out[name]),
+            "shipped weights": asdict(edges_row(some, [shipped.scores(example.measured) for example in some])),
+        }
+    return found
+
+
+def _rows(examples: Sequence[Example], index: Sequence[int], likely: Likely) -> dict[str, Any]:
+    """Figures and causes of errors of one set by what chose."""
+    some = [examples[k] for k in index]
+    picks = {"weighted cues": [example.by_cues for example in some]}
+    picks |= {by: [picked(examples[k], given[k]) for k in index] for by, given in likely.items()}
+    return {
+        by: asdict(row_of(some, chosen))
+        | {"causes": Counter(cause for cause in map(cause_of, some, chosen) if cause is not None)}
+        for by, chosen in picks.items()
+    }
+
+
+def _calibration(examples: Sequence[Example], likely: Sequence[FloatArray]) -> dict[str, Any]:
+    """Of real objects, but of robots, which are all sure and right."""
+    index = [k for k, example in enumerate(examples) if example.origin not in (*GENERATED, "robots")]
+    return calibration_of([examples[k] for k in index], [likely[k] for k in index]) if len(index) >= _LEAST else {}
+
+
+def _ablation(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, Any]:
+    """Left out by category: each group of measurements taken away, and a part of the objects alone."""
+    groups = sorted({group for example in examples for group in example.groups})
+    without = {"nothing": examples} | {group: [_without(group, example) for example in examples] for group in groups}
+    shares = {
+        f"{share:.0%}": [replace(example, fits=example.fits and _draw(example) < share) for example in examples]
+        for share in _LEARNING
+    }
+    return {
+        name: {of: _surprises(some, progress) for of, some in changed.items()}
+        for name, changed in (("ablation", without), ("learning", shares))
+    }
+
+
+def _without(group: str, example: Example) -> Example:
+    """The example with the measurements of a group missing; what the trees start from is level instead."""
+    names = set(example.groups.get(group, ()))
+    missing = {name: np.full_like(example.measured[name], np.nan) for name in names}
+    level = {name: np.zeros_like(example.measured[name]) for name in names & {"rules_score", "rules_odds"}}
+    return replace(example, measured={**example.measured, **missing, **level})
+
+
+def _draw(example: Example) -> float:
+    """A number in [0, 1) that is the object's own."""
+    return zlib.crc32(f"{example.origin}/{example.object}".encode()) / 2.0**32
+
+
+def _surprises(examples: Sequence[Example], progress: Callable[[str, float], None]) -> dict[str, float]:
+    """Of the sets of real objects, left out by category."""
+    likely = judge_left_out(examples, category_of, progress)
+    return {
+        name: surprise_of([examples[k] for k in index], [likely[k] for k in index])
+        for name, index in sets_of(examples).items()
+        if examples[index[0]].origin not in GENERATED
+    }
+
+
+def _percent(share: float | None) -> str:
+    return "" if share is None else f"{share:.1%}"
+
+
+def _version() -> str:
+    """Of LightGBM; empty where it is not installed, which the fit then says."""
+    try:
+        return version("lightgbm")
+    except PackageNotFoundError:
+        return ""
+
+
+def as_markdown(report: dict[str, Any]) -> str:
+    """The table of `run_fit` as a page."""
+    facts = report["provenance"]
+    introduction = (
+        f"Fitted to {facts['joints']} joints of {facts['objects']} objects by `kinematify fit` (seed {facts['seed']}, "
+        f"LightGBM {facts['lightgbm']}, {facts['date']}). The true tree is given. Left out by category: trees whose "
+        "fit had no object and no family of the category; by source: none of the same data set, package or "
+        "generator. Shipped weights: what ships, which has seen what it was fitted to. Errors: no right joint was "
+        "proposed; type; direction given the type; line beside the right one, which counts as right in the columns "
+        "before."
+    )
+    blocks = ["# The choice of joints", introduction, _choice_table(report["sets"])]
+    found = report["calibration"]
+    if found:
+        pairs = zip(found["confidence"], found["right"], strict=True)
+        fifths = ", ".join(f"{sure:.2f} ({right:.2f})" for sure, right in pairs)
+        blocks.append(
+            "Left out by category, real objects but robots: the least sure fifth holds "
+            f"{found['errors_in_least_sure']:.0%} of the errors. Mean confidence of each fifth, and share right: "
+            f"{fifths}. Calibration error: {found['error']:.3f}."
+        )
+    edges = [(name, by, row) for name, by_what in report["edges"].items() for by, row in by_what.items()]
+    if edges:
+        heading = ("set", "objects", "edges", "weighed by", "true edges found", "objects with all")
+        shown = [
+            (name, f"{row['objects']}", f"{row['edges']}", by, _percent(row["found"]), _percent(row["whole"]))
+            for name, by, row in edges
+        ]
+        blocks += ["Edges of the tree, whatever its root:", table(heading, shown)]
+    if report["styles"]:
+        blocks += ["Generated objects with a drawn way of modelling:", _choice_table(report["styles"])]
+    rigidity = report["rigidity"]
+    if any(row["fixed"] for row in rigidity.values()):
+        columns = ("set", "moving parts", "taken for fixed", "pieces broken off", "found to be fixed")
+        counted = [
+            (name, f"{row['moving']}", _percent(row["lost"]), f"{row['fixed']}", _percent(row["found"]))
+            for name, row in rigidity.items()
+        ]
+        blocks += ["Whether a part is fixed, left out by category:", table(columns, counted)]
+    opening = report["opening"]
+    if opening:
+        titles = ("set", "turns that open one way", "right, left out by category")
+        rows_of_sets = [(name, f"{row['turns']}", f"{row['right']:.1%}") for name, row in opening.items()]
+        blocks += ["Which way a turn opens, of the true line:", table(titles, rows_of_sets)]
+    turning = report["turning"]
+    if turning:
+        columns = ("set", "go round", "found", "turn between stops", "taken to go round")
+        counted = [
+            (name, f"{row['rounds']}", _percent(row["found"]), f"{row['stopped']}", _percent(row["lost"]))
+            for name, row in turning.items()
+        ]
+        blocks += ["Which turns go round, of the true line, left out by category:", table(columns, counted)]
+    for key, title in (
+        (
+            "ablation",
+            "Surprise (mean of -log of the probability of what is right), left out by category, without",
+        ),
+        ("learning", "The same, fitted to a part of the objects"),
+    ):
+        if key in report:
+            sets = list(next(iter(report[key].values())))
+            body = [(name, *(f"{row[of]:.3f}" for of in sets)) for name, row in report[key].items()]
+            blocks += [f"{title}:", table((key, *sets), body)]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _choice_table(sets: Mapping[str, Any]) -> str:
+    """Figures and causes of errors of sets, by what chose."""
+    head = ("set", "joints", "chosen by", "types right", "type right and within 5 deg", "the same, per object")
+    rows = [
+        (
+            name,
+            f"{row['joints']}",
+            by,
+            *(f"{row[key]:.1%}" for key in ("types", "within", "within_per_object")),
+            f"{row['angle_deg']:.1f}",
+            *(f"{row['causes'].get(cause, 0)}" for cause in CAUSES),
+        )
+        for name, by_what in sets.items()
+        for by, row in by_what.items()
+    ]
+    return table((*head, "angle [deg]", *CAUSES), rows)

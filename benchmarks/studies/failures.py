@@ -1,0 +1,232 @@
+"""How often does each failure occur on right joints, and how often on wrong ones?
+
+Wrong joints are planted in true mechanisms as `kinematify bench refine` does, and nothing is refined. *Line*: an axis
+turned by 90 deg, a moved pivot, or the second-best hypothesis where it is of the right type; *type*, *parent*: the
+other type, another parent; *range*: the other sign, or a range that reaches twice as far. A joint failed a check that
+found an error about it, or a warning and no error; the two are counted apart, and what only collision geometry is to
+blame for is not counted. What a failure weighs in `kinematify refine` is a lower bound (95 %) of the logarithm of the
+ratio of a rate to that on right joints; `--write FILE` writes the counts as `validation/failure_rates.json` has them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from kinematify import __version__
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.errors import OutputError
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
+from kinematify.evaluation.job import erased_item
+from benchmarks.planted import (
+    AXIS,
+    NOTHING,
+    PARENT,
+    PIVOT,
+    RANGE,
+    SECOND,
+    SIGN,
+    TYPE,
+    planted_faults,
+    true_mechanism,
+)
+from kinematify.evaluation.record import table
+from benchmarks.study import Options, Study, among, explained
+from kinematify.refinement.plan import Plan
+from kinematify.refinement.simulate import Simulator
+from kinematify.refinement.tiers import TIERS, DearTiers
+from kinematify.validation import failure_rates
+from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
+from kinematify.validation.feedback import only_collision_meets
+from kinematify.validation.finding import Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from kinematify.evaluation.record import Report
+    from benchmarks.study import Measured, Record, Work
+    from kinematify.pipeline import Inference
+    from kinematify.validation.finding import Finding
+
+SAMPLE = (
+    "audibot", "bigym_base_doors", "bigym_base_drawers", "bigym_dishwasher", "bigym_wall_cabinet", "bullet_racecar",
+    "calvin_table_A", "calvin_table_B", "doorgym_pull_left", "doorgym_pull_right", "drake_cupboard", "fs_boxcabinet",
+    "fs_hood_panel", "gz_cart_rigid", "gz_cessna", "gz_hinged_door", "gz_polaris_ev", "gz_prius_hybrid",
+    "gz_scanse_sweep", "gz_src_doorway", "gz_tricycle", "gz_velodyne", "gz_wooden_case", "habitat_fridge",
+    "jsk_fridge", "koki_handle_door", "lb_white_cabinet", "px4_bluerov2", "px4_gimbal", "px4_lawnmower",
+    "px4_rover_ackermann", "robel_valve3", "robel_valve4", "simpler_mk_station", "src_leak_patch_tool",
+    "src_satellite_dish", "src_solar_panel", "tz_button", "tz_cabinet_hammer", "urdformer_13", "urdformer_55",
+)  # fmt: skip
+"""Objects of other hands whose licence lets us fit to them; none of them is measured by `kinematify bench refine`."""
+_FAULTS = (AXIS, PIVOT, TYPE, SIGN, PARENT, SECOND, RANGE)
+_CLASS = {
+    AXIS: failure_rates.LINE,
+    PIVOT: failure_rates.LINE,
+    TYPE: failure_rates.TYPE,
+    PARENT: failure_rates.PARENT,
+    SIGN: failure_rates.RANGE,
+    RANGE: failure_rates.RANGE,
+}
+
+
+class FailuresOptions(Options):
+    """Which objects, how far they are simulated, where the counts go."""
+
+    data: str = Field("everyday2", description="Folder or set of objects.")
+    objects: tuple[str, ...] = Field(SAMPLE, description="Names or patterns of objects; * for all.")
+    tiers: Annotated[tuple[str, ...], among(TIERS)] = Field(
+        ("geometry",), description="Some of geometry, engines, task."
+    )
+    seed: int = Field(0, description="Draws the joints.")
+    write: str | None = Field(None, description="File for the counts; a tier that was not simulated keeps its own.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Watched:
+    """One object whose joints are watched in one tier."""
+
+    item: BenchObject
+    tier: str
+    seed: int
+
+
+def measure(options: FailuresOptions, work: Work) -> Measured:
+    """Simulate every object as it is and with each fault, and count."""
+    asked = {
+        f"{item.name}, {tier}": Watched(item=item, tier=tier, seed=options.seed)
+        for tier in options.tiers
+        for item in matching(find_objects(options.data), options.objects)
+    }
+    records = [joint for record in work.each(watched, asked, timeout=7200.0).values() for joint in record["joints"]]
+    if options.write is not None:
+        provenance = {
+            **options.model_dump(mode="json", exclude={"write"}),
+            "objects": sorted({record["object"] for record in records}),
+            "made": datetime.now(UTC).date().isoformat(),
+            "kinematify": __version__,
+        }
+        _write(rates_of(records, provenance), Path(options.write))
+    return records, {}
+
+
+def watched(asked: Watched) -> Record:
+    """The joints of one object, right and wrong, with the checks that each failed in one tier."""
+    mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config())
+    if mechanism is None:
+        return {"joints": []}
+    right = _failed(mechanism.inference, asked.tier)
+    joints = [_record(asked, part, RIGHT, NOTHING, failed) for part, failed in right.items()]
+    for planted in planted_faults(mechanism, asked.seed, _FAULTS):
+        failed = _failed(planted.inference, asked.tier)[planted.part]
+        what = _CLASS.get(planted.fault) or _class_of_second(mechanism.inference, planted.inference, planted.part)
+        joints.append(_record(asked, planted.part, what, planted.fault, failed))
+    return {"joints": joints}
+
+
+def _class_of_second(right: Inference, wrong: Inference, part: str) -> str:
+    child = right.assembly.names.index(part)
+    kinds = [next(joint.kind for joint in item.joints if joint.child == child).turns for item in (right, wrong)]
+    return failure_rates.LINE if kinds[0] == kinds[1] else failure_rates.TYPE
+
+
+def _record(asked: Watched, part: str, what: str, fault: str, failed: Mapping[str, Severity]) -> Record:
+    return {
+        "object": asked.item.name,
+        "tier": asked.tier,
+        "part": part,
+        "class": what,
+        "fault": fault,
+        "failed": dict(sorted(failed.items())),
+    }
+
+
+def _failed(inference: Inference, tier: str) -> dict[str, dict[str, Severity]]:
+    """Checks of a tier that found fault with the joint above each part, with the worst that they found."""
+    plan = Plan(assembly=inference.assembly, config=inference.config, tree=inference.trees[0], joints=inference.joints)
+    settings = load_settings()
+    verdict = Simulator(plan.model, settings.geometry).judge(plan.model)
+    if tier != GEOMETRY:
+        verdict = DearTiers(settings=settings).deepened(verdict, plan, tier)
+    carrier = {joint.child: joint.name for joint in plan.model.joints}
+    failed: dict[str, dict[str, Severity]] = {name: {} for name in carrier.values()}
+    for finding in verdict.findings:
+        joint = _blamed(finding, carrier)
+        if joint not in failed or tier_of(finding.check) != tier or only_collision_meets(finding):
+            continue
+        if finding.severity is not Severity.NOTE and failed[joint].get(finding.check) is not Severity.ERROR:
+            failed[joint][finding.check] = finding.severity
+    return {part: failed[name] for part, name in carrier.items()}
+
+
+def _blamed(finding: Finding, carrier: dict[str, str]) -> str | None:
+    """The joint that a finding is about: of KV311 that of the part which is brought into another body."""
+    parts = [carrier[part] for part in finding.pair or () if part in carrier]
+    if finding.check == "KV311" and finding.joint not in parts and parts:
+        return parts[0]
+    return finding.joint
+
+
+def rates_of(records: Iterable[Record], provenance: Record) -> FailureRates:
+    """Count joints and failures by class."""
+    joints: dict[str, Counter[str]] = {}
+    failures: dict[str, dict[str, Counter[str]]] = {}
+    for record in records:
+        joints.setdefault(record["tier"], Counter())[record["class"]] += 1
+        for check, severity in record["failed"].items():
+            failures.setdefault(check, {}).setdefault(severity, Counter())[record["class"]] += 1
+    return FailureRates(
+        joints={tier: dict(counts) for tier, counts in joints.items()},
+        failures={
+            check: {severity: dict(counts) for severity, counts in sorted(failures[check].items())}
+            for check in sorted(failures)
+        },
+        provenance=dict.fromkeys(joints, provenance),
+    )
+
+
+def _write(rates: FailureRates, path: Path) -> None:
+    """Write counts; those of tiers that were not simulated stay as the file has them."""
+    try:
+        old = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        kept = {check: item for check, item in old.get("failures", {}).items() if tier_of(check) not in rates.joints}
+        facts = {
+            "joints": {**old.get("joints", {}), **rates.joints},
+            "failures": dict(sorted({**kept, **rates.failures}.items())),
+            "provenance": {**old.get("provenance", {}), **rates.provenance},
+        }
+        path.write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise OutputError(
+            f"The counts cannot be written to {path}: {error}. Give another file with --write."
+        ) from error
+
+
+def report(found: Report[Record]) -> list[str]:
+    """Rates and weights of every check, errors and warnings apart."""
+    rates = rates_of(found.records, {})
+    wrong = [what for what in CLASSES if what != RIGHT]
+    rows = [
+        (
+            check,
+            severity,
+            *(_rate(counts.get(what, 0), rates.joints[tier_of(check)].get(what, 0)) for what in CLASSES),
+            *(f"{rates.weight(check, Severity(severity), what):.2f}" for what in wrong),
+        )
+        for check, by_severity in rates.failures.items()
+        for severity, counts in by_severity.items()
+    ]
+    return [explained(__doc__), table(("check", "finding", *CLASSES, *(f"weight, {what}" for what in wrong)), rows)]
+
+
+def _rate(failed: int, joints: int) -> str:
+    return f"{failed} of {joints}"
+
+
+STUDY = Study(title="How often failures occur", options=FailuresOptions, measure=measure, report=report)

@@ -1,0 +1,359 @@
+"""What does `kinematify validate` say of working models that others publish?
+
+The command as a user runs it, start-up included, on robots of the PyPI packages example-robot-data and pybullet_data,
+and on a folder of models from elsewhere. Every error and warning was judged by hand once, with a reason
+(`configs/published.yaml`): *right* if the makers would agree, *wrong* if the model is fine there, *debatable* between.
+What nobody has judged counts as *unjudged*. A check that was not finished is no finding.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from importlib.metadata import PackageNotFoundError, distribution
+from operator import itemgetter
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from kinematify.config import StageConfig, load_values, validated
+from kinematify.errors import EnvironmentFault, ExitStatus, InputError
+from kinematify.evaluation.datasets import bench_folder, example_robots
+from kinematify.evaluation.record import grouped, table
+from benchmarks.study import Options, Study, explained
+from kinematify.validation.finding import Blame, Severity
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kinematify.evaluation.record import Report
+    from benchmarks.study import Measured, Record, Work
+
+_JUDGED = "published"
+"""Configuration with what was judged by hand."""
+_VERDICTS = ("wrong", "debatable", "right", "unjudged")
+
+EXAMPLE_ROBOTS = (
+    "a1_description/urdf/a1", "allegro_hand_description/urdf/allegro_left_hand",
+    "anymal_b_simple_description/robots/anymal-kinova", "anymal_c_simple_description/urdf/anymal",
+    "asr_twodof_description/urdf/TwoDofs", "b1_description/urdf/b1",
+    "bolt_description/robots/bolt", "borinot_description/urdf/borinot_flying_arm_2",
+    "double_pendulum_description/urdf/double_pendulum", "finger_edu_description/robots/finger_edu",
+    "go1_description/urdf/go1", "go2_description/urdf/go2", "hextilt_description/urdf/hextilt_flying_arm_5",
+    "hyq_description/robots/hyq_no_sensors", "kinova_description/robots/kinova", "panda_description/urdf/panda",
+    "quadruped_description/urdf/quadruped", "simple_humanoid_description/urdf/simple_humanoid",
+    "so_arm_description/urdf/so101", "solo_description/robots/solo12", "talos_data/robots/talos_left_arm",
+    "ur_description/urdf/ur10_robot", "ur_description/urdf/ur3_gripper", "ur_description/urdf/ur5_robot",
+    "xarm_description/urdf/xarm7", "z1_description/urdf/z1",
+)  # fmt: skip
+"""One model of every robot of example-robot-data that is no humanoid with hundreds of meshes, without ``.urdf``."""
+BULLET_ROBOTS = (
+    "a1/a1", "aliengo/aliengo", "bicycle/bike", "biped/biped2d_pybullet", "cartpole", "differential/diff_ring",
+    "franka_panda/panda", "humanoid/humanoid", "husky/husky", "kuka_iiwa/model", "kuka_iiwa/model_vr_limits",
+    "laikago/laikago", "laikago/laikago_toes_limits", "mini_cheetah/mini_cheetah", "pendulum5", "pr2_gripper",
+    "quadruped/minitaur", "quadruped/quadruped", "quadruped/spirit40", "quadruped/vision60", "r2d2", "racecar/racecar",
+    "xarm/xarm6_robot", "xarm/xarm6_with_gripper",
+)  # fmt: skip
+"""Articulated models of the package pybullet_data, without ``.urdf``."""
+
+
+_BESIDE_BUSY = ("jackal", "irb2400", "kr16_2", "so100", "erd/panda", "erd/ur5_robot", "cartpole", "r2d2")
+"""Models that are validated once more while other processes keep the machine busy."""
+_BUSY = 8
+"""How many do."""
+
+
+class PublishedOptions(Options):
+    """Which models."""
+
+    folder: Path | None = Field(
+        None, description="Folder of models, NAME/model.urdf; `published` beside the benchmark's if not given."
+    )
+    models: tuple[str, ...] = Field((), description="Only these, patterns separated by commas.")
+
+
+class Judgement(StageConfig):
+    """What a person makes of some findings on one model."""
+
+    model: str
+    """Pattern of names of models."""
+    check: str
+    """Pattern of ids."""
+    where: str = "*"
+    """Pattern of the joint, the link or one link of the pair."""
+    verdict: Literal["right", "debatable", "wrong"]
+    reason: str = Field(min_length=1)
+    """The measurement or the plain code that shows it."""
+
+    def fits(self, model: str, finding: Record) -> bool:
+        """Whether it speaks of a finding on a model."""
+        places = [finding["joint"], finding["link"], *(finding["pair"] or ())]
+        return (
+            fnmatchcase(model, self.model)
+            and fnmatchcase(finding["check"], self.check)
+            and (self.where == "*" or any(fnmatchcase(place, self.where) for place in places if place))
+        )
+
+
+class Judged(StageConfig):
+    """All that was judged."""
+
+    judged: list[Judgement]
+
+    def of(self, model: str, finding: Record) -> Judgement | None:
+        """The first entry that fits a finding."""
+        return next((entry for entry in self.judged if entry.fits(model, finding)), None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublishedModel:
+    """One model."""
+
+    name: str
+    source: str
+    urdf: Path
+    package_dirs: tuple[Path, ...] = ()
+
+
+def measure(options: PublishedOptions, work: Work) -> Measured:
+    """Validate one model after the other, for the times."""
+    found, left_out = {}, {}
+    for source, models in {
+        "other makers": lambda: _in_folder(options.folder),
+        "example-robot-data": _example_models,
+        "pybullet_data": _bullet_models,
+    }.items():
+        try:
+            found.update({model.name: model for model in models() if _wanted(model.name, options.models)})
+        except EnvironmentFault as fault:
+            left_out[source] = str(fault)
+    quiet = work.each(verdict_on, found, workers=1)
+    chosen = {name: found[name] for name in _BESIDE_BUSY if name in found}
+    with _busy(_BUSY if chosen else 0):
+        busy = work.each(verdict_beside_others, chosen, workers=1)
+    differ = [name for name, record in busy.items() if _told(record) != _told(quiet[name])]
+    beside = {"processes": _BUSY, "models": [*busy], "differ": differ}
+    return list(quiet.values()), {"left out": left_out, "busy": beside}
+
+
+def _told(record: Record) -> list[tuple[object, ...]]:
+    """What is said of what, without numbers."""
+    return [
+        tuple(finding[key] for key in ("check", "severity", "joint", "link", "pair")) for finding in record["findings"]
+    ]
+
+
+@contextmanager
+def _busy(count: int) -> Iterator[None]:
+    """Keep the machine busy with so many processes that do nothing useful."""
+    code = f"while __import__('os').getppid() == {os.getpid()}: sum(range(10**6))"
+    busy = [subprocess.Popen([sys.executable, "-c", code]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
+def _wanted(name: str, patterns: Sequence[str]) -> bool:
+    return not patterns or any(fnmatchcase(name, pattern) for pattern in patterns)
+
+
+def _in_folder(folder: Path | None) -> Iterator[PublishedModel]:
+    place = folder or bench_folder().parent / "published"
+    files = sorted(place.glob("*/model.urdf"))
+    if not files:
+        fault = EnvironmentFault if folder is None else InputError  # what nobody asked for is left out
+        raise fault(f"There is no folder with a model.urdf in {place}. Give a folder of such folders with --folder.")
+    return (PublishedModel(name=path.parent.name, source="other makers", urdf=path) for path in files)
+
+
+def _example_models() -> Iterator[PublishedModel]:
+    share = example_robots()
+    for place in EXAMPLE_ROBOTS:
+        yield PublishedModel(
+            name=f"erd/{Path(place).name}",
+            source="example-robot-data",
+            urdf=share / "example-robot-data" / "robots" / f"{place}.urdf",
+            package_dirs=(share,),
+        )
+
+
+def _bullet_models() -> Iterator[PublishedModel]:
+    try:
+        folder = Path(str(distribution("pybullet").locate_file("pybullet_data")))
+    except PackageNotFoundError as error:
+        raise EnvironmentFault("pybullet is not installed. Run `pip install kinematify`.") from error
+    for name in BULLET_ROBOTS:
+        yield PublishedModel(name=name, source="pybullet_data", urdf=folder / f"{name}.urdf")
+
+
+def verdict_on(model: PublishedModel) -> Record:
+    """Run the command on one model: its errors and warnings, the lines that it prints, and how long it takes."""
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        answer = Path(folder, "report.json")
+        command = [sys.executable, "-m", "kinematify", "validate", str(model.urdf), "--json", str(answer)]
+        command += [word for place in model.package_dirs for word in ("--package-dir", str(place))]
+        start = time.perf_counter()
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        seconds = time.perf_counter() - start
+        text = answer.read_text("utf-8")
+    for place in (model.urdf.parent, *model.package_dirs):  # where a package is installed is nobody's business
+        text = text.replace(f"{place}{os.sep}", "")
+    told: Record = json.loads(text)
+    counted = [item for item in told.get("findings", ()) if item["severity"] != Severity.NOTE]
+    return {
+        "model": model.name,
+        "source": model.source,
+        "seconds": round(seconds, 1),
+        "status": run.returncode,
+        "lines": len(run.stdout.splitlines()),
+        "unusable": told.get("message") if run.returncode == ExitStatus.UNUSABLE else None,
+        "unfinished": sorted(
+            {item["check"] for item in told.get("checks", ()) if "not finished" in str(item["reason"])}
+        ),
+        "findings": [
+            {key: item[key] for key in ("check", "severity", "blame", "joint", "link", "pair", "message")}
+            for item in counted
+        ],
+    }
+
+
+def verdict_beside_others(model: PublishedModel) -> Record:
+    """The same while other processes keep the machine busy: a record of its own for a study that goes on."""
+    return verdict_on(model)
+
+
+def report(found: Report[Record]) -> list[str]:
+    """What is wrong in what the command says, and each model with what was judged."""
+    judged = load_judged()
+    records = found.records
+    lines = [record["lines"] for record in records]
+    seconds = [record["seconds"] for record in records]
+    blocks = [
+        explained(__doc__),
+        table(("finding", *_VERDICTS), _confusion(records, judged)),
+        (
+            f"{len(records)} models. Lines of the report: median {median(lines):g}, most {max(lines)}. Seconds: median "
+            f"{median(seconds):g}, most {max(seconds):g}. Not finished: "
+            f"{sum(bool(record['unfinished']) for record in records)} models; cannot be used: "
+            f"{sum(record['unusable'] is not None for record in records)}."
+        ),
+        *([_beside_others(found.summary["busy"])] if "busy" in found.summary else []),  # not in earlier results
+        *(f"Left out: {source}: {why}" for source, why in found.summary["left out"].items()),
+    ]
+    for source, group in grouped(records, by=itemgetter("source")).items():
+        blocks += [
+            f"## {source}",
+            table(("model", "time [s]", "lines", "errors", "warnings"), (_row(record, judged) for record in group)),
+        ]
+    blocks += ["## Judged", "\n".join(_reasons(records, judged)) or "Nothing."]
+    unjudged = [
+        f"- {record['model']}: {finding['check']} ({_place(finding)}): {finding['message']}"
+        for record in records
+        for finding in record["findings"]
+        if judged.of(record["model"], finding) is None
+    ]
+    return [*blocks, "## Not judged yet", "\n".join(unjudged) or "All were judged."]
+
+
+def _beside_others(busy: dict[str, Any]) -> str:
+    same = len(busy["models"]) - len(busy["differ"])
+    differ = f"; others in {', '.join(busy['differ'])}" if busy["differ"] else ""
+    return (
+        f"Validated once more beside {busy['processes']} busy processes: the same errors and warnings in {same} of "
+        f"{len(busy['models'])} models ({', '.join(busy['models'])}){differ}."
+    )
+
+
+def load_judged() -> Judged:
+    """Read what was judged by hand.
+
+    Raises:
+        ConfigError: An entry does not fit.
+    """
+    return validated(Judged, load_values(_JUDGED), _JUDGED)
+
+
+def _verdict(judged: Judged, record: Record, finding: Record) -> str:
+    entry = judged.of(record["model"], finding)
+    return "unjudged" if entry is None else entry.verdict
+
+
+def _confusion(records: Sequence[Record], judged: Judged) -> list[tuple[str, ...]]:
+    counts = Counter(
+        (finding["severity"], finding["blame"] == Blame.KINEMATICS, _verdict(judged, record, finding))
+        for record in records
+        for finding in record["findings"]
+    )
+    return [
+        (
+            f"{severity.value}s, {'kinematics' if kinematic else 'others'}",
+            *(str(counts[severity, kinematic, verdict]) for verdict in _VERDICTS),
+        )
+        for severity in (Severity.ERROR, Severity.WARNING)
+        for kinematic in (True, False)
+    ]
+
+
+def _row(record: Record, judged: Judged) -> tuple[str, ...]:
+    if record["unusable"]:
+        return (
+            record["model"],
+            str(record["seconds"]),
+            str(record["lines"]),
+            f"cannot be used: {record['unusable']}",
+            "",
+        )
+    cells = []
+    for severity in (Severity.ERROR, Severity.WARNING):
+        counts = Counter(
+            (item["check"], _verdict(judged, record, item))
+            for item in record["findings"]
+            if item["severity"] == severity
+        )
+        cells.append(
+            ", ".join(
+                f"{check}{f' x {count}' if count > 1 else ''} ({verdict})" for (check, verdict), count in counts.items()
+            )
+        )
+    return record["model"], str(record["seconds"]), str(record["lines"]), *cells
+
+
+def _reasons(records: Sequence[Record], judged: Judged) -> Iterator[str]:
+    """Every entry that fits something, with the number of findings that it speaks of."""
+    used: Counter[int] = Counter()
+    for record in records:
+        for finding in record["findings"]:
+            entry = judged.of(record["model"], finding)
+            if entry is not None:
+                used[judged.judged.index(entry)] += 1
+    for number, count in sorted(used.items()):
+        entry = judged.judged[number]
+        place = "" if entry.where == "*" else f" at {entry.where}"
+        yield f"- {entry.model}: {entry.check}{place} ({count}): **{entry.verdict}**. {entry.reason}"
+
+
+def _place(finding: dict[str, Any]) -> str:
+    return str(
+        finding["joint"] or finding["link"] or (finding["pair"] and " and ".join(finding["pair"])) or "the model"
+    )
+
+
+STUDY = Study(
+    title="What `kinematify validate` says of published models",
+    options=PublishedOptions,
+    measure=measure,
+    report=report,
+)

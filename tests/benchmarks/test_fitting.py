@@ -1,0 +1,83 @@
+"""The fit of the choice: examples, trees and tables, on a few random mechanisms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from benchmarks.fit.categories import ALIKE, category_of
+from benchmarks.fit.corpora import gather_examples, generated_sources
+from benchmarks.fit.judged import cause_of, folds_of
+from benchmarks.recipes import OBJECTS
+from benchmarks.fit.run import run_fit
+from kinematify.generate.described import known_families
+from kinematify.joints.choice.scorer import WEIGHTS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def silent(what: str, share: float) -> None:
+    """No progress."""
+
+
+def test_examples_know_which_hypothesis_is_right_and_are_measured_once(tmp_path: Path) -> None:
+    sources = generated_sources(0, 2)
+    first = gather_examples(sources, tmp_path, seed=0, workers=1, progress=silent)
+    written = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    second = gather_examples(sources, tmp_path, seed=0, workers=1, progress=silent)
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == written
+    for a, b in zip(first, second, strict=True):
+        best = int(np.argmax(a.right))
+        assert a.types_right[best]
+        assert a.angles[best] < 5.0
+        assert a.target.sum() == pytest.approx(1.0)
+        np.testing.assert_array_equal(a.right, b.right)
+
+
+def test_what_is_right_has_no_cause_and_what_is_wrong_one(tmp_path: Path) -> None:
+    example = gather_examples(generated_sources(0, 1), tmp_path, seed=0, workers=1, progress=silent)[0]
+    assert cause_of(example, int(np.argmax(example.right))) is None
+    assert cause_of(example, int(np.argmin(example.types_right))) == "wrong type"
+    assert cause_of(replace(example, right=np.zeros_like(example.right)), 0) == "none proposed"
+
+
+def test_groups_of_one_name_share_a_fold_and_a_new_one_moves_no_other(tmp_path: Path) -> None:
+    examples = gather_examples(generated_sources(0, 3), tmp_path, seed=0, workers=1, progress=silent)
+    folds = folds_of(examples, lambda example: example.category)
+    by_category = {(example.category, fold) for example, fold in zip(examples, folds, strict=True)}
+    assert len(by_category) == len({category for category, _ in by_category}) == 3
+    assert folds_of(examples[1:], lambda example: example.category) == folds[1:]
+
+
+def test_a_recipe_is_left_out_with_the_real_objects_of_its_kind(tmp_path: Path) -> None:
+    example = gather_examples(generated_sources(0, 1), tmp_path, seed=0, workers=1, progress=silent)[0]
+    names = ("microwave", "slab_microwave", "oven", "slab_oven", "conveyor")
+    of_names = [category_of(replace(example, category=name)) for name in names]
+    assert of_names == ["microwave", "microwave", "oven", "oven", "conveyor"]
+    assert category_of(example) == example.category, "of nothing but itself"
+
+
+def test_categories_name_recipes_and_families_once_and_no_category_is_of_another() -> None:
+    named = [name for names in ALIKE.values() for name in names]
+    assert len(named) == len(set(named))
+    assert set(named) <= set(OBJECTS) | set(known_families())
+    assert not set(named) & set(ALIKE)
+
+
+def test_a_small_fit_writes_weights_and_tables_and_the_same_again(tmp_path: Path) -> None:
+    pytest.importorskip("lightgbm", reason="the extra `fit` is not installed")
+    once, again = tmp_path / "once", tmp_path / "again"
+    for out in (once, again):
+        report = run_fit(
+            [], out, rounds=0, composed=4, seed=0, workers=1, cache=tmp_path / "cache", ablation=False, progress=silent
+        )
+        assert set(report["sets"]) == {"random mechanisms"}
+    assert "left out" in (once / "choice.md").read_text()
+    first, second = (np.load(out / WEIGHTS) for out in (once, again))
+    for name in first.files:
+        if name != "facts":  # they hold the date
+            np.testing.assert_array_equal(first[name], second[name])

@@ -1,0 +1,31 @@
+"""Ways of modelling and random mechanisms: the joints stay exact, whatever is drawn of the parts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.fit.composed import compose
+from benchmarks.fit.modelling import WAYS, remodelled
+from kinematify.generate.procedural.families import FAMILIES
+from kinematify.generate.procedural.family import build
+
+
+@pytest.mark.parametrize("way", sorted(WAYS))
+def test_every_way_keeps_the_joints_and_leaves_parts(way: str) -> None:
+    drawn = build(FAMILIES["cabinet"], {}, seed=1)
+    changed = remodelled(drawn, way, rng=np.random.default_rng(0))
+    assert changed.joints == drawn.joints
+    assert [part.name for part in changed.parts] == [part.name for part in drawn.parts]
+    assert all(len(part.faces) for part in changed.parts)
+    same = all(a is b for a, b in zip(drawn.parts, changed.parts, strict=True))
+    assert same is (way == "as_drawn")
+
+
+def test_random_mechanisms_follow_their_seed() -> None:
+    for seed in range(20):
+        first, second = compose(seed), compose(seed)
+        assert first.joints
+        assert all(len(part.faces) for part in first.parts)
+        for a, b in zip(first.parts, second.parts, strict=True):
+            np.testing.assert_array_equal(a.vertices, b.vertices)
