@@ -15,6 +15,7 @@ from kinematify.evaluation.summary import (
     Summary,
     condition_group,
     median_seconds,
+    motion_rates,
     summarise,
     summarise_types,
 )
@@ -106,7 +107,31 @@ def _variant_sections(results: Sequence[JobResult]) -> list[list[str]]:
         sections.append(_family_table(generated))
     if other := [result for result in results if result.kind not in ("robot", "everyday", "procedural")]:
         sections.append(_object_table("Other objects, each", other))
-    return [*sections, _condition_table(results), _type_table(results), _stage_table(results), _joint_errors(results)]
+    return [
+        *sections,
+        _motion_table(results),
+        _condition_table(results),
+        _type_table(results),
+        _stage_table(results),
+        _joint_errors(results),
+    ]
+
+
+def _motion_table(results: Sequence[JobResult]) -> list[str]:
+    """Shares that other methods publish (S2O: M, MA, MAO)."""
+    rows = [
+        (
+            name,
+            *(number(value, 1, 100.0) for value in (rates.type_right, rates.axis_right, rates.origin_right)),
+        )
+        for name, macro in (("micro: all joints", False), ("macro: mean over categories", True))
+        if (rates := motion_rates(results, macro=macro)) is not None
+    ]
+    titles = ("", "type (M) [%]", f"and axis within {CLOSE_ANGLE:g} deg (MA)", "and origin (MAO)")
+    note = (
+        "Origin: axis line within 0.1 of the moving part's diagonal; slides have none. A wrong parent counts as wrong."
+    )
+    return ["### Motion, as S2O counts it", table(titles, rows), note]
 
 
 def _robot_table(results: Sequence[JobResult]) -> list[str]:

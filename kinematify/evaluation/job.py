@@ -125,6 +125,7 @@ def score_erased(erased: ErasedModel, prediction: Prediction, *, gripper_joints:
         erased.truth,
         prediction,
         centroids=[part.centroid for part in erased.parts],
+        part_diagonals=[part.diagonal for part in erased.parts],
         diagonal=erased.assembly.diagonal,
         gripper_joints=gripper_joints,
     )

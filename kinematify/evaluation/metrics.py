@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 MISSING_ANGLE = 90.0
 """What a joint without a predicted axis counts [deg]."""
+CLOSE_ANGLE = 5.0
+"""An axis counts as found within this angle [deg]; S2O and others use the same."""
+CLOSE_ORIGIN = 0.1
+"""An origin counts as found within this share of the moving part's diagonal, as in S2O."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +57,8 @@ class JointScore:
     limit_iou: float
     opens: bool | None
     """Whether the positive direction opens; None where the true range does not say."""
+    part_diagonal: float | None = None
+    """Of the bounding box of the moving part [m]; None in reports made before it was recorded."""
     confidence: float | None = None
     """What the method gave the joint above the child, or the one that hangs the parent on the child; None if neither
     is there."""
@@ -66,6 +72,18 @@ class JointScore:
     def type_right(self) -> bool:
         """Type accuracy; continuous counts as revolute."""
         return self.predicted_kind is not None and _loose(self.predicted_kind) == _loose(self.kind)
+
+    @property
+    def axis_right(self) -> bool:
+        """Type right and axis within `CLOSE_ANGLE`: the MA of S2O."""
+        return self.type_right and self.angle_deg <= CLOSE_ANGLE
+
+    @property
+    def origin_right(self) -> bool:
+        """The same, and the axis line of a turning joint within `CLOSE_ORIGIN` at the moving part: the MAO of S2O."""
+        if not self.axis_right or self.line_m is None:
+            return self.axis_right and _loose(self.kind) == JointType.PRISMATIC
+        return self.part_diagonal is not None and self.line_m <= CLOSE_ORIGIN * self.part_diagonal
 
     @property
     def type_right_strict(self) -> bool:
@@ -95,6 +113,7 @@ def score_object(
     prediction: Prediction,
     *,
     centroids: Sequence[FloatArray],
+    part_diagonals: Sequence[float],
     diagonal: float,
     gripper_joints: Sequence[str] = (),
 ) -> ObjectScore:
@@ -108,6 +127,7 @@ def score_object(
         truth: Parts by index, joints in the world frame of the input.
         prediction: The mechanism to score, parts by the same index.
         centroids: Surface centroid of every part [m], shape (3,) each.
+        part_diagonals: Of the bounding box of every part [m].
         diagonal: Of the input's bounding box [m].
         gripper_joints: Names of the joints of gripper fingers.
     """
@@ -117,7 +137,7 @@ def score_object(
     labelled = tree_edit_distance(true_tree, prediction.parents)
     return ObjectScore(
         diagonal=diagonal,
-        joints=tuple(_joint_scores(truth, prediction, centroids, gripper_joints)),
+        joints=tuple(_joint_scores(truth, prediction, centroids, part_diagonals, gripper_joints)),
         ted=labelled,
         ted_unlabelled=tree_edit_distance(true_tree, prediction.parents, labelled=False),
         ted_without_gripper=tree_edit_distance(*bare) if fingers else labelled,
@@ -127,7 +147,11 @@ def score_object(
 
 
 def _joint_scores(
-    truth: GroundTruth, prediction: Prediction, centroids: Sequence[FloatArray], gripper_joints: Sequence[str]
+    truth: GroundTruth,
+    prediction: Prediction,
+    centroids: Sequence[FloatArray],
+    part_diagonals: Sequence[float],
+    gripper_joints: Sequence[str],
 ) -> list[JointScore]:
     predicted = {(joint.parent, joint.child): joint for joint in prediction.joints}
     chosen = _matches(truth.joints, predicted)
@@ -136,6 +160,7 @@ def _joint_scores(
             joint,
             chosen.get(joint.name),
             near=centroids[joint.child],
+            part_diagonal=part_diagonals[joint.child],
             names=truth.part_names,
             gripper=joint.source in gripper_joints,
             confidence=_confidence(joint, prediction),
@@ -175,6 +200,7 @@ def _joint_score(
     guess: JointEstimate | None,
     *,
     near: FloatArray,
+    part_diagonal: float,
     names: Sequence[str],
     gripper: bool,
     confidence: float | None,
@@ -193,6 +219,7 @@ def _joint_score(
         pivot_m=float(np.linalg.norm(joint.pivot - guess.pivot)) if guess is not None and placed else None,
         limit_iou=_limit_iou(joint, guess),
         opens=_opens(joint, guess),
+        part_diagonal=part_diagonal,
         confidence=confidence,
     )
 

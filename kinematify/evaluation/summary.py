@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from statistics import fmean, median
 from typing import TYPE_CHECKING, Any
 
+from kinematify.evaluation.metrics import CLOSE_ANGLE
 from kinematify.evaluation.record import grouped
 from kinematify.robot.joint_type import JointType
 
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
 
     Numbers = Mapping[str, float | None]
 
-CLOSE_ANGLE = 5.0
-"""An axis counts as found within this angle [deg]; S2O and others use the same."""
 CLOSE_LINE = 0.05
 """An axis line counts as found within this share of the object's diagonal."""
 
@@ -119,6 +118,34 @@ def _type_summary(kind: str, joints: Sequence[JointScore]) -> TypeSummary:
         angle_given_type_deg=fmean(joint.angle_given_type_deg for joint in joints),
         close=fmean(joint.angle_deg <= CLOSE_ANGLE for joint in joints),
         close_given_type=fmean(joint.angle_given_type_deg <= CLOSE_ANGLE for joint in joints),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionRates:
+    """Shares of joints whose motion is right: M, MA and MAO of S2O, over the joints of a true tree."""
+
+    type_right: float
+    axis_right: float
+    """Type right and axis within `CLOSE_ANGLE`."""
+    origin_right: float
+    """And, of turning joints, the axis line within `kinematify.evaluation.metrics.CLOSE_ORIGIN`."""
+
+
+def motion_rates(results: Iterable[JobResult], *, macro: bool = False) -> MotionRates | None:
+    """Return the shares over all joints (micro), or the mean of the shares of each category (macro); None without any.
+
+    A joint counts once for each run of its object. Parent and child must be right too: a joint between the wrong parts
+    has no type.
+    """
+    joints = [(result.category, joint) for result in results if result.score for joint in result.score.joints]
+    groups = grouped(joints, by=lambda pair: pair[0] if macro else "").values()
+    if not joints:
+        return None
+    return MotionRates(
+        type_right=fmean(fmean(joint.type_right for _, joint in group) for group in groups),
+        axis_right=fmean(fmean(joint.axis_right for _, joint in group) for group in groups),
+        origin_right=fmean(fmean(joint.origin_right for _, joint in group) for group in groups),
     )
 
 

@@ -22,5 +22,6 @@ def score_blueprint(blueprint: Blueprint, inference: Inference) -> ObjectScore:
         truth,
         prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index),
         centroids=[part.centroid for part in blueprint.parts],
+        part_diagonals=[part.diagonal for part in blueprint.parts],
         diagonal=blueprint.assembly.diagonal,
     )

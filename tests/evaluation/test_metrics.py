@@ -19,6 +19,7 @@ from kinematify.topology.tree import KinematicTree
 
 X, Y, Z = np.eye(3)
 CENTROIDS = [np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5])]
+DIAGONALS = [1.0, 1.0, 1.0]
 
 
 def true_joint(**changes: object) -> TrueJoint:
@@ -79,7 +80,7 @@ def prediction(*joints: JointEstimate, parents: tuple[int, ...] = (-1, 0, 0)) ->
 
 
 def score(truth: GroundTruth, guess: Prediction, **given: object) -> ObjectScore:
-    return score_object(truth, guess, centroids=CENTROIDS, diagonal=2.0, **given)  # type: ignore[arg-type]
+    return score_object(truth, guess, centroids=CENTROIDS, part_diagonals=DIAGONALS, diagonal=2.0, **given)  # type: ignore[arg-type]
 
 
 def hinge_score(**changes: object) -> JointScore:
@@ -119,6 +120,20 @@ def test_nothing_predicted_misses_everything() -> None:
     result = score(TRUTH, NOTHING_PREDICTED)
     assert [joint.angle_deg for joint in result.joints] == [90.0, 90.0]
     assert (result.ted.value, result.parent_errors, result.root_right) == (3, 3, False)
+
+
+@pytest.mark.parametrize(("off", "right"), [(0.09, True), (0.11, False)])
+def test_an_origin_is_right_within_a_tenth_of_the_moving_part(off: float, right: bool) -> None:
+    hinge = hinge_score(pivot=np.array([0.5, off, 0.0]))
+    assert (hinge.type_right, hinge.axis_right, hinge.origin_right) == (True, True, right)
+
+
+def test_an_axis_is_right_within_five_degrees_and_a_slide_has_no_origin() -> None:
+    tilted = [np.array([0.0, math.sin(angle), math.cos(angle)]) for angle in (math.radians(4.9), math.radians(5.1))]
+    assert [hinge_score(axis=axis).axis_right for axis in tilted] == [True, False]
+    slide = predicted_joint(child=2, kind=JointType.PRISMATIC, axis=X, pivot=np.array([9.0, 9.0, 9.0]))
+    assert score(TRUTH, prediction(slide)).joints[1].origin_right
+    assert not score(TRUTH, NOTHING_PREDICTED).joints[1].origin_right
 
 
 def test_continuous_counts_as_revolute_unless_strict() -> None:
@@ -268,6 +283,8 @@ def test_numbering_of_parts_changes_nothing(
     )
     moved = [replace(joint, parent=order[joint.parent], child=order[joint.child]) for joint in joints]
     guess = Prediction(parents=dict(enumerate(renumbered(parents))), joints=tuple(moved))
-    result = score_object(truth, guess, centroids=[CENTROIDS[old] for old in inverse], diagonal=2.0)
+    result = score_object(
+        truth, guess, centroids=[CENTROIDS[old] for old in inverse], part_diagonals=DIAGONALS, diagonal=2.0
+    )
     assert replace(result, joints=()) == replace(expected, joints=())
     assert all(same(one, other) for one, other in zip(result.joints, expected.joints, strict=True))
