@@ -1,16 +1,18 @@
-"""The page of results, written from the reports of a folder."""
+"""What README and `docs/results.md` say of the reports in `results/`: figures, and date and commit of every table."""
 
 from __future__ import annotations
 
+import json
+import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from benchmarks.fit.corpora import may_be_fitted_to
 from kinematify.errors import InputError
-from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.record import load_report, number, replace_text, table
 from kinematify.evaluation.run import RESULTS
-from benchmarks.studies.refine import sentence
-from benchmarks.study import load_study_report
-from kinematify.evaluation.summary import CLOSE_ANGLE, condition_group, median_seconds, summarise
+from kinematify.evaluation.summary import motion_rates
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,109 +20,123 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.job import JobResult
 
-_TITLES = (
-    "", "joints", "axis angle [deg]", "axis line [mm]", "tree edits (TED)", "types right", "time [s]",
-    "paper: angle, TED",
-)  # fmt: skip
+_DATED = re.compile(r"^- date: ([\d-]+), commit (\w+)", flags=re.MULTILINE)
+_LINK = re.compile(r"\]\(\.\./(results/\w+\.md)\)")
+_FIGURES = ("objects", "joints", "type (M) [%]", "and axis (MA) [%]", "and origin (MAO) [%]", "macro M / MA / MAO [%]")
 
 
-def write_results_page(page: Path, results: Path) -> None:
-    """Replace what stands between the marks ``results`` and ``refine``.
+@dataclass(frozen=True, kw_only=True)
+class _Row:
+    """A row of the README's figures: a report, and which of its objects."""
+
+    title: str
+    report: str
+    fitted: bool | None = None
+    """Of a set that is fitted to in part: the objects that were, or those that were not; None takes all."""
+
+
+_ROWS = (
+    _Row(title="held-out: 32 objects that language models programmed (Articraft)", report="articraft"),
+    _Row(title="held-out: 231 objects of a procedural generator (Infinigen)", report="infinigen"),
+    _Row(title="held-out: 23 objects of various authors, licensed for research only", report="everyday2", fitted=False),
+    _Row(title="not fitted to, but seen while measurements were designed: 48 of PartNet-Mobility", report="everyday"),
+    _Row(title="in-sample: 43 objects of various authors", report="everyday2", fitted=True),
+    _Row(title="in-sample: the six robots of the paper", report="robots"),
+)
+
+
+def write_results_page(root: Path) -> None:
+    """Write the figures into `README.md`, and dates and commits into `docs/results.md`.
 
     Args:
-        page: The file.
-        results: Folder with the reports robots, everyday, ablation_robots, ablation_everyday and refine.
+        root: Folder of the checkout.
 
     Raises:
-        InputError: A report or a mark is missing.
+        InputError: A report, a mark or the benchmark data is missing, or a linked table does not say when it was made.
     """
-    try:
-        text = page.read_text(encoding="utf-8")
-        for mark, blocks in (("results", _accuracy(results)), ("refine", _refinement(results))):
-            begin, end = f"<!-- {mark}:begin -->", f"<!-- {mark}:end -->"
-            before, after = text[: text.index(begin)], text[text.index(end) :]
-            text = f"{before}{begin}\n" + "\n\n".join(blocks) + f"\n{after}"
-    except (OSError, ValueError) as error:
+    results = root / "results"
+    _replace(root / "README.md", "figures", _figures(results))
+    page = root / "docs" / "results.md"
+    _replace(page, "tables", dated(_between(page, "tables")[1], root))
+
+
+def dated(rows: str, root: Path) -> str:
+    """Fill the columns date and commit of the rows of a table from the tables that they link.
+
+    Args:
+        rows: Markdown rows ``| question | links | date | commit |``, the first two of them heading and rule.
+        root: Folder of the checkout.
+
+    Raises:
+        InputError: A linked table is missing or does not say when it was made.
+    """
+    head, rule, *body = rows.strip().splitlines()
+    filled = []
+    for row in body:
+        question, links = row.strip("| ").split(" | ")[:2]
+        made = [_made(root / path) for path in _LINK.findall(links)]
+        filled.append(f"| {question} | {links} | {_joined(made, 0)} | {_joined(made, 1)} |")
+    return "\n".join([head, rule, *filled])
+
+
+def _joined(made: Sequence[tuple[str, str]], column: int) -> str:
+    return ", ".join(dict.fromkeys(one[column] for one in made))
+
+
+def _made(report: Path) -> tuple[str, str]:
+    """Date and commit at the top of a table."""
+    found = _DATED.search(report.read_text(encoding="utf-8")) if report.is_file() else None
+    if found is None:
         raise InputError(
-            f"The results cannot be put into {page}: {error}. Call the command in a checkout; the page must hold "
-            "the marks results:begin, results:end, refine:begin and refine:end."
-        ) from error
-    replace_text(page, text)
+            f"{report} does not say when it was made: it is missing, or has no line `- date: ..., commit ...`. "
+            "Make it again with its command, or remove its row."
+        )
+    return found[1], found[2]
 
 
-def _accuracy(results: Path) -> list[str]:
-    robots, everyday = (load_report(results / f"{name}.json", RESULTS) for name in ("robots", "everyday"))
-    ablation = [load_report(results / f"ablation_{name}.json", RESULTS) for name in ("robots", "everyday")]
-    names = sorted({run.object for run in robots.records})
-    of = {name: [run for run in robots.records if run.object == name] for name in names}
-    count = len({run.object for run in everyday.records})
-    rows = [
-        *(_row(TABLE_I[name].label, of[name], TABLE_I[name]) for name in names),
-        _row("**six robots**", robots.records, mean_over_robots()),
-        _row(f"**{count} everyday objects**", everyday.records, TABLE_I["everyday"]),
-    ]
-    return [
-        table(_TITLES, rows),
-        (
-            "Means over the poses rest, three random ones and one turned by 37 deg, from parts without names, by\n"
-            "geometry alone. The paper's everyday objects are others. A joint between the wrong parts counts 90 deg."
-        ),
-        _by_condition("Robots", robots.records) + "\n" + _by_condition("Everyday objects", everyday.records),
-        _faults(robots.records) + "\n" + _faults(everyday.records),
-        _ablation([run for report in ablation for run in report.records]),
-        (
-            f"Made by `{robots.header.command}` and `{everyday.header.command}` at commit {robots.header.commit},\n"
-            "written here by `kinematify bench --results-page`."
-        ),
-    ]
+def _figures(results: Path) -> str:
+    rows = []
+    for row in _ROWS:
+        report = load_report(results / f"{row.report}.json", RESULTS)
+        chosen = [run for run in report.records if row.fitted is None or run.object in _fitted(row)]
+        rows.append((row.title, *_cells(chosen)))
+    return table(("", *_FIGURES), rows)
 
 
-def _row(name: str, runs: Sequence[JobResult], paper: PaperRow) -> tuple[str, ...]:
-    values = summarise(runs).values
+def _fitted(row: _Row) -> set[str]:
+    """Names of the objects of a set whose licence lets them be fitted to, or the others."""
+    facts = {item.name: item.urdf.with_name("source.json") for item in find_objects(row.report)}
+    return {name for name, path in facts.items() if may_be_fitted_to(json.loads(path.read_text())) == row.fitted}
+
+
+def _cells(runs: Sequence[JobResult]) -> tuple[str, ...]:
+    micro, macro = motion_rates(runs), motion_rates(runs, macro=True)
+    if micro is None or macro is None:
+        raise InputError("A report of the README's figures has no joints. Make it again with its command.")
+    scores = {run.object: run.score for run in runs if run.score is not None}
+    shares = (micro.type_right, micro.axis_right, micro.origin_right)
+    means = (macro.type_right, macro.axis_right, macro.origin_right)
     return (
-        name,
-        number(values["joints"], 0),
-        number(values["angle_deg"], 2),
-        number(values["line_m"], 1, 1e3),
-        number(values["ted"], 2),
-        f"{number(values['types'], 0, 100.0)} %",
-        number(median_seconds(runs), 1),
-        f"{paper.angle_deg:.2f}, {paper.ted:.2f}",
+        str(len(scores)),
+        str(sum(len(score.joints) for score in scores.values())),
+        *(number(share, 1, 100.0) for share in shares),
+        " / ".join(number(mean, 1, 100.0) for mean in means),
     )
 
 
-def _by_condition(title: str, runs: Sequence[JobResult]) -> str:
-    parts = []
-    for group in dict.fromkeys(condition_group(run.condition) for run in runs):
-        values = summarise([run for run in runs if condition_group(run.condition) == group]).values
-        angle, ted, types = number(values["angle_deg"], 2), number(values["ted"], 2), number(values["types"], 0, 100.0)
-        parts.append(f"{group} {angle} deg, TED {ted}, types {types} %")
-    return f"{title} by condition: {'; '.join(parts)}."
+def _between(page: Path, mark: str) -> tuple[str, str, str]:
+    begin, end = f"<!-- {mark}:begin -->", f"<!-- {mark}:end -->"
+    try:
+        before, rest = page.read_text(encoding="utf-8").split(begin)
+        inside, after = rest.split(end)
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"{page} cannot be filled: {error}. Call the command in a checkout; the page must hold the marks {begin} "
+            f"and {end} once."
+        ) from error
+    return before + begin, inside, end + after
 
 
-def _faults(runs: Sequence[JobResult]) -> str:
-    wrong: dict[str, set[str]] = {}
-    for run in runs:
-        for joint in run.score.joints if run.score is not None else ():
-            if joint.angle_deg > CLOSE_ANGLE or not joint.type_right:
-                wrong.setdefault(run.object, set()).add(joint.joint)
-    named = ", ".join(f"{name} ({len(joints)})" for name, joints in sorted(wrong.items()))
-    return f"Objects with a joint that is wrong in at least one run (joints): {named or 'none'}."
-
-
-def _ablation(runs: Sequence[JobResult]) -> str:
-    """The paper's method as we built it (`--config paper`) beside the numbers that the paper gives."""
-    rows = []
-    for variant, theirs in ABLATION.items():
-        cells = []
-        for name in ("everyday", "fetch", "panda"):
-            values = summarise([r for r in runs if r.variant == variant and name in (r.object, r.kind)]).values
-            angle, _, ted = theirs[name]
-            ours = f"{number(values['angle_deg'], 1)}, {number(values['ted'], 2)}"
-            cells.append(f"{ours} (paper: {angle:.1f}, {ted:.2f})")
-        rows.append((variant, *cells))
-    return table(("`--config paper`, at rest: angle [deg], TED", "everyday", "Fetch", "Panda"), rows)
-
-
-def _refinement(results: Path) -> list[str]:
-    return [sentence(load_study_report(results, "refine"))]
+def _replace(page: Path, mark: str, text: str) -> None:
+    before, _, after = _between(page, mark)
+    replace_text(page, f"{before}\n{text}\n{after}")

@@ -35,7 +35,7 @@ from kinematify.generate.procedural.truth import ground_truth
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import GroundTruth
@@ -252,7 +252,6 @@ class _Opened:
 def _read(folder: Path) -> _Opened:
     facts = json.loads((folder / "source.json").read_text(encoding="utf-8"))
     erased = erase(read_robot(folder / "model.urdf", geometry="shown"), pose="rest", seed=0, yaw_deg=0.0)
-    licence = str(facts.get("license", "research")).lower()
     # "osrf/gazebo_models @ 8163eb4, cessna/model.sdf" is of osrf/gazebo_models.
     written = str(facts.get("source", "unknown")).partition(",")[0].partition("@")[0]
     return _Opened(
@@ -260,8 +259,14 @@ def _read(folder: Path) -> _Opened:
         truth=erased.truth,
         category=str(facts.get("category", "unknown")),
         source=str(facts.get("dataset", written)).strip(),
-        fits=not any(word in licence for word in _RESEARCH),
+        fits=may_be_fitted_to(facts),
     )
+
+
+def may_be_fitted_to(facts: Mapping[str, object]) -> bool:
+    """Whether the licence in an object's `source.json` lets it enter weights that ship."""
+    licence = str(facts.get("license", "research")).lower()
+    return not any(word in licence for word in _RESEARCH)
 
 
 def _generated(source: Source, seed: int) -> _Opened:

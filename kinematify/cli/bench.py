@@ -49,8 +49,8 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
     if asked:
         from benchmarks.results_page import write_results_page
 
-        write_results_page(Path("docs/results.md"), Path("results"))
-        click.echo("docs/results.md has the results of the reports in results/.")
+        write_results_page(Path())
+        click.echo("README.md has the figures of the reports in results/, docs/results.md their dates and commits.")
         context.exit()
 
 
@@ -82,7 +82,7 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
     expose_value=False,
     is_eager=True,
     callback=_write_results_page,
-    help="Write docs/results.md in this folder from the reports in results/, and end.",
+    help="Fill README.md and docs/results.md of this checkout from the reports in results/, and end.",
 )
 @click.option("--data", metavar="pip|PATH", help="Same as DATA; pip: robots of the package example-robot-data.")
 @click.option(
