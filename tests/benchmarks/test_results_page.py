@@ -39,7 +39,8 @@ def test_a_row_gets_date_and_commit_of_its_table_and_a_table_without_them_is_ref
     (tmp_path / "results").mkdir()
     table = tmp_path / "results" / "speed.md"
     table.write_text("# Speed\n\n- date: 2026-01-02, commit abc1234, code 99\n")
-    rows = "| question | tables | date | commit |\n| --- | --- | --- | --- |\n| How fast? | [speed](../results/speed.md) | | |"
+    head = "| question | tables | date | commit |\n| --- | --- | --- | --- |\n"
+    rows = f"{head}| How fast? | [speed](../results/speed.md) | | |"
     assert dated(rows, tmp_path).endswith("| How fast? | [speed](../results/speed.md) | 2026-01-02 | abc1234 |")
     table.write_text("# Speed\n")
     with pytest.raises(InputError, match="does not say when it was made"):
