@@ -22,7 +22,7 @@ ORDER = (
 
 @cache
 def modules() -> dict[str, Path]:
-    """File of every module of the package, of `benchmarks`, tests and tools by dotted name, through the symlinks too."""
+    """File of every module of the package, benchmarks, tests and tools by dotted name, through the symlinks too."""
     found = {}
     for top in ("kinematify", "benchmarks", "tests", "tools"):
         for folder, _, files in os.walk(ROOT / top, followlinks=True):
