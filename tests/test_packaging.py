@@ -78,7 +78,12 @@ def assert_bench_explains(python: Path, cwd: Path) -> None:
         ["bench", ".", "--degrade", "all"],
     ):
         done = subprocess.run(
-            [python, "-m", "kinematify", *words], cwd=cwd, env=environment, capture_output=True, text=True, check=False
+            [python, "-m", "kinematify", *line.split()],
+            cwd=cwd,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
         )
         assert (done.returncode, done.stdout) == (2, "")
         assert "needs the folder benchmarks/" in done.stderr

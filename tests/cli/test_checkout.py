@@ -23,30 +23,25 @@ def test_the_checkout_is_of_one_version() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (None, "needs the folder benchmarks/"),
+        ("", "needs the folder benchmarks/"),
         ('"""Benchmarks of another project."""\n', "needs the folder benchmarks/"),
         ('KINEMATIFY_VERSION = "0.0.1"\n', "belongs to version 0.0.1, and this is Kinematify"),
     ],
     ids=["absent", "of another project", "of another version"],
 )
-@pytest.mark.parametrize("words", [["bench", "--list"], ["bench", "detection"], ["fit", "-o", "fitted"]])
 def test_what_is_not_ours_is_refused(
-    text: str | None,
-    message: str,
-    words: list[str],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    text: str, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if text is not None:
+    if text:
         (tmp_path / "benchmarks").mkdir()
         (tmp_path / "benchmarks" / "__init__.py").write_text(text)
     monkeypatch.setattr(checkout, "ROOT", tmp_path)
     monkeypatch.chdir(tmp_path)
-    assert run(words) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert message in captured.err
+    for words in (["bench", "--list"], ["bench", "detection"], ["fit", "-o", "fitted"]):
+        assert run(words) == 2
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert message in captured.err
     assert not (tmp_path / "fitted").exists()
 
 
