@@ -61,9 +61,7 @@ def test_every_layer_exists() -> None:
 
 
 def test_modules_behind_symlinks_are_seen() -> None:
-    assert {"kinematify", "kinematify.cli.app", "kinematify.validation", "kinematify.envs", "benchmarks.study"} <= set(
-        modules()
-    )
+    assert {"kinematify.cli.app", "kinematify.validation", "kinematify.envs", "benchmarks.study"} <= set(modules())
 
 
 def test_relative_imports_are_refused() -> None:

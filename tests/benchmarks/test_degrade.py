@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import trimesh
 from objects import BUILDERS
-from test_benchmark_run import request, write_object
 
 from benchmarks.degrade import DEGRADED, OPEN_REACH, OVER_SEGMENTED, VERTEX_NOISE, degraded
 from benchmarks.tables import benchmark_blocks
@@ -19,6 +18,7 @@ from kinematify.cli.words import words_of
 from kinematify.config import load_config
 from kinematify.evaluation.job import CLEAN, Degraded
 from kinematify.evaluation.run import run_benchmark
+from tests.secret_cabinets import request, write_object
 
 CONFIG = load_config()
 

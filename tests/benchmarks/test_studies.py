@@ -7,7 +7,6 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
-from test_benchmark_run import write_object
 
 from benchmarks.studies.published import Judged, Judgement, load_judged
 from benchmarks.studies.same_joints import differences
@@ -19,6 +18,7 @@ from kinematify.evaluation.record import document, load_report, write_report
 from kinematify.evaluation.run import RESULTS
 from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
+from tests.secret_cabinets import write_object
 
 REPORTS = ROOT / "results"
 JOINT = {
