@@ -1,7 +1,7 @@
 """Meshes as generators, scanners and hasty exports leave them; every operator is seeded and leaves the truth alone.
 
-Each takes the parts of an object and returns as many, in the same order, under the same names. Lengths are shares of
-the object's diagonal.
+A mesh operator takes the parts of an object and returns as many, in the same order, under the same names. A part that
+was cut is scored as one where the answer fixes the pieces to each other. Lengths are shares of the object's diagonal.
 """
 
 from __future__ import annotations
@@ -12,16 +12,22 @@ from typing import TYPE_CHECKING
 import fast_simplification
 import igl
 import numpy as np
+from trimesh.intersections import slice_faces_plane
 
+from kinematify.assembly.assemble import simplified
 from kinematify.assembly.part import Assembly, Part
+from kinematify.evaluation.job import Degraded
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.geometry.surface import PartSurface
 from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.random import Generator
+
+    from kinematify.config import Config
+    from kinematify.robot.arrays import FloatArray
 
     Degrade = Callable[[Assembly, Generator], Assembly]
 
@@ -37,6 +43,8 @@ OPEN_REACH = 2.5e-3
 """Faces this near to another part are missing from parts that were cut out of one shell."""
 _OPEN_MOST = 0.5  # share of a part's area that goes missing at most
 _NEARLY = 1.1  # times the faces that were asked for
+_MARK = "_piece"
+_TILT = np.radians(10.0)  # planes of cuts are square to the part within about this
 _HULL_THICKNESS = 1e-4  # flat parts get a hull of this thickness
 
 
@@ -173,6 +181,84 @@ DEGRADATIONS: Mapping[str, Degrade] = {
     "open": opened,
 }
 """Name of a degradation -> what it does to an object."""
+
+
+OVER_SEGMENTED = {"cut-2": 2, "cut-3": 3}
+"""Name of a degradation -> number of pieces that one part is cut into."""
+DEGRADED = (*DEGRADATIONS, *OVER_SEGMENTED)
+"""Rough input that the inference is measured on."""
+
+
+def degraded(name: str, assembly: Assembly, config: Config, *, seed: int) -> Degraded:
+    """Degrade an object, as the benchmark asks for it.
+
+    Args:
+        name: One of `DEGRADED`.
+        assembly: The parts as they are.
+        config: Of the inference; heavy meshes are simplified by it, as those that a user loads are.
+        seed: Draws what is done.
+    """
+    rng = np.random.default_rng([seed, len(assembly.parts)])
+    if name in OVER_SEGMENTED:
+        return _cut(assembly, OVER_SEGMENTED[name], rng)
+    rough = DEGRADATIONS[name](assembly, rng)
+    most = config.assembly.max_part_faces
+    parts = [part if len(part.faces) <= most else simplified(part, config.assembly) for part in rough.parts]
+    return Degraded(assembly=with_parts(assembly, parts))
+
+
+def _cut(assembly: Assembly, count: int, rng: Generator) -> Degraded:
+    """One part is cut by planes across its longest direction, tilted a little, at places that keep all pieces large."""
+    chosen = int(rng.integers(len(assembly.parts)))
+    part = assembly.parts[chosen]
+    direction = np.eye(3)[int(np.argmax(np.ptp(part.bounds, axis=0)))] + np.tan(_TILT) * rng.uniform(-1, 1, size=3)
+    direction /= np.linalg.norm(direction)
+    low, high = np.quantile(part.vertices[part.faces].mean(axis=1) @ direction, [0.02, 0.98])
+    shares = (np.arange(1, count) + rng.uniform(-0.2, 0.2, size=count - 1)) / count
+    bands = cut_in_bands(part, direction, (low + shares * (high - low)).tolist())
+    pieces = [piece for piece in bands if piece.area > 1e-3 * part.area]
+    if len(pieces) < count:
+        return Degraded(assembly=assembly)
+    return _in_pieces(assembly, chosen, pieces)
+
+
+def cut_in_bands(part: Part, direction: FloatArray, offsets: Sequence[float]) -> list[Part]:
+    """Cut a part by parallel planes, triangles too; the pieces are open and meet edge to edge.
+
+    Args:
+        part: Any mesh.
+        direction: Unit normal of the planes, shape (3,).
+        offsets: Where the planes stand along it, ascending [m].
+
+    Returns:
+        One piece more than there are planes, from below; a piece without faces where a plane misses the part.
+    """
+    bands, rest = [], part
+    for offset in offsets:
+        below, rest = (_half(rest, sign * direction, sign * offset) for sign in (-1.0, 1.0))
+        bands.append(below)
+    return [*bands, rest]
+
+
+def _half(part: Part, normal: FloatArray, offset: float) -> Part:
+    """What lies on the positive side of a plane."""
+    if not len(part.faces):
+        return part
+    # Face indices are kept in the order of the mesh, so that both halves interpolate their common edges alike.
+    vertices, faces, _ = slice_faces_plane(  # type: ignore[no-untyped-call]
+        part.vertices, part.faces, normal, offset * normal
+    )
+    return replace(part, vertices=vertices, faces=faces)
+
+
+def _in_pieces(assembly: Assembly, chosen: int, pieces: Sequence[Part]) -> Degraded:
+    """The assembly with one part in pieces; the largest one keeps its name."""
+    name = assembly.parts[chosen].name
+    first, *others = sorted(pieces, key=lambda piece: -piece.area)
+    named = [replace(piece, name=f"{name}{_MARK}{number}") for number, piece in enumerate(others, start=1)]
+    parts = list(assembly.parts)
+    parts[chosen] = first
+    return Degraded(assembly=with_parts(assembly, [*parts, *named]), pieces={piece.name: name for piece in named})
 
 
 def with_parts(assembly: Assembly, parts: list[Part]) -> Assembly:

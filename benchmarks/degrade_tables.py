@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.perturb import CLEAN
+from kinematify.evaluation.job import CLEAN
 from kinematify.evaluation.record import grouped, number, table
 from kinematify.evaluation.summary import CLOSE_ANGLE, summarise
 

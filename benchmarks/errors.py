@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.error_pictures import ShownJoint, draw_error
 from kinematify.errors import OutputError
 from kinematify.evaluation.axis_metrics import axis_angle
-from benchmarks.error_pictures import ShownJoint, draw_error
-from kinematify.evaluation.job import erased_item, shown_parts
-from kinematify.evaluation.perturb import CLEAN, perturbed
+from kinematify.evaluation.job import CLEAN, erased_item, given_input
 from kinematify.evaluation.record import document, replace_text
 from kinematify.evaluation.run import jobs_of
 from kinematify.evaluation.summary import CLOSE_ANGLE, CLOSE_LINE, is_right
@@ -155,8 +154,7 @@ class _Seen:
 
 def _seen(job: Job) -> _Seen:
     erased = erased_item(job.item, job.condition)
-    given = perturbed(job.input, shown_parts(erased), job.config, seed=job.condition.seed)
-    inference = infer(given.assembly, config=given.config)
+    inference = infer(given_input(job, erased).assembly, config=job.config)
     place = {name: index for index, name in enumerate(inference.assembly.names)}
     index = {number: place[name] for number, name in enumerate(erased.truth.part_names)}
     return _Seen(

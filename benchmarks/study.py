@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
 
+from benchmarks import studies
 from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import Pool
 from kinematify.errors import InputError, OutputError
-from benchmarks import studies
 from kinematify.evaluation.record import Report, load_report, new_header, write_report
 from kinematify.evaluation.sources import code_version
 
@@ -161,7 +161,7 @@ def run_study(name: str, options: Options, pool: Pool) -> Report[Record]:
         InputError: There is no such study, or nothing to measure.
         OutputError: The work folder cannot be written.
     """
-    study, code = load_study(name), code_version()
+    study, code = load_study(name), code_version(module=__name__)
     work = Work(study=name, pool=pool, code=code)
     try:
         work.folder.mkdir(parents=True, exist_ok=True)

@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import TYPE_CHECKING
 
 from benchmarks.degrade_tables import degradation_sections, degraded
-from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.evaluation.record import grouped, number, table
 from kinematify.evaluation.summary import (
     CLOSE_ANGLE,

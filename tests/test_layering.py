@@ -30,6 +30,8 @@ def violations(name: str, source: str) -> list[str]:
     found = []
     for target in imported_names(source):
         top, _, rest = target.partition(".")
+        if top == "benchmarks":
+            found.append(f"{name} imports {target}: no wheel brings it; kinematify.cli.checkout finds it")
         if top == "kinematify" and rest not in FROM_THE_TOP:
             imported = rest.split(".")[0]
             if imported not in ORDER:
@@ -40,9 +42,9 @@ def violations(name: str, source: str) -> list[str]:
 
 
 def circles(imports: Mapping[str, Iterable[str]]) -> list[list[str]]:
-    """Groups of files of the package that import each other, for types alone included."""
+    """Groups of files of the package or of `benchmarks` that import each other, for types alone included."""
     graph = nx.DiGraph((name, imported) for name in imports for imported in imports[name])
-    package = graph.subgraph(name for name in graph if name.startswith("kinematify."))
+    package = graph.subgraph(name for name in graph if name.startswith(("kinematify.", "benchmarks.")))
     return [sorted(group) for group in nx.strongly_connected_components(package) if len(group) > 1]
 
 
@@ -113,7 +115,7 @@ def test_every_layer_exists() -> None:
 
 
 def test_modules_behind_symlinks_are_seen() -> None:
-    assert {"kinematify", "kinematify.cli.app", "kinematify.validation", "kinematify.envs"} <= set(modules())
+    assert {"kinematify.cli.app", "kinematify.validation", "kinematify.envs", "benchmarks.study"} <= set(modules())
 
 
 def test_relative_imports_are_refused() -> None:
@@ -131,6 +133,8 @@ def test_relative_imports_are_refused() -> None:
         ("kinematify.validation.run", "from kinematify.topology.mcts import search"),
         ("kinematify.model.urdf", "from kinematify import infer"),
         ("kinematify.model.urdf", "importlib.import_module('kinematify.pipeline.infer')"),
+        ("kinematify.cli.bench", "from benchmarks.study import load_study"),
+        ("kinematify.cli.bench", "importlib.import_module('benchmarks.study')"),
         ("kinematify.utils", "import os"),
     ],
 )

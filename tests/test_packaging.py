@@ -68,6 +68,19 @@ def assert_complete(python: Path, cwd: Path) -> None:
     assert lines == [*names, " ".join(shipped), "True", "True"]
 
 
+def assert_bench_explains(python: Path, cwd: Path) -> None:
+    """No wheel brings `benchmarks/`: whatever needs it ends with 2 and one message, and measures nothing."""
+    environment = {**os.environ, "PYTHONPATH": sysconfig.get_path("purelib")}
+    for line in ("bench --list", "bench detection", "fit -o fitted", "bench . --degrade all"):
+        done = subprocess.run(
+            [python, "-m", "kinematify", *line.split()], cwd=cwd, env=environment, capture_output=True, text=True,
+            check=False,
+        )  # fmt: skip
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "needs the folder benchmarks/" in done.stderr
+        assert done.stderr.count("Error") == 1
+
+
 @pytest.mark.parametrize("options", [["--wheel"], []], ids=["from the tree", "through the sdist"])
 def test_wheel_is_complete(tree: Path, tmp_path: Path, options: list[str]) -> None:
     call(sys.executable, "-m", "build", "--no-isolation", *options, "--outdir", tmp_path, tree, cwd=tmp_path)
@@ -77,6 +90,7 @@ def test_wheel_is_complete(tree: Path, tmp_path: Path, options: list[str]) -> No
     call(sys.executable, "-m", "pip", "--python", python, "install", "-q", "--no-deps", wheel, cwd=tmp_path)
     assert_complete(python, tmp_path)
     assert (tmp_path / "env" / "bin" / "kinematify").is_file()
+    assert_bench_explains(python, tmp_path)
 
 
 def test_editable_install_is_complete_and_sees_new_files(tree: Path, tmp_path: Path) -> None:

@@ -17,12 +17,12 @@ ORDER = (
     "topology", "paper", "model", "generate", "pipeline", "simulation", "manipulation", "formats", "validation",
     "refinement", "batch", "vision", "envs", "view", "evaluation", "cli", "__main__",
 )  # fmt: skip
-"""Packages and modules of `kinematify`: each imports only from what stands to its left."""
+"""Packages and modules of `kinematify`: each imports only from what stands to its left; none imports `benchmarks`."""
 
 
 @cache
 def modules() -> dict[str, Path]:
-    """File of every module of the package and of its tests by dotted name, through the symlinks too."""
+    """File of every module of the package, benchmarks, tests and tools by dotted name, through the symlinks too."""
     found = {}
     for top in ("kinematify", "benchmarks", "tests", "tools"):
         for folder, _, files in os.walk(ROOT / top, followlinks=True):
@@ -41,7 +41,7 @@ def imported_names(source: str) -> Iterator[str]:
                 raise ValueError(f"line {node.lineno} has a relative import; write the whole name of the module")
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            if named := re.fullmatch(r"(kinematify(?:\.\w+)+)(?:(\.)|:[\w/-]+)?", node.value):
+            if named := re.fullmatch(r"((?:kinematify|benchmarks)(?:\.\w+)+)(?:(\.)|:[\w/-]+)?", node.value):
                 yield f"{named[1]}.*" if named[2] else named[1]  # with a dot at its end it is the start of an f-string
         elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "kinematify":
             yield f"kinematify.{node.attr}"

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.checkout import benchmark_module, has_benchmarks
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
-from kinematify.cli.study import print_studies, study_command
 from kinematify.cli.table import format_table
 from kinematify.cli.words import words_of
 from kinematify.errors import ExitStatus
@@ -25,6 +25,20 @@ if TYPE_CHECKING:
     from kinematify.evaluation.run import Variant
 
 
+_HEADINGS = (
+    "config",
+    "objects",
+    "number",
+    "angle [deg]",
+    "line [mm]",
+    "TED",
+    "root",
+    "types [%]",
+    "time [s]",
+    "failed",
+)
+
+
 class _BenchCommand(click.Command):
     """The benchmark, or the study that the first word names."""
 
@@ -32,24 +46,36 @@ class _BenchCommand(click.Command):
         self, info_name: str | None, args: list[str], parent: click.Context | None = None, **extra: Any
     ) -> click.Context:
         """Hand over to the study's own command where one is named."""
-        study = study_command(args[0]) if args and not args[0].startswith("-") else None
+        study = None if not args or args[0].startswith("-") else _study(args[0])
         if study is None:
             return super().make_context(info_name, args, parent, **extra)
         study.params += [parameter for parameter in self.params if parameter.name == "traceback"]
         return study.make_context(f"{info_name} {args[0]}", args[1:], parent, **extra)
 
 
+def _study(word: str) -> click.Command | None:
+    """The command of a study; None for data.
+
+    Raises:
+        InputError: The word is no data, and there is no `benchmarks/` that could have a study of that name.
+    """
+    from kinematify.evaluation.datasets import PIP_DATA, SETS
+
+    if not has_benchmarks() and (word in (*SETS, PIP_DATA) or Path(word).exists() or "/" in word):
+        return None
+    study: click.Command | None = benchmark_module("command", f"The study {word}").study_command(word)
+    return study
+
+
 def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
     if asked:
-        print_studies()
+        benchmark_module("command", "The list of studies").print_studies()
         context.exit()
 
 
 def _write_results_page(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
     if asked:
-        from benchmarks.results_page import write_results_page
-
-        write_results_page(Path())
+        benchmark_module("results_page", "--results-page").write_results_page(Path())
         click.echo("README.md has the figures of the reports in results/, docs/results.md their dates and commits.")
         context.exit()
 
@@ -159,7 +185,8 @@ def command(
     everyday2. Without it robots and everyday objects are measured. The sets are looked for in the folder that the
     variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
 
-    The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
+    The report is written as Markdown and JSON, with all its tables in a checkout of the repository alone; --degrade,
+    --errors and --results-page need one too. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
     --baseline do.
 
@@ -169,10 +196,10 @@ def command(
 
     `kinematify bench STUDY` answers another question; --list names the studies, and each has options of its own.
     """
-    from kinematify.evaluation.record import as_json, load_report, write_report
+    from kinematify.evaluation.job import CLEAN
+    from kinematify.evaluation.record import as_json, load_report, table, write_report
     from kinematify.evaluation.regression import find_regressions
     from kinematify.evaluation.run import RESULTS, BenchmarkRequest, run_benchmark
-    from benchmarks.tables import benchmark_blocks
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")
@@ -180,22 +207,30 @@ def command(
     if degrade != "none" and baseline is not None:
         raise click.UsageError("--degrade cannot be combined with --baseline. Give one of them.")
     earlier = load_report(baseline, RESULTS) if baseline is not None else None
+    detailed = has_benchmarks()
+    faults, by = _faults(degrade)
+    gallery = benchmark_module("errors", "--errors") if shown is not None else None
     request = BenchmarkRequest(
         data=chosen,
         variants=_variants(configs, ablation=ablation),
         conditions=tuple(word.strip() for word in conditions.split(",")),
-        inputs=_inputs(degrade),
+        inputs=(CLEAN, *faults),
+        degrade=by,
         only=patterns,
         fresh=fresh,
         workers=jobs or os.cpu_count() or 1,
     )
     with progress_reporter() as progress:
         report = run_benchmark(request, progress)
-        written = write_report(report, RESULTS, benchmark_blocks(report, earlier), out, name=name, title=name)
-        if shown is not None:
-            from benchmarks.errors import write_error_gallery
-
-            page = write_error_gallery(report, request, out, name=f"{name}_errors", count=shown, progress=progress)
+        if detailed:
+            blocks = benchmark_module("tables", "The report").benchmark_blocks(report, earlier)
+        else:
+            blocks = [table(_HEADINGS, _rows(report))]
+        written = write_report(report, RESULTS, blocks, out, name=name, title=name)
+        if gallery is not None:
+            page = gallery.write_error_gallery(
+                report, request, out, name=f"{name}_errors", count=shown, progress=progress
+            )
             written = (*written, page)
     regressions = find_regressions(report, earlier) if earlier is not None else ()
     if json_to:
@@ -207,11 +242,12 @@ def command(
     return ExitStatus.FAILURES if regressions else 0
 
 
-def _inputs(given: str) -> tuple[str, ...]:
-    """Clean meshes, and what is asked for of `--degrade`."""
-    from kinematify.evaluation.perturb import CLEAN, DEGRADED
-
-    return (CLEAN,) if given == "none" else (CLEAN, *words_of(given, DEGRADED, "--degrade"))
+def _faults(given: str) -> tuple[tuple[str, ...], str]:
+    """What is asked for of `--degrade`, and the function that does it, as ``module:name``."""
+    if given == "none":
+        return (), ""
+    module = benchmark_module("degrade", "--degrade")
+    return words_of(given, module.DEGRADED, "--degrade"), f"{module.__name__}:{module.degraded.__name__}"
 
 
 def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
@@ -225,7 +261,11 @@ def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
 
 def _describe(report: Report[JobResult]) -> str:
     """Return the means per configuration and kind of object, the paper's below them."""
-    from benchmarks.paper import TABLE_I, mean_over_robots
+    return format_table(_HEADINGS, _rows(report))
+
+
+def _rows(report: Report[JobResult]) -> list[tuple[str, ...]]:
+    from kinematify.evaluation.paper import TABLE_I, mean_over_robots
 
     rows = [
         _summary_row(key, [run for run in report.records if (run.variant, run.kind, run.input) == key])
@@ -233,23 +273,11 @@ def _describe(report: Report[JobResult]) -> str:
     ]
     for paper in (mean_over_robots(), TABLE_I["everyday"]):
         rows.append(("(the paper)", paper.label, "", f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}", "", "", "", ""))
-    headings = (
-        "config",
-        "objects",
-        "number",
-        "angle [deg]",
-        "line [mm]",
-        "TED",
-        "root",
-        "types [%]",
-        "time [s]",
-        "failed",
-    )
-    return format_table(headings, rows)
+    return rows
 
 
 def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[str, ...]:
-    from kinematify.evaluation.perturb import CLEAN
+    from kinematify.evaluation.job import CLEAN
     from kinematify.evaluation.record import number
     from kinematify.evaluation.summary import summarise
 

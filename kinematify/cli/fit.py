@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.checkout import benchmark_module
 from kinematify.cli.help import examples
 from kinematify.cli.progress import progress_reporter
 
@@ -51,14 +52,12 @@ def command(
     alone judge and are not fitted to. What was measured is kept beside the weights, so that an interrupted run goes on.
     To ship new weights, copy the .npz files and edges.json into kinematify/joints/choice.
     """
-    from benchmarks.fit.packages import write_installed
-    from benchmarks.fit.run import as_markdown, run_fit
-
+    fit = benchmark_module("fit.run", "`kinematify fit`")
     if packages:
-        write_installed(out / "packages")
+        benchmark_module("fit.packages", "--packages").write_installed(out / "packages")
         folders = (*folders, out / "packages")
     with progress_reporter() as progress:
-        report = run_fit(
+        report = fit.run_fit(
             folders,
             out,
             rounds=rounds,
@@ -70,6 +69,6 @@ def command(
             progress=progress,
         )
     if json_to != "-":
-        click.echo(as_markdown(report))
+        click.echo(fit.as_markdown(report))
     if json_to is not None:
         write_answer(report, json_to)

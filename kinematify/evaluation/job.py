@@ -9,7 +9,7 @@ import resource
 import sys
 import time
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
@@ -17,21 +17,22 @@ from kinematify.batch.processes import sentence
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import ObjectScore, score_object
-from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
-from kinematify.evaluation.prediction import NOTHING_PREDICTED, prediction_of
+from kinematify.evaluation.prediction import NOTHING_PREDICTED, Prediction, prediction_of
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.assembly.erase import ErasedModel
     from kinematify.batch.engine import TaskFailure
-    from kinematify.evaluation.perturb import Perturbed
-    from kinematify.evaluation.prediction import Prediction
     from kinematify.pipeline import Inference
 
 INFER = "kinematify.pipeline:infer"
 """Function under test, as ``module:name``."""
+
+CLEAN = "clean"
+"""Parts as they are."""
 
 Status = Literal["ok", "error", "timeout", "crash", "unreadable"]
 
@@ -47,7 +48,9 @@ class Job:
     config: Config
     infer: str = INFER
     input: str = CLEAN
-    """`CLEAN`, or one of `kinematify.evaluation.perturb.DEGRADED`."""
+    """`CLEAN`, or what `degrade` does to the parts."""
+    degrade: str = ""
+    """Function that makes the input, as ``module:name``: (input, parts, config, seed=...) -> `Degraded`."""
 
     def key(self, code_version: str) -> str:
         """Name of the job's result: equal only where nothing that the result depends on has changed."""
@@ -91,6 +94,15 @@ class JobResult:
     """Cuts whose two sides came out as fixed to each other."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Degraded:
+    """Parts that an inference is given instead of an object's own."""
+
+    assembly: Assembly
+    pieces: Mapping[str, str] = field(default_factory=dict)
+    """Name of a piece that was cut off -> the part that it was cut from."""
+
+
 def run_job(job: Job, failure: TaskFailure | None = None) -> JobResult:
     """Pose an object, erase its kinematics, infer from the parts alone, and score the answer.
 
@@ -103,7 +115,7 @@ def run_job(job: Job, failure: TaskFailure | None = None) -> JobResult:
     """
     try:
         erased = erased_item(job.item, job.condition)
-        given = perturbed(job.input, shown_parts(erased), job.config, seed=job.condition.seed)
+        given = given_input(job, erased)
     except Exception as error:
         return _result(job, "unreadable", sentence(error), _Answer(), None)
     answer = (
@@ -142,12 +154,56 @@ def shown_parts(erased: ErasedModel) -> Assembly:
     return Assembly(parts=erased.parts, source="benchmark")
 
 
-def predicted(erased: ErasedModel, given: Perturbed, inference: Inference) -> tuple[Prediction, int]:
+def given_input(job: Job, erased: ErasedModel) -> Degraded:
+    """What the inference of a job is given."""
+    assembly = shown_parts(erased)
+    if job.input == CLEAN:
+        return Degraded(assembly=assembly)
+    degraded: Degraded = imported(job.degrade)(job.input, assembly, job.config, seed=job.condition.seed)
+    return degraded
+
+
+def predicted(erased: ErasedModel, given: Degraded, inference: Inference) -> tuple[Prediction, int]:
     """Return an inference by the parts of the truth, and how many cuts it mended."""
     part_index = {name: index for index, name in enumerate((*erased.truth.part_names, *given.pieces))}
     prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, part_index)
     pieces = {part_index[piece]: part_index[whole] for piece, whole in given.pieces.items()}
     return without_pieces(prediction, pieces)
+
+
+def without_pieces(prediction: Prediction, pieces: Mapping[int, int]) -> tuple[Prediction, int]:
+    """A prediction in which pieces that are fixed to each other are one part again.
+
+    Args:
+        prediction: Over all parts.
+        pieces: Index of a piece -> that of the part that it was cut from.
+
+    Returns:
+        The prediction over what is left, and how many cuts were mended.
+    """
+    whole = {part: part for part in prediction.parents}
+    fixed = {joint.child for joint in prediction.joints if joint.kind == JointType.FIXED}
+    for child, parent in prediction.parents.items():
+        if child in fixed and pieces.get(child, child) == pieces.get(parent, parent):
+            kept, gone = sorted((_whole(whole, child), _whole(whole, parent)), key=lambda part: part in pieces)
+            whole[gone] = kept
+    parents = {
+        _whole(whole, part): -1 if above < 0 else _whole(whole, above)
+        for part, above in prediction.parents.items()
+        if above < 0 or _whole(whole, part) != _whole(whole, above)
+    }
+    joints = tuple(
+        replace(joint, parent=_whole(whole, joint.parent), child=_whole(whole, joint.child))
+        for joint in prediction.joints
+        if _whole(whole, joint.parent) != _whole(whole, joint.child)
+    )
+    return Prediction(parents=parents, joints=joints), sum(part != above for part, above in whole.items())
+
+
+def _whole(whole: Mapping[int, int], part: int) -> int:
+    while whole[part] != part:
+        part = whole[part]
+    return part
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,10 +215,10 @@ class _Answer:
     cuts_mended: int = 0
 
 
-def _infer(job: Job, erased: ErasedModel, given: Perturbed) -> _Answer:
+def _infer(job: Job, erased: ErasedModel, given: Degraded) -> _Answer:
     start = time.perf_counter()
     try:
-        inference = imported(job.infer)(given.assembly, config=given.config, **_known(job, erased))
+        inference = imported(job.infer)(given.assembly, config=job.config, **_known(job, erased))
         seconds = time.perf_counter() - start
         prediction, mended = predicted(erased, given, inference)
     except Exception as error:
@@ -177,10 +233,10 @@ def _known(job: Job, erased: ErasedModel) -> dict[str, str]:
     return {"base": erased.truth.part_names[erased.truth.parents.index(-1)]}
 
 
-def imported(dotted: str) -> Callable[..., Inference]:
-    """Return a function under test by ``module:name``."""
+def imported(dotted: str) -> Callable[..., Any]:
+    """Return a function by ``module:name``."""
     module, _, name = dotted.partition(":")
-    function: Callable[..., Inference] = getattr(importlib.import_module(module), name)
+    function: Callable[..., Any] = getattr(importlib.import_module(module), name)
     return function
 
 

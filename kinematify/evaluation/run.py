@@ -15,8 +15,7 @@ from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
-from kinematify.evaluation.job import INFER, Job, JobResult, run_job, unscored
-from kinematify.evaluation.perturb import CLEAN
+from kinematify.evaluation.job import CLEAN, INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.record import Header, Report, new_header
 from kinematify.evaluation.sources import NOT_INFERRING, code_version
 from kinematify.evaluation.summary import summaries
@@ -81,7 +80,9 @@ class BenchmarkRequest:
     conditions: tuple[str, ...] = tuple(condition.name for condition in CONDITIONS)
     """Names of conditions."""
     inputs: tuple[str, ...] = (CLEAN,)
-    """What is done to the meshes: `CLEAN` and some of `kinematify.evaluation.perturb.DEGRADED`."""
+    """What is done to the parts: `CLEAN`, and names that `degrade` knows."""
+    degrade: str = ""
+    """Function that degrades parts, as ``module:name``; `Job.degrade` says how it is called."""
     only: tuple[str, ...] = ()
     """Patterns for names of objects, categories or kinds; empty for all."""
     work_folder: Path = WORK_FOLDER
@@ -111,7 +112,7 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
         KeyboardInterrupt: Ctrl-C; workers are stopped, finished jobs are kept.
     """
     jobs = jobs_of(request)
-    code = code_version(without=NOT_INFERRING)
+    code = code_version(without=NOT_INFERRING, module=request.degrade.partition(":")[0])
     keyed = [(job.key(code), job) for job in jobs]
     # The largest objects first, so that no worker is left alone with one at the end.
     by_key = dict(sorted(keyed, key=lambda entry: entry[1].item.mesh_bytes, reverse=True))
@@ -200,7 +201,15 @@ def jobs_of(request: BenchmarkRequest) -> list[Job]:
     objects = selected_objects(request)
     conditions = selected_conditions(request)
     return [
-        Job(item=item, condition=condition, variant=variant.label, config=config, infer=request.infer, input=given)
+        Job(
+            item=item,
+            condition=condition,
+            variant=variant.label,
+            config=config,
+            infer=request.infer,
+            input=given,
+            degrade=request.degrade,
+        )
         for variant, config in [(variant, variant.load()) for variant in request.variants]
         for given in request.inputs
         for item in objects

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import os
 import subprocess
 from pathlib import Path
@@ -13,29 +14,30 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 NOT_INFERRING = (
     "batch", "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view",
     "vision",
-    "benchmarks/studies", "evaluation/nightly", "evaluation/mutants", "evaluation/corruption",
-    *(
-        f"evaluation/{name}.py"
-        for name in (
-            "calibration", "degrade_tables", "error_pictures", "errors", "paper", "readme", "record",
-            "regression", "report", "run", "study", "summary", "tables",
-        )
-    ),
+    "evaluation/nightly",
+    *(f"evaluation/{name}.py" for name in ("paper", "record", "regression", "run", "summary")),
 )  # fmt: skip
 """What neither infers nor scores; configurations count by their values."""
 
 
-def code_version(*, without: tuple[str, ...] = ()) -> str:
+def code_version(*, without: tuple[str, ...] = (), module: str = "") -> str:
     """Hash of the package's sources and settings: results of other code are not taken up.
 
     Args:
         without: Files and folders of the package, ``/`` between names, that a result does not depend on.
+        module: Of another package whose sources count too.
     """
     digest = hashlib.sha256()
+    origin = importlib.util.find_spec(module.partition(".")[0]) if module else None
+    folders = [_PACKAGE, *(origin.submodule_search_locations or () if origin is not None else ())]
     # `validation`, `envs` and `configs` stand behind links.
-    paths = (Path(folder, file) for folder, _, files in os.walk(_PACKAGE, followlinks=True) for file in files)
-    for path in sorted(path for path in paths if path.suffix in (".py", ".yaml")):
-        place = path.relative_to(_PACKAGE).as_posix()
+    paths = (
+        (Path(root, file), Path(root, file).relative_to(top).as_posix())
+        for top in folders
+        for root, _, files in os.walk(top, followlinks=True)
+        for file in files
+    )
+    for path, place in sorted((path, place) for path, place in paths if path.suffix in (".py", ".yaml")):
         if not any(place == left or place.startswith(f"{left}/") for left in without):
             digest.update(place.encode())
             digest.update(path.read_bytes())

@@ -7,18 +7,18 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
-from test_benchmark_run import write_object
 
-from kinematify.cli.app import run
-from kinematify.errors import InputError
-from kinematify.evaluation.record import document, load_report, write_report
-from kinematify.evaluation.run import RESULTS
 from benchmarks.studies.published import Judged, Judgement, load_judged
 from benchmarks.studies.same_joints import differences
 from benchmarks.study import file_stem, load_study, load_study_report, study_names
 from benchmarks.tables import benchmark_blocks
+from kinematify.cli.app import run
+from kinematify.errors import InputError
+from kinematify.evaluation.record import document, load_report, write_report
+from kinematify.evaluation.run import RESULTS
 from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
+from tests.secret_cabinets import write_object
 
 REPORTS = ROOT / "results"
 JOINT = {
@@ -100,12 +100,12 @@ def test_a_study_runs_goes_on_and_ends_with_1_on_faults(
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["refinement", "--tiers", "cheap"], "'cheap' is none of geometry, engines, task"),
+        (["refine", "--tiers", "cheap"], "'cheap' is none of geometry, engines, task"),
         (["detection", "--only", "both"], "--only 'both' does not fit"),
         (["detection", "--count", "0"], "--count '0' does not fit"),
         (["published", "--folder", "no/such/folder"], "no/such/folder"),
         (["same-joints", "--against", "no.json"], "no.json"),
-        (["voters", "--tables", "-o", "no/such/folder"], "is not a benchmark report"),
+        (["refine", "--tables", "-o", "no/such/folder"], "is not a benchmark report"),
     ],
 )
 def test_wrong_words_end_with_2(
@@ -117,7 +117,7 @@ def test_wrong_words_end_with_2(
 
 
 def test_an_unknown_study_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"There are .*calibration, colors, criteria"):
+    with pytest.raises(InputError, match=r"There are .*calibration, colors, detection"):
         load_study("alchemy")
 
 

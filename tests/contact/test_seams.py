@@ -7,10 +7,10 @@ import pytest
 import trimesh
 from objects import BUILDERS
 
+from benchmarks.degrade import cut_in_bands, degraded
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.seams import find_cuts, find_seams, rigid_pieces
-from kinematify.evaluation.perturb import cut_in_bands, perturbed
 from kinematify.geometry.surface import part_surfaces
 from kinematify.pipeline import infer
 from kinematify.robot.joint_type import JointType
@@ -115,7 +115,7 @@ def test_seams_that_bend_join_parts_but_never_the_base() -> None:
 def test_pieces_come_out_fixed_and_the_other_joints_as_without_the_cut(name: str, kind: str, seed: int) -> None:
     assembly = BUILDERS[name]().assembly
     whole = infer(assembly, config=CONFIG)
-    given = perturbed(kind, assembly, CONFIG, seed=seed)
+    given = degraded(kind, assembly, CONFIG, seed=seed)
     assert given.pieces
     found = infer(given.assembly, config=CONFIG)
     names = found.assembly.names

@@ -14,54 +14,24 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.tables import benchmark_blocks
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
 from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.job import JobResult
-from benchmarks.paper import ABLATION
+from kinematify.evaluation.paper import ABLATION
 from kinematify.evaluation.record import Report, load_report, write_report
 from kinematify.evaluation.run import (
     DEFAULT_ABLATION,
     PAPER_VARIANTS,
     RESULTS,
-    BenchmarkRequest,
     Variant,
     changed,
     run_benchmark,
 )
 from kinematify.evaluation.summary import summarise
-from benchmarks.tables import benchmark_blocks
 from tests.places import ROOT
-
-BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'
-
-
-def link(name: str, size: str) -> str:
-    return f'<link name="{name}">{BOX.format(size=size)}</link>'
-
-
-def joint(name: str, kind: str, child: str, *, xyz: str, axis: str, upper: float) -> str:
-    return (
-        f'<joint name="{name}" type="{kind}"><parent link="secret_body"/><child link="{child}"/>'
-        f'<origin xyz="{xyz}"/><axis xyz="{axis}"/><limit lower="0" upper="{upper}" effort="1" velocity="1"/></joint>'
-    )
-
-
-def write_object(folder: Path, *, with_knob: bool) -> None:
-    """A body with a door on a vertical hinge and a drawer, and a knob or not."""
-    text = (
-        '<robot name="secret_cabinet">'
-        + link("secret_body", "1 1 1")
-        + link("secret_door", "0.02 0.5 1")
-        + joint("secret_hinge", "revolute", "secret_door", xyz="0.52 0 0", axis="0 0 1", upper=1.5)
-    )
-    if with_knob:
-        text += link("secret_drawer", "0.5 0.4 0.2")
-        text += joint("secret_slide", "prismatic", "secret_drawer", xyz="0 0.7 0", axis="1 0 0", upper=0.4)
-    folder.mkdir(parents=True)
-    (folder / "model.urdf").write_text(text + "</robot>")
-    facts = {"kind": "everyday", "category": "cabinet"}
-    (folder / "source.json").write_text(json.dumps(facts))
+from tests.secret_cabinets import request, write_object
 
 
 @pytest.fixture
@@ -69,11 +39,6 @@ def data(tmp_path: Path) -> Path:
     write_object(tmp_path / "data" / "two_parts", with_knob=False)
     write_object(tmp_path / "data" / "three_parts", with_knob=True)
     return tmp_path / "data"
-
-
-def request(data: Path, work: Path, infer: str, **changes: object) -> BenchmarkRequest:
-    base = BenchmarkRequest(data=data, work_folder=work, workers=2, infer=f"quick_inference:{infer}", timeout=60.0)
-    return replace(base, **changes)  # type: ignore[arg-type]
 
 
 def without_costs(report: Report[JobResult]) -> list[object]:
@@ -176,7 +141,7 @@ def test_killed_run_resumes_to_the_same_report(data: Path, tmp_path: Path, end: 
     )
     script = tmp_path / "program.py"
     script.write_text(program)
-    places = os.pathsep.join([str(ROOT / "tests" / "evaluation"), *sys.path])
+    places = os.pathsep.join([str(ROOT / "tests"), *sys.path])
     child = subprocess.Popen(
         [sys.executable, str(script)], env={**os.environ, "PYTHONPATH": places}, stderr=subprocess.DEVNULL
     )

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from lxml import etree
-from test_benchmark_run import write_object
 
 from kinematify.cli.app import run as run_command
 from kinematify.errors import InputError, OutputError
@@ -28,6 +27,7 @@ from kinematify.evaluation.nightly.smoke import write_smoke_objects
 from kinematify.evaluation.nightly.store import accept, load_nights, locked
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
+from tests.secret_cabinets import write_object
 
 if TYPE_CHECKING:
     from kinematify.evaluation.nightly.run import NightResult

@@ -18,12 +18,8 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.errors import InputError
-from kinematify.evaluation.metrics import JointScore, ObjectScore
-from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
+from kinematify.evaluation.job import without_pieces
 from kinematify.evaluation.prediction import Prediction
-from benchmarks.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
-from benchmarks.study import load_study_report
-from kinematify.evaluation.tree_metrics import TreeDistance
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.pipeline.record import file_hashes
@@ -398,42 +394,6 @@ def test_validate_names_the_next_best_joints_of_what_fails(tmp_path: Path) -> No
     assert joint.next_best == ()
 
 
-def test_bench_measures_refinement(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    write_inference(inferred("drawer"), tmp_path / "models" / "drawer", preview=False)
-    words = ["bench", "refinement", "--data", "models", "--perturb", "noise", "--jobs", "1"]
-    assert run([*words, "-o", "out"]) == 0
-    assert "2 records" in capsys.readouterr().out
-    results = results_of(load_study_report(tmp_path / "out", "refinement").records)
-    assert [(item.object, item.perturbation) for item in results] == [("drawer", "clean"), ("drawer", "noise")]
-    assert [tier.tier for tier in results[0].tiers] == [OFF, "geometry"]
-    text = (tmp_path / "out" / "refinement.md").read_text()
-    assert "no feedback" in text
-    assert "Nowhere." in text
-    assert not harmed(results)
-    assert run([*words, "--tiers", "cheap"]) == 2
-
-
-def test_harm_is_told() -> None:
-    joint = JointScore(
-        joint="j", parent="a", child="b", kind="revolute", predicted_kind="revolute", gripper=False, angle_deg=0.0,
-        angle_given_type_deg=0.0, line_m=0.0, pivot_m=0.0, limit_iou=0.9, opens=True,
-    )  # fmt: skip
-    tree = TreeDistance(value=0, exact=True)
-    score = ObjectScore(
-        diagonal=1.0, joints=(joint,), ted=tree, ted_unlabelled=tree, ted_without_gripper=tree, parent_errors=0,
-        root_right=True,
-    )  # fmt: skip
-    before = TierResult(tier=OFF, score=score, seconds=1.0, errors=0, changes=())
-    for changes in ({"predicted_kind": "prismatic"}, {"angle_deg": 90.0}, {"limit_iou": 0.5}):
-        after = replace(before, tier="geometry", score=replace(score, joints=(replace(joint, **changes),)))
-        result = RefiningResult(object="o", kind="other", perturbation="clean", tiers=(before, after))
-        assert len(harmed([result])) == 1
-    assert not harmed([replace(result, tiers=(before, replace(before, tier="geometry")))])
-
-
 def test_a_folder_of_an_older_version_is_refused(tmp_path: Path) -> None:
     (tmp_path / "inference.json").write_text('{"schema": 1}')
     with pytest.raises(InputError, match="older version"):
@@ -496,14 +456,6 @@ def test_simulation_in_memory_says_what_validate_says(tmp_path: Path) -> None:
     theirs = [item for item in report.findings if item.check in checks]
     assert sorted((item.check, item.joint) for item in mine) == sorted((item.check, item.joint) for item in theirs)
     assert any(item.severity is Severity.ERROR for item in mine)
-
-
-@pytest.mark.parametrize("name", PERTURBATIONS)
-def test_perturbations_are_seeded_and_leave_the_truth_alone(name: str) -> None:
-    assembly = BUILDERS["nested_drawer"]().assembly
-    one, same = (perturbed(name, assembly, CONFIG, seed=3) for _ in range(2))
-    assert [part.mesh_hash for part in one.assembly.parts] == [part.mesh_hash for part in same.assembly.parts]
-    assert set(assembly.names) <= set(one.assembly.names)
 
 
 def test_a_fixed_piece_is_one_part_again_when_scored() -> None:

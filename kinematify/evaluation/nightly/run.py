@@ -144,7 +144,7 @@ class _Work:
         self.folder = request.out / UNFINISHED
         self.pages = self.folder / MODELS if request.pages else None
         self.thresholds = load_settings(self.settings.validation_config)
-        self.code = code_version(without=("cli", "evaluation/nightly", "benchmarks/studies"))
+        self.code = code_version(without=("cli", "evaluation/nightly"))
         self.method = digest(load_config(self.settings.infer_config).model_dump(mode="json"))
         hashes = {item.name: item.content_hash for item in objects}
         self.plan = digest(

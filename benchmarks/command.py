@@ -7,22 +7,32 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from pydantic import ValidationError
 
+from benchmarks.study import (
+    RECORDS,
+    Options,
+    Study,
+    file_stem,
+    load_study,
+    run_study,
+    study_names,
+    study_text,
+    write_study,
+)
+from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
+from kinematify.evaluation.record import as_json, load_report
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
-    from benchmarks.study import Options, Study
-
 
 def study_command(name: str) -> click.Command | None:
     """Return the command of a study, None if there is none of this name."""
-    from benchmarks.study import load_study, study_names, study_text
-
     if name not in study_names():
         return None
     study = load_study(name)
@@ -45,8 +55,6 @@ def study_command(name: str) -> click.Command | None:
 
 def print_studies() -> None:
     """Print name and question of every study."""
-    from benchmarks.study import study_names, study_text
-
     rows = [(name, study_text(name).partition("\n")[0]) for name in study_names()]
     click.echo(format_table(("study", "what it answers"), rows))
 
@@ -62,10 +70,6 @@ def _option(name: str, info: FieldInfo) -> click.Option:
 
 
 def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
-    from kinematify.batch.pool import WORK_FOLDER, Pool
-    from kinematify.evaluation.record import as_json, load_report
-    from benchmarks.study import RECORDS, file_stem, run_study, write_study
-
     stem = values["stem"] or file_stem(name)
     if values["tables"]:
         report = load_report(values["out"] / f"{stem}.json", RECORDS)
@@ -92,8 +96,6 @@ def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
 
 def _options(study: Study[Any], values: dict[str, Any]) -> Options:
     """What was typed, as the study's own type; lists stand there separated by commas."""
-    from pydantic import ValidationError
-
     given = {}
     for name, info in study.options.model_fields.items():
         value = values[name]
