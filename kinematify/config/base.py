@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kinematify.errors import ConfigError
 
@@ -19,6 +19,11 @@ class StageConfig(BaseModel):
     """Base of all stages: strict types, unknown keys and non-finite numbers refused, frozen."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
+
+
+def section() -> Any:
+    """Default of a field that is a stage itself: its own defaults, made by the validator of the whole."""
+    return Field(default_factory=dict, validate_default=True)
 
 
 _Stage = TypeVar("_Stage", bound=StageConfig)
@@ -44,7 +49,8 @@ def validated(stage: type[_Stage], values: dict[str, Any], name_or_path: str | P
     except ValidationError as error:
         problems = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise ConfigError(
-            f"The configuration {name_or_path} does not fit: {problems}. Compare it with the one that is shipped."
+            f"The configuration {name_or_path} does not fit: {problems}. "
+            f"Compare it with the fields of {stage.__module__}.{stage.__name__}."
         ) from error
 
 
