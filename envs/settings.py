@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from kinematify.config import StageConfig, load_values, section, validated
+from kinematify.config import StageConfig, load, section
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -187,8 +187,8 @@ class PictureSettings(StageConfig):
 class EnvSettings(StageConfig):
     """All topics."""
 
-    name: str
-    """Name of the file."""
+    name: str = "envs"
+    """Of the settings."""
     time: TimeSettings = section()
     object: ObjectSettings = section()
     hand: HandSettings = section()
@@ -207,4 +207,4 @@ def load_settings(name_or_path: str | Path = "envs") -> EnvSettings:
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value does not fit.
     """
-    return validated(EnvSettings, load_values(name_or_path), name_or_path)
+    return load(EnvSettings, name_or_path)

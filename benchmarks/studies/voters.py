@@ -2,7 +2,7 @@
 
 **The voters are simulated**: they know the truth and are wrong at random as often as stated (5 draws each), on every
 joint for itself; they say how sure they are, honestly but for those of whom the table says otherwise. Votes are added
-as log odds by `configs/default.yaml`, section `vision`. Objects at rest, end to end; axis angles are means over an
+as log odds by the default configuration, section `vision`. Objects at rest, end to end; axis angles are means over an
 object's joints, then over objects. It is a bound on what a real model could add: none was asked, and no inference ever
 sees these answers elsewhere.
 """

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kinematify.config.base import CONFIG_FOLDER, StageConfig, load_values, section, validated
+from kinematify.config.base import CONFIG_FOLDER, StageConfig, load, section
 from kinematify.config.bearings import BearingConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
 from kinematify.config.cues import GateConfig, KindConfig, PanelsConfig, SlidesConfig
@@ -81,18 +81,17 @@ __all__ = [
     "SweepConfig",
     "TopologyConfig",
     "VisionConfig",
+    "load",
     "load_config",
-    "load_values",
     "section",
-    "validated",
 ]
 
 
 class Config(StageConfig):
     """All stages."""
 
-    name: str
-    """Name of the file; models and reports state it."""
+    name: str = "default"
+    """Of the configuration; models and reports state it."""
     seed: int = 0
     """Of whatever is sampled."""
     assembly: AssemblyConfig = section()
@@ -117,10 +116,10 @@ def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Confi
     """Load a shipped configuration by name (``default``, ``fast``, ``paper``) or any YAML file by path.
 
     Args:
-        name_or_path: Name of a file in `kinematify/configs` without suffix, or a path.
+        name_or_path: ``default``, for the values of the classes; name of a file in `kinematify/configs`; or a path.
         overrides: Top-level values that replace those of the file, e.g. ``seed=7``.
 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value has the wrong type.
     """
-    return validated(Config, {**load_values(name_or_path), **overrides}, name_or_path)
+    return load(Config, name_or_path, **overrides)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kinematify.config import StageConfig, load_values, section, validated
+from kinematify.config import StageConfig, load, section
 from kinematify.config.task import TaskSettings
 
 if TYPE_CHECKING:
@@ -465,8 +465,8 @@ class AgreementSettings(StageConfig):
 class ValidationSettings(StageConfig):
     """All families."""
 
-    name: str
-    """Name of the file; results state it."""
+    name: str = "validation"
+    """Of the settings; results state it."""
     seed: int = 0
     """Of whatever is sampled."""
     budget: BudgetSettings = section()
@@ -487,4 +487,4 @@ def load_settings(name_or_path: str | Path = "validation", **overrides: Any) -> 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value does not fit.
     """
-    return validated(ValidationSettings, {**load_values(name_or_path), **overrides}, name_or_path)
+    return load(ValidationSettings, name_or_path, **overrides)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from kinematify.config import StageConfig, load_values, section, validated
+from kinematify.config import StageConfig, load, section
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,8 +52,8 @@ class SmokeSettings(StageConfig):
 class NightlySettings(StageConfig):
     """All of it."""
 
-    name: str
-    """Name of the file; results state it."""
+    name: str = "nightly"
+    """Of the settings; results state it."""
     version: int = 1  # raised by hand when a scenario changes in a way that no hash sees: starts new series
     """Part of every scenario."""
     data: str | None = None  # folder of URDFs with known joints; null: KINEMATIFY_BENCH, else ../shared/bench
@@ -126,4 +126,4 @@ def load_nightly(name_or_path: str | Path = "nightly", **overrides: Any) -> Nigh
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value does not fit.
     """
-    return validated(NightlySettings, {**load_values(name_or_path), **overrides}, name_or_path)
+    return load(NightlySettings, name_or_path, **overrides)
