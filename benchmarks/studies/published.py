@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from benchmarks.study import Options, Study, explained
-from kinematify.config import StageConfig, load_values, validated
+from kinematify.config import StageConfig, load
 from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 from kinematify.evaluation.datasets import bench_folder, example_robots
 from kinematify.evaluation.record import grouped, table
@@ -283,7 +283,7 @@ def load_judged() -> Judged:
     Raises:
         ConfigError: An entry does not fit.
     """
-    return validated(Judged, load_values(_JUDGED), _JUDGED)
+    return load(Judged, _JUDGED)
 
 
 def _verdict(judged: Judged, record: Record, finding: Record) -> str:

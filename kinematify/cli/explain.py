@@ -69,7 +69,7 @@ def as_markdown(checks: Sequence[Check]) -> str:
         "Written by `kinematify explain --markdown > docs/checks.md`; change `validation/checks/`, not this page.",
         "",
         "An id stays the same for ever. The severity is the worst that a check reports. Words in `this_form` are",
-        "settings of [configs/validation.yaml](../configs/validation.yaml).",
+        "settings of [kinematify/config/validation.py](../kinematify/config/validation.py).",
     ]
     for prefix, family in FAMILIES.items():
         members = sorted((check for check in checks if check.id.startswith(prefix)), key=lambda check: check.id)

@@ -1,36 +1,32 @@
-"""Typed configuration: one class per stage, values in `configs/*.yaml` where each has its reason.
+"""Typed configuration: one class per stage, with every value, its reason beside it, and its meaning below.
 
 Lengths are fractions of the assembly's diagonal unless a field says otherwise, so that nothing depends on units.
-A YAML file may name another one with `extends:` and then states only what differs.
+A YAML file states only what differs, from these values or from those of the file that it names with `extends:`.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kinematify.config.base import CONFIG_FOLDER, StageConfig, load_values, validated
+from kinematify.config.base import CONFIG_FOLDER, StageConfig, load, section
 from kinematify.config.bearings import BearingConfig, RailConfig
 from kinematify.config.cavl import CavlConfig
+from kinematify.config.cues import GateConfig, KindConfig, PanelsConfig, SlidesConfig
 from kinematify.config.joints import (
     ClearanceConfig,
     CompoundConfig,
     ConfidenceConfig,
     FramesConfig,
     FrontCuesConfig,
-    GateConfig,
     JointsConfig,
     JournalConfig,
-    KindConfig,
     LimitsConfig,
-    PanelsConfig,
     RailsConfig,
     RockersConfig,
-    SlidesConfig,
     SweepConfig,
 )
 from kinematify.config.output import CollisionConfig, DynamicsConfig, ModelConfig, PreviewConfig
-from kinematify.config.refinement import FeedbackConfig, RefineConfig
-from kinematify.config.services import ServiceConfig, VisionConfig
+from kinematify.config.services import RodinConfig, ServiceConfig, SourcesConfig, VisionConfig
 from kinematify.config.shapes import (
     AssemblyConfig,
     ContactConfig,
@@ -39,8 +35,7 @@ from kinematify.config.shapes import (
     SeamConfig,
     SurfaceConfig,
 )
-from kinematify.config.sources import RodinConfig, SourcesConfig
-from kinematify.config.trees import BaseConfig, RewardWeights, TopologyConfig
+from kinematify.config.trees import BaseConfig, FeedbackConfig, RefineConfig, RewardWeights, TopologyConfig
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,43 +81,45 @@ __all__ = [
     "SweepConfig",
     "TopologyConfig",
     "VisionConfig",
+    "load",
     "load_config",
-    "load_values",
-    "validated",
+    "section",
 ]
 
 
 class Config(StageConfig):
     """All stages."""
 
-    name: str
-    seed: int
-    assembly: AssemblyConfig
-    surface: SurfaceConfig
-    contact: ContactConfig
-    seam: SeamConfig
-    bearing: BearingConfig
-    model: ModelConfig
-    collision: CollisionConfig
-    dynamics: DynamicsConfig
-    preview: PreviewConfig
-    joints: JointsConfig
-    topology: TopologyConfig
-    sdf: SdfConfig
-    cavl: CavlConfig
-    refine: RefineConfig
-    sources: SourcesConfig
-    vision: VisionConfig
+    name: str = "default"
+    """Of the configuration; models and reports state it."""
+    seed: int = 0
+    """Of whatever is sampled."""
+    assembly: AssemblyConfig = section()
+    surface: SurfaceConfig = section()
+    contact: ContactConfig = section()
+    seam: SeamConfig = section()
+    bearing: BearingConfig = section()
+    model: ModelConfig = section()
+    collision: CollisionConfig = section()
+    dynamics: DynamicsConfig = section()
+    preview: PreviewConfig = section()
+    joints: JointsConfig = section()
+    topology: TopologyConfig = section()
+    sdf: SdfConfig = section()
+    cavl: CavlConfig = section()
+    refine: RefineConfig = section()
+    sources: SourcesConfig = section()
+    vision: VisionConfig = section()
 
 
 def load_config(name_or_path: str | Path = "default", **overrides: Any) -> Config:
     """Load a shipped configuration by name (``default``, ``fast``, ``paper``) or any YAML file by path.
 
     Args:
-        name_or_path: Name of a file in `kinematify/configs` without suffix, or a path.
+        name_or_path: ``default``, for the values of the classes; name of a file in `kinematify/configs`; or a path.
         overrides: Top-level values that replace those of the file, e.g. ``seed=7``.
 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value has the wrong type.
     """
-    return validated(Config, {**load_values(name_or_path), **overrides}, name_or_path)
+    return load(Config, name_or_path, **overrides)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import yaml
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kinematify.errors import ConfigError
 
@@ -21,45 +21,42 @@ class StageConfig(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
+def section() -> Any:
+    """Default of a field that is a stage itself: its own defaults, made by the validator of the whole."""
+    return Field(default_factory=dict, validate_default=True)
+
+
 _Stage = TypeVar("_Stage", bound=StageConfig)
 
 
-def load_values(name_or_path: str | Path) -> dict[str, Any]:
-    """Read a YAML file, shipped or not, with what it extends.
+def load(stage: type[_Stage], name_or_path: str | Path, **overrides: Any) -> _Stage:
+    """Make a stage from its defaults and what a YAML file, with those that it extends, states in their place.
+
+    Args:
+        stage: Class of the stage.
+        name_or_path: Default `name` of the stage, for its defaults as they are; a shipped file's name; or a path.
+        overrides: Values that replace those of the file.
 
     Raises:
-        ConfigError: The name is unknown or the YAML is malformed.
+        ConfigError: The name is unknown, the YAML is malformed, or a value is missing, unknown or of the wrong type.
     """
-    return _read_layers(_config_path(name_or_path), seen=())
-
-
-def validated(stage: type[_Stage], values: dict[str, Any], name_or_path: str | Path) -> _Stage:
-    """Make a configuration from values.
-
-    Raises:
-        ConfigError: A value is missing, unknown or of the wrong type.
-    """
+    field = stage.model_fields.get("name")
+    defaults = field.default if field else None
+    values = {**_read_layers(name_or_path, defaults, seen=()), **overrides}
     try:
         return stage.model_validate(values)
     except ValidationError as error:
         problems = "; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors())
         raise ConfigError(
-            f"The configuration {name_or_path} does not fit: {problems}. Compare it with the one that is shipped."
+            f"The configuration {name_or_path} does not fit: {problems}. "
+            f"Compare it with the fields of {stage.__module__}.{stage.__name__}."
         ) from error
 
 
-def _config_path(name_or_path: str | Path) -> Path:
-    shipped = CONFIG_FOLDER / f"{name_or_path}.yaml"
-    if shipped.is_file():
-        return shipped
-    path = Path(name_or_path)
-    if path.is_file():
-        return path
-    known = ", ".join(sorted(p.stem for p in CONFIG_FOLDER.glob("*.yaml")))
-    raise ConfigError(f"There is no configuration {name_or_path}. Give one of {known}, or the path of a YAML file.")
-
-
-def _read_layers(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
+def _read_layers(name_or_path: str | Path, defaults: str | None, seen: tuple[Path, ...]) -> dict[str, Any]:
+    if str(name_or_path) == defaults:
+        return {}
+    path = _config_path(name_or_path, defaults)
     if path in seen:
         raise ConfigError(f"The configuration {path} extends itself through {', '.join(map(str, seen))}.")
     try:
@@ -67,11 +64,21 @@ def _read_layers(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise ConfigError(f"The configuration {path} cannot be read as YAML: {error}.") from error
     if not isinstance(values, dict):
-        raise ConfigError(f"The configuration {path} must hold `key: value` lines, like default.yaml.")
+        raise ConfigError(f"The configuration {path} must hold `key: value` lines, like fast.yaml.")
     parent = values.pop("extends", None)
-    if parent is None:
-        return values
-    return _merge(_read_layers(_config_path(parent), (*seen, path)), values)
+    return values if parent is None else _merge(_read_layers(parent, defaults, (*seen, path)), values)
+
+
+def _config_path(name_or_path: str | Path, defaults: str | None) -> Path:
+    shipped = CONFIG_FOLDER / f"{name_or_path}.yaml"
+    if shipped.is_file():
+        return shipped
+    path = Path(name_or_path)
+    if path.is_file():
+        return path
+    names = {p.stem for p in CONFIG_FOLDER.glob("*.yaml")} | ({defaults} if defaults else set())
+    known = ", ".join(sorted(names))
+    raise ConfigError(f"There is no configuration {name_or_path}. Give one of {known}, or the path of a YAML file.")
 
 
 def _merge(base: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:

@@ -1,10 +1,10 @@
-"""Thresholds of the checks: one class per family, values with their reasons in `configs/validation.yaml`."""
+"""Thresholds of the checks: one class per family, each value with its reason."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kinematify.config import StageConfig, load_values, validated
+from kinematify.config import StageConfig, load, section
 from kinematify.config.task import TaskSettings
 
 if TYPE_CHECKING:
@@ -14,463 +14,471 @@ if TYPE_CHECKING:
 class BudgetSettings(StageConfig):
     """Time and memory."""
 
-    seconds: float
+    seconds: float = 120.0  # thirty times what the slowest stage takes on the largest known robots; --budget gives more
     """Processor time of each isolated stage with those that it comes after [s]; what is left over is not finished."""
-    stage_bytes: int
+    stage_bytes: int = 8000000000  # address space, not memory: torch and the engines map several GB that they never use
     """Address space of one isolated stage [bytes]."""
 
 
 class FileSettings(StageConfig):
     """KV1xx: the file, the tree and the meshes."""
 
-    max_elements: int
+    max_elements: int = 300000  # the largest known robot has 4,000; parsing this many takes two seconds
     """XML elements of a file."""
-    max_links: int
+    max_links: int = 1000  # MuJoCo needs 20 s for a chain of 2,000, Pinocchio crashes with 20,000
     """Links, and joints, of a model."""
-    max_depth: int
+    max_depth: int = 200  # the longest known chain has 30 joints; MuJoCo has a limit of its own above this
     """Joints one below the other."""
-    max_mimic_chain: int
+    max_mimic_chain: int = 50  # readers follow leaders recursively
     """Followers of followers."""
-    max_line_bytes: int
+    max_line_bytes: int = 7800  # PyBullet reads lines of 7,899 bytes and fails at 8,279
     """Longer lines are a warning [bytes]."""
-    max_name: int
+    max_name: int = 200  # PyBullet crashes with a name of 1,100 characters; file systems take 255
     """Longer names are a warning [characters]."""
-    max_number: float
+    max_number: float = 1.0e6  # a thousand kilometres: double precision is down to 0.1 nm, floats in engines to 6 cm
     """Largest absolute value of any number, in its own unit."""
-    max_angle: float
+    max_angle: float = 6.3  # a whole turn, rounded up
     """Larger roll, pitch and yaw are a warning [rad]."""
-    zero_axis: float
+    zero_axis: float = 1.0e-6  # shorter ones are rounding errors of an exporter
     """Axes of this length or shorter have no direction."""
-    unit_axis_tolerance: float
+    unit_axis_tolerance: float = 1.0e-5  # axes written with six digits
     """Deviation of the length of an axis from one that is not mentioned."""
-    rounded_axis_tolerance: float
+    rounded_axis_tolerance: float = 0.01  # axes written with two digits turn a joint by less than 1 % too much
     """Deviation that is only a note."""
-    zero_scale: float
+    zero_scale: float = 1.0e-9  # nanometres as metres
     """Absolute factors of a mesh scale up to here leave nothing."""
-    max_mesh_bytes: int
+    max_mesh_bytes: int = 500000000  # 10 million triangles as binary STL
     """Larger mesh files are not opened [bytes]."""
-    max_faces: int
+    max_faces: int = 5000000  # about 1 GB in memory; the largest known robots have 1.5 million
     """Triangles of all mesh files together."""
-    stl_faces: int
+    stl_faces: int = 200000  # limit of MuJoCo
     """Triangles that MuJoCo reads from an STL; meshes with more are a warning."""
-    flat: float
+    flat: float = 1.0e-6  # MuJoCo cannot make a hull of less, a sheet of metal has 1e-4
     """Thickness of a mesh that counts as flat, fraction of its diagonal."""
-    degenerate_share: float
+    degenerate_share: float = 0.05  # exporters leave a few slivers; masses and normals suffer from many
     """Share of triangles without area that is a warning."""
-    oversize: float
+    oversize: float = 40.0  # at most 30 (the rail of a cart) in 190 models of robots and objects
     """Size of a link over that of the largest other link that only a slip of units explains."""
-    undersize: float
+    undersize: float = 100.0  # at most 35 (a finger tip, a knob of a washing machine) in the same models
     """Size of the largest link over that of one with a mesh file that only a slip of units explains."""
-    apart: float
+    apart: float = 20.0  # at most 2.3 in the same models
     """Distance between a link and its parent over the sum of their sizes that only a slip of units explains."""
-    tiny: float
+    tiny: float = 0.004  # a hand of 0.2 m that was taken for millimetres twice has 0.2 mm
     """Diagonal of the largest link below which the unit of a model is wrong [m]."""
-    small: float
+    small: float = 0.015  # a wrist watch is larger
     """Diagonal of a model below which its unit is suspicious [m]."""
-    large: float
+    large: float = 20.0  # a lorry with its trailer
     """Diagonal of a model above which its unit is suspicious [m]."""
-    huge: float
+    huge: float = 60.0  # a model in millimetres is 1,000 times too large, one in centimetres 100 times
     """Diagonal above which the unit of a model that moves is wrong [m]."""
 
 
 class PhysicsSettings(StageConfig):
     """KV2xx: declared physics."""
 
-    tiny_mass: float
+    tiny_mass: float = 1.0e-5  # 10 mg: the smallest screws of robots have 100 mg
     """Lighter bodies are a warning [kg]."""
-    huge_mass: float
+    huge_mass: float = 10000.0  # the heaviest industrial arms
     """Heavier bodies are a warning [kg]."""
-    dense: float
+    dense: float = 22000.0  # osmium has 22,600
     """Denser hulls are a warning [kg/m^3]."""
-    impossibly_dense: float
+    # a slip of units makes a thousand or a million of it; toys are published with 200,000
+    impossibly_dense: float = 1.0e6
     """Denser hulls are an error [kg/m^3]."""
-    light: float
+    light: float = 20.0  # foam; thin shells are open meshes most of the time and are not judged
     """Less dense solids are a warning [kg/m^3]."""
-    mass_ratio: float
+    mass_ratio: float = 1000.0  # Gauss-Seidel solvers lose the heavy body's contact from about here
     """Mass of a body over that of the body that carries it."""
-    moment_rounding: float
+    moment_rounding: float = 1.01  # flat parts have equality, and files are written with few digits
     """Largest principal moment over the sum of the others that rounding explains."""
-    moment_ratio: float
+    moment_ratio: float = 1.5  # real robots are published with up to 1.26
     """The same, beyond which it is an error."""
-    gyration_large: float
+    gyration_large: float = 1.5  # above 1 it is impossible; meshes are published without screws, motors and covers
     """Largest radius of gyration over the distance of the outermost point."""
-    gyration_small: float
+    gyration_small: float = 0.03  # a dense motor in one end of a long cover has 0.1
     """Smallest value of the same."""
-    copied_links: int
+    copied_links: int = 3  # two alike are a pair; real twins have one size
     """Links with one mass and one inertia from which on they are placeholders where sizes differ."""
-    copied_volume: float
+    copied_volume: float = 4.0  # legs of quadrupeds that share one inertia differ by 2, placeholders of an arm by 1800
     """Room of the largest of them over that of the smallest from which on sizes differ."""
-    copied_share: float
+    copied_share: float = 1.0e-3  # sensors and feet of quadrupeds have 1e-4 and less
     """Masses below this fraction of the model's are next to nothing on purpose."""
-    listed: int
+    listed: int = 4  # placeholders stand in every link of a file
     """More links with such an inertia are one finding."""
-    centre_outside: float
+    centre_outside: float = 0.1  # motors stand out of simplified meshes
     """Centres of mass may lie so far outside the hull, fraction of the body's diagonal."""
-    centre_far: float
+    centre_far: float = 0.5
     """Beyond this it is an error, fraction of the body's diagonal."""
-    frame_share: float
+    frame_share: float = 0.05  # frames of tools and sensors have a gram, so that engines take them
     """Links without geometry are taken for frames up to this fraction of the body's mass."""
-    full_turn: float
+    full_turn: float = 6.4  # a whole turn, rounded up
     """Wider ranges of hinges are a warning unless they are round numbers of degrees [rad]."""
-    widest_turn: float
+    widest_turn: float = 12.6  # two whole turns: wrists of arms turn once to each side
     """Wider ranges are an error [rad]."""
-    widest_wrist: float
+    widest_wrist: float = 18.0  # wrists of the largest arms turn by 455 degrees to each side
     """Wider ranges are an error even with round limits [rad]."""
-    endless: float
+    endless: float = 1500.0  # two whole turns to each side in degrees; more is a way to write that there is no limit
     """Wider ranges mean that there is no limit [rad]."""
-    widest_slide: float
+    widest_slide: float = 5.0  # the longest gantries of laboratories
     """Longer ranges of slides are a warning [m]."""
-    slide_sizes: float
+    slide_sizes: float = 3.0  # drawers and lifts move by less than the model's size
     """The same, fraction of the model's diagonal."""
-    slide_wrong: float
+    slide_wrong: float = 10.0  # centimetres for metres
     """Longer ranges are an error, fraction of the model's diagonal."""
-    mimic_slack: float
+    mimic_slack: float = 0.01  # limits are written with two digits
     """Followers may go so far beyond their limits, fraction of their range, at least of 1 rad or m."""
-    damping: float
+    damping: float = 10000.0  # above this no motor moves a joint by 1 rad/s
     """Larger damping or friction is a warning [N m s/rad, N s/m, N m or N]."""
-    margin: float
+    margin: float = 1.5  # what designers of arms leave
     """Effort over the largest weight at a joint below which it is mentioned; below 1 it is a warning."""
-    load_doublings: int
+    load_doublings: int = 5
     """Two to this power configurations are sampled for the weight."""
-    bare_share: float
+    bare_share: float = 0.2  # plates and logos lie flush with what carries them
     """A link without collision geometry counts if it stands out so far of that of its body, fraction of its size."""
-    bare_minority: float
+    bare_minority: float = 0.1  # one link of a robot: it was forgotten
     """It counts anyway if no larger share of the links has none."""
-    marker: float
+    marker: float = 0.01  # boxes of a millimetre mark frames
     """Smaller links may do without, fraction of the model's diagonal."""
-    shift: float
+    shift: float = 0.25  # simplified shapes of robots are off by up to 0.2
     """Displacement of the collision geometry, fraction of the visual diagonal."""
-    shift_same: float
+    shift_same: float = 0.02  # copies of the visual mesh are not off at all
     """The same where both are of the same size."""
-    shift_wrong: float
+    shift_wrong: float = 0.1
     """The same, beyond which it is an error."""
-    same_size: float
+    same_size: float = 0.02
     """Extents that differ less are the same, fraction of the visual diagonal."""
-    beyond: float
+    beyond: float = 0.5
     """How far collision geometry may reach beyond the visual one, fraction of the visual diagonal."""
-    inflation: float
+    inflation: float = 1.5  # hollows of half the volume
     """Volume of a hull over that of its mesh."""
-    collision_shapes: int
+    collision_shapes: int = 64
     """More shapes per link are a note."""
-    collision_faces: int
+    collision_faces: int = 50000
     """More triangles per link are a note."""
 
 
 class PrepareSettings(StageConfig):
     """The file that engines are given: decomposition of concave collision meshes."""
 
-    thickness: float
+    thickness: float = 1.0e-3  # MuJoCo makes no hull of a plane; sheets of furniture have more
     """Thickness that flat geometry is given, fraction of its diagonal."""
-    least_thickness: float
+    least_thickness: float = 1.0e-4  # MuJoCo refuses meshes below 1e-15 m^3
     """The same, at least [m]."""
-    corners: int
+    corners: int = 128  # the outermost points of a ball in so many directions leave 1 % of its radius out
     """Vertices of the hull of a convex mesh at most."""
-    link_gap: float
+    link_gap: float = 0.02  # 2 cm on a door of 1 m; drawers and their boards come out exact
     """Pieces may reach so far beyond a mesh, fraction of its diagonal."""
-    model_gap: float
+    model_gap: float = 0.007  # 1 cm on a robot of 1.4 m: screw holes and ribs need no cuts
     """Or so far, whichever is more, fraction of the model's diagonal."""
-    most_components: int
+    most_components: int = 40  # the carcass of a cabinet has up to 40 boards; more are screws and letters
     """Connected pieces of a mesh that are looked at one by one, the largest; the others count as one."""
-    cuts: int
+    cuts: int = 48  # 15 ms each
     """Cuts through concave meshes of a model."""
-    cuts_per_link: int
+    cuts_per_link: int = 4  # a humanoid has 24 links and some time
     """The same for models with many links."""
-    cached_files: int
+    cached_files: int = 1000  # 30 kB each
     """Cuts of so many models are kept for the next run; 0 keeps none."""
-    frame_mass: float
+    frame_mass: float = 1.0e-6  # engines refuse zero; no sum of masses shows it
     """Of links that add nothing to the body that they are fixed to [kg]."""
-    dummy_mass: float
+    dummy_mass: float = 1.0e-3  # the links between the joints of a universal joint: light, yet no stiff equations
     """Of bodies without geometry and without mass [kg]."""
-    ball_radius: float
+    ball_radius: float = 0.01  # a body of the size of a thumb
     """Radius of gyration of what has a mass and no geometry [m]."""
-    moment_slack: float
+    moment_slack: float = 0.01  # flat parts have equality, and tensors are written with few digits
     """A tensor that had to be changed by more is said to be made up, fraction of its largest entry."""
-    effort: float
+    effort: float = 1000.0  # more than any known joint: a made-up value must not hold a motion back
     """Of joints that state none [N m or N]."""
-    velocity: float
+    velocity: float = 100.0
     """Of joints that state none [rad/s or m/s]."""
 
 
 class GeometrySettings(StageConfig):
-    """KV30x to KV33x: collision along the motion."""
+    """KV30x to KV33x: collision along the motion; "untouched" is what the 54 benchmark models show."""
 
-    hole: float
+    hole: float = 0.05  # screw holes and seams of decimated housings have 1 %, a box without a lid 17 %
     """Area of the holes of a shell that still has an inside, fraction of its surface."""
-    points: int
+    points: int = 900  # 300 corners, 300 on edges, 300 on faces: 5 cm apart on a door of 1 m
     """Points on a body's surface that are asked how deep they are."""
-    tolerance: float
+    tolerance: float = 0.01  # untouched hinges and slides: 147 of 160 joints stay below
     """Depth beyond that at rest that does not count, fraction of the model's size."""
-    part_tolerance: float
+    part_tolerance: float = 0.25  # buttons and latches: their shafts are often left out of the hole that they move in
     """The same as a fraction of the smaller part's size; the smaller one of the two counts."""
-    wrong: float
+    wrong: float = 0.03  # of untouched parents and children only drawers that do go through the back reach it
     """Depth that is an error, fraction of the model's size."""
-    noise: float
+    noise: float = 0.001  # 1 mm on an object of 1 m: faces that slide on one another
     """Growth of depth that is rounding of meshes, fraction of the model's size."""
-    rest_overlap: float
+    rest_overlap: float = 0.005
     """Overlap at rest of bodies without a joint between them that is worth a warning, fraction of the model's size."""
-    rest_joined: float
+    rest_joined: float = 0.35  # wheels in their arches and shafts in solid housings reach 0.4 of the smaller part
     """The same of neighbours, fraction of the smaller part's size."""
-    hover: float
+    hover: float = 0.01  # robots and furniture are below 0.6 %
     """Gap at rest between a part and what carries it that is worth a warning, fraction of the model's size."""
-    lost: float
+    lost: float = 0.025  # untouched doors and drawers reach 1.5 %
     """Growth of that gap along the range that is worth a warning, fraction of the model's size."""
-    far: float
+    far: float = 0.1
     """Growth of that gap that is an error, fraction of the model's size."""
-    step: float
+    step: float = 0.02  # a wall of 2 cm cannot be jumped over on an object of 1 m, and what has passed is noticed
     """Motion of the fastest corner from sample to sample, fraction of the model's size."""
-    samples_least: int
+    samples_least: int = 12
     """Samples of a joint to one side, declared range and what lies beyond it each."""
-    samples_most: int
+    samples_most: int = 64
     """The same at most."""
-    gap_samples: int
+    gap_samples: int = 8
     """Configurations to one side in which the gap is measured."""
-    fine_angle: float
+    fine_angle: float = 0.1
     """Precision of a first contact [deg]."""
-    fine_length: float
+    fine_length: float = 1.0e-4
     """The same of slides [m]; no finer than a ten thousandth of the model's size."""
-    early: float
+    early: float = 0.25  # wrong lines run into the parent at once; good ranges lose a fifth at most
     """A side of the range that is free over less than this share of the whole range is blocked early."""
-    early_turn: float
+    early_turn: float = 30.0  # legs of published robots without stops reach another body 54 to 177 deg from rest
     """More of a turn that is free is not early for a chain that reaches itself, or a joint without stops [deg]."""
-    late: float
+    late: float = 0.05  # designers leave that much for cushions
     """Declared ends this close behind the free travel are not mentioned, fraction of the range."""
-    small_range: float
+    small_range: float = 0.2
     """A declared range below this fraction of the free travel is worth a note."""
-    guide: float
+    guide: float = 1.0
     """Share of its guide that a slide may run out."""
-    always: float
+    always: float = 0.95  # the customary share in motion planning
     """Share of configurations in which a pair that always collides does so."""
-    random_rows: int
+    random_rows: int = 128  # a power of two, as Sobol points want
     """Quasi-random configurations of all joints."""
-    pair_steps: int
+    pair_steps: int = 5
     """Values of each joint of a pair of joints."""
-    pair_rows: int
+    pair_rows: int = 1500  # half a second on a humanoid
     """Configurations of all pairs of joints together."""
-    hull_planes: int
+    hull_planes: int = 96
     """Directions in which a hull is kept where collision shapes are looked at as engines see them."""
-    listed: int
+    listed: int = 8
     """Pairs that one finding names."""
 
 
 class EvidenceSettings(StageConfig):
-    """KV34x to KV36x: agreement of the declared joint with the contact geometry."""
+    """KV34x to KV36x: agreement of the declared joint with the contact geometry.
 
-    same_deg: float
+    One half of the benchmark objects leads to these values, the other half confirms them.
+    """
+
+    same_deg: float = 3.0  # true axes lie within 0.5 deg of a candidate (192 joints)
     """Lines closer than this in direction and in position are one [deg]."""
-    same_distance: float
+    same_distance: float = 0.03  # and within 3 % of the part for 95 of 100 hinges
     """The same for their distance, fraction of the child's diagonal."""
-    far_gap: float
+    far_gap: float = 0.01  # true pairs that do not touch are below 0.5 %; parts elsewhere are several percent away
     """A child counts as detached beyond this gap, fraction of the model's diagonal."""
-    weak_contact: float
+    weak_contact: float = 0.35  # no true parent of 138 with rivals is below 0.7
     """A parent is doubtful below this share of the quality of the best other contact."""
-    unknown_deg: float
+    unknown_deg: float = 5.0  # ten times the largest angle of a true axis
     """Angle to every direction that the two bodies show, beyond which an axis is unexplained [deg]."""
-    askew_deg: float
+    askew_deg: float = 2.0  # 4 of 700 published axes are more than 1 deg off, by 1.3 to 2.6
     """The same, beyond which axes are askew where several are by the same angle [deg]."""
-    askew_spread: float
+    askew_spread: float = 0.5
     """Difference to the middle of these angles up to which they are the same [deg]."""
-    askew_joints: int
+    askew_joints: int = 3
     """Axes of one model from which on they are several."""
-    wrong_deg: float
+    wrong_deg: float = 10.0  # half of what is worth finding
     """The same, beyond which it is an error if another joint is also clearly better [deg]."""
-    clearly_better: float
+    clearly_better: float = 1.0  # with an unexplained direction no true joint comes near
     """Lead in the score from which another joint is clearly better."""
-    unknown_distance: float
+    # two of 139 true hinges are farther, of those moved by 20 % of the part two of three
+    unknown_distance: float = 0.065
     """Distance to every line that the two bodies show, beyond which an axis is unexplained, fraction of the child's
     diagonal."""
-    linkage_distance: float
+    linkage_distance: float = 0.15  # axes of quadrupeds without bearings in their meshes reach 0.14
     """The same in linkages, whose bearings are often left out of the meshes."""
-    better: float
+    better: float = 0.3  # 7 of 118 true joints of furniture trail by more, all by over 0.6; the rest by at most 0.06
     """Lead in the score from which another hinge is worth a warning, outside linkages."""
-    better_slide: float
+    better_slide: float = 0.55  # two true drawers of 47 trail by 0.35 and 0.52, nine of ten wrong directions by 0.65
     """The same for another direction of sliding."""
-    linkage_better: float
+    linkage_better: float = 1.5  # without a bearing in the meshes, 0.5 to 3.5 behind is common
     """The same in linkages, together with `bearing_lead` or with `blocked`."""
-    bearing_score: float
+    bearing_score: float = 0.02  # lines beside the true one reach 0.01
     """Score of a bearing line below which it is chance."""
-    bearing_lead: float
+    bearing_lead: float = 8.0  # a coaxial feature beside the true bearing reaches 5; wrong lines start at 10
     """Score of a bearing on both bodies over that of the declared line from which the bearing contradicts it."""
-    blocked: float
+    blocked: float = 0.5  # collars and overlapping housings block up to a third of good ranges
     """Share of the declared range that the parent blocks, from which a joint of a linkage is doubtful."""
-    neighbour_deg: float
+    # planted tilts are 20 deg off; legs without bearings in their meshes have candidates at 90
+    neighbour_deg: float = 30.0
     """Up to this angle to the declared axis, another line is nearby [deg]."""
-    contact_band: float
+    contact_band: float = 0.01  # clearances of drawers and doors
     """Places this much farther apart than the nearest are in contact at rest, fraction of the child's diagonal."""
-    contact_places: int
+    contact_places: int = 8  # one or two samples say nothing of a contact
     """Samples of a contact from which on it can be told whether half of it opens."""
-    opens: float
+    opens: float = 0.025  # untouched joints that KV342 to KV344 doubt reach 0.019, three planted tilts of four 0.03
     """Half of the contact may open by this much more than about the line that fits best, fraction of the child's
     diagonal."""
-    bearing_opens: float
+    bearing_opens: float = 0.01  # tilted bearings start at 0.012, untouched ones reach 0.004
     """The same where both bodies are round about the line that fits best."""
-    opens_across: float
+    opens_across: float = 0.1  # an untouched switch reaches 0.05, wrong lines 0.12 and more
     """The same where that line is not nearby, outside linkages."""
-    stays_closed: float
+    stays_closed: float = 0.5  # what opens anyway, as doors do from their frames, is held against no line
     """About the line that fits best it opens by at most this share."""
-    widest_turn: float
+    widest_turn: float = 90.0
     """Turns are looked at up to here [deg]."""
-    longest_slide: float
+    longest_slide: float = 0.5
     """Slides are looked at up to here, fraction of the child's diagonal."""
-    type_odds: float
+    type_odds: float = 1.0  # one true joint of 30, four swapped ones of five
     """Log odds from which the other type is worth a warning."""
-    one_sided: float
+    one_sided: float = 0.5  # hinges that are drawn ajar have up to a third on the closing side
     """A range is one-sided if its shorter side is below this fraction of its longer one."""
-    shut: float
+    shut: float = 0.5  # doors and drawers that lead inwards are free over a tenth of their range
     """A permitted side that is free over less than this share of its range leads into the parent."""
-    open: float
+    open: float = 0.8  # and over all of it the other way; the rest is for rough meshes
     """The other side is open from this share on."""
-    panel_inward: float
+    panel_inward: float = 0.5  # closed doors of the benchmark all have a cosine above 0.9 the other way
     """Cosine between the motion of a closed panel and the way into its parent beyond which it opens inwards."""
-    widest_door: float
+    widest_door: float = 170.0  # 2 of 30 doors of the benchmark open to 180 deg, the others to at most 149
     """Opening beyond which that of an upright panel is unusual [deg]."""
-    widest_lid: float
+    widest_lid: float = 190.0  # lids are thrown back onto what stands behind: 181 at most
     """The same for a level panel [deg]."""
-    whole_turn: float
+    whole_turn: float = 359.0  # a stop of one turn can be made, but only knobs of safes have it
     """A range from here on, mostly to one side, needs no limits [deg]."""
-    lopsided: float
+    lopsided: float = 0.2  # wrists that turn by more go as far to both sides
     """A range is mostly to one side if the sum of its ends is above this share of its width."""
-    button_travel: float
+    button_travel: float = 1.25  # buttons that vanish are modelled with up to 1.15
     """Travel of a button over its own length beyond which it is unusual."""
-    button_outward: float
+    button_outward: float = 0.5  # buttons go in
     """How far out on its parent, from 0 in the middle to 1 at the side, a small part may be that moves farther out."""
 
 
 class EngineSettings(StageConfig):
     """KV4xx and KV5xx: behaviour in engines."""
 
-    time_step: float
+    time_step: float = 0.002  # default of MuJoCo
     """Of MuJoCo [s]."""
-    pybullet_time_step: float
+    pybullet_time_step: float = 0.0041666667  # its default, 1/240 s
     """Of PyBullet [s]."""
-    same: float
+    same: float = 1.0e-5  # importers of single precision keep seven digits
     """Difference of an axis, limit, mass or inertia that an importer may make, fraction of the value."""
-    pose_distance: float
+    pose_distance: float = 1.0e-5
     """Difference of a link's position, fraction of the model's size."""
-    pose_deg: float
+    pose_deg: float = 0.01
     """Difference of a link's orientation [deg]."""
-    contact_depth: float
+    contact_depth: float = 0.002  # 2 mm on an object of 1 m: what contacts of engines give way by
     """Overlap that does not count, fraction of the model's size."""
-    sweep_samples: int
+    sweep_samples: int = 25  # an obstacle gets deeper from sample to sample: 4 % of the range finds a board in the way
     """Configurations of a joint from end to end."""
-    servo_frequency: float
+    servo_frequency: float = 10.0  # a tenth of what the time step can follow, fast enough to keep up with the motion
     """Of the servo of a joint, the others held [Hz]; it is critically damped."""
-    servo_margin: float
+    servo_margin: float = 3.0  # enough for couplings between joints, too little to squeeze through a contact
     """How much stronger a servo is than its motion needs."""
-    drive_seconds: float
+    drive_seconds: float = 0.8  # a hand opens a door in such a time
     """From rest to one end [s]."""
-    settle_seconds: float
+    settle_seconds: float = 0.2  # two periods of the servo
     """Waiting at the end [s]."""
-    reach: float
+    reach: float = 0.03
     """Distance from the end at which a joint has arrived, fraction of the range."""
-    tracking: float
+    tracking: float = 0.1
     """Lag behind the commanded motion, fraction of the way."""
-    push: float
+    push: float = 0.2
     """How far beyond its limit a joint is commanded, fraction of the range."""
-    push_seconds: float
+    push_seconds: float = 0.1  # the shortest escape that a peer counts
     """For how long [s]."""
-    escape: float
+    escape: float = 0.05  # a stop of MuJoCo gives way by 1.4 % at this push
     """How far beyond its limit a joint may get, fraction of the range."""
-    sag: float
+    sag: float = 0.05
     """Of a held joint under gravity, fraction of the range."""
-    passive_seconds: float
+    passive_seconds: float = 1.0  # a door falls shut in less
     """Free motion from rest, and holding at rest [s]."""
-    explosion: float
+    explosion: float = 3.0  # a chain's tip cracks like a whip; peers take 3 as well
     """Speed, as a multiple of that of a fall from the height of the model, that is no motion any more."""
-    energy: float
+    energy: float = 0.1  # arms with many joints that fall freely gain up to 7 %; peers warn at 5 %, fail at 50 %
     """Growth of energy, fraction of the largest kinetic energy."""
-    drop: float
+    drop: float = 0.05  # peers: 5 cm, at rest (below 5 cm/s) after 3 s, 1 cm deep at most
     """Height above the floor [m]."""
-    drop_seconds: float
+    drop_seconds: float = 2.0
     """From letting go to rest [s]."""
-    sink: float
+    sink: float = 0.01
     """Depth in the floor [m]."""
-    rest_speed: float
+    rest_speed: float = 0.05
     """Speed of the fastest link that counts as rest [m/s]."""
-    step_seconds: float
+    step_seconds: float = 0.25  # longer motions of several joints are chaotic, with any step
     """Free motion that is repeated with a quarter of the time step [s]."""
-    step_difference: float
+    step_difference: float = 0.5  # blows against a stop differ by up to a third
     """Difference between the two motions, fraction of the larger one."""
 
 
 class AsLoadedSettings(StageConfig):
     """KV8xx: the untouched file in engines with their defaults."""
 
-    overlap: float
+    overlap: float = 0.005  # 5 mm on an object of 1 m: hulls of round parts stand so far in each other
     """Depth of an overlap at rest that is worth a warning, fraction of the model's size."""
-    overlap_length: float
+    overlap_length: float = 0.002  # engines let pressed parts in by up to a millimetre
     """The same, at least [m]."""
-    seconds: float
+    seconds: float = 4.0  # what creeps has crept, what is thrown has arrived
     """For which joints are left alone [s]."""
-    still: float
+    still: float = 0.02
     """How far a joint may go that nothing moves, fraction of its range."""
-    still_angle: float
+    still_angle: float = 0.02
     """The same, at least [rad]."""
-    still_length: float
+    still_length: float = 0.003
     """The same of slides [m]."""
-    torque: float
+    torque: float = 15.0  # a hand at the edge of a door
     """Of a hand at a turning part [N m]."""
-    force: float
+    force: float = 60.0  # a hand at a drawer
     """Of a hand at a sliding part [N]."""
-    turning_speed: float
+    turning_speed: float = 1.5
     """At which a hand turns a part, at least [rad/s]."""
-    sliding_speed: float
+    sliding_speed: float = 0.4
     """The same of slides [m/s]."""
-    reach: float
+    reach: float = 0.95
     """Share of what exact geometry leaves free that a pushed joint has to reach."""
-    touch_angle: float
+    touch_angle: float = 0.02
     """How much of a way that another body ends may be missing [rad]."""
-    touch_length: float
+    touch_length: float = 0.003  # Bullet adds 1 mm to each of two meshes
     """The same of slides [m]."""
-    press: float
+    press: float = 0.01  # limits of engines are springs: a full hand bends those of light parts by any length
     """In which what presses a joint against its limit would bring it up to the hand's speed, at least [s]."""
-    release_seconds: float
+    release_seconds: float = 2.0
     """Motion after a push in which energy is looked at [s]."""
-    energy: float
+    energy: float = 0.2  # an undamped arm of six joints gains 9 % in MuJoCo with its step of 2 ms
     """Growth of energy, fraction of the largest kinetic energy."""
 
 
 class AgreementSettings(StageConfig):
     """KV6xx: agreement of engines."""
 
-    random_rows: int
+    random_rows: int = 32  # poses are smooth functions of the joints: more rows found nothing new
     """Quasi-random configurations beside zero, rest and the ends of every joint."""
-    end_rows: int
+    end_rows: int = 128  # 64 joints have their ends for themselves; the largest known robots have about 60
     """Configurations at most for the ends of the joints; joints share them where there are more."""
-    dynamic_rows: int
+    dynamic_rows: int = 10  # zero, rest and 8 points: a wrong inertia shows in almost every configuration
     """Configurations with mass matrix and gravity torques."""
-    dynamic_numbers: int
+    dynamic_numbers: int = 4000000  # 32 MB per engine
     """Entries of all mass matrices together at most; large models have fewer configurations."""
-    position: float
+    position: float = 1.0e-4  # engines agree to 1e-9; others allow 2 cm, which hides a slipped decimal
     """Distance between two engines' poses of one link that is an error, fraction of the model's size."""
-    angle: float
+    angle: float = 1.0e-4  # the same; others allow 10 deg
     """The same for the angle between them [rad]."""
-    mass_error: float
+    mass_error: float = 1.0e-4  # masses are copied, not computed
     """Relative difference of a mass that is an error."""
-    mass_matrix: float
+    mass_matrix: float = 1.0e-3  # inertias are turned and diagonalised on the way: 1e-7 on all known robots
     """Relative difference of an entry of the mass matrix that is a warning."""
-    gravity: float
+    gravity: float = 1.0e-3
     """Relative difference of a gravity torque that is a warning."""
-    contact_depth: float
+    contact_depth: float = 0.005  # hulls and margins of engines differ by 1 to 3 mm
     """Overlap in one engine that the other should see too [m]."""
-    contact_share: float
+    contact_share: float = 0.005  # and by more on large models, where convex pieces stand for curved shapes
     """The same as a fraction of the model's size; the larger of the two counts."""
 
 
 class ValidationSettings(StageConfig):
     """All families."""
 
-    name: str
-    seed: int
-    budget: BudgetSettings
-    file: FileSettings
-    physics: PhysicsSettings
-    prepare: PrepareSettings
-    geometry: GeometrySettings
-    evidence: EvidenceSettings
-    engines: EngineSettings
-    as_loaded: AsLoadedSettings
-    agreement: AgreementSettings
-    task: TaskSettings
+    name: str = "validation"
+    """Of the settings; results state it."""
+    seed: int = 0
+    """Of whatever is sampled."""
+    budget: BudgetSettings = section()
+    file: FileSettings = section()
+    physics: PhysicsSettings = section()
+    prepare: PrepareSettings = section()
+    geometry: GeometrySettings = section()
+    evidence: EvidenceSettings = section()
+    engines: EngineSettings = section()
+    as_loaded: AsLoadedSettings = section()
+    agreement: AgreementSettings = section()
+    task: TaskSettings = section()
 
 
 def load_settings(name_or_path: str | Path = "validation", **overrides: Any) -> ValidationSettings:
@@ -479,4 +487,4 @@ def load_settings(name_or_path: str | Path = "validation", **overrides: Any) -> 
     Raises:
         ConfigError: The name is unknown, the YAML is malformed, or a value does not fit.
     """
-    return validated(ValidationSettings, {**load_values(name_or_path), **overrides}, name_or_path)
+    return load(ValidationSettings, name_or_path, **overrides)

@@ -166,7 +166,9 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         for stage in stages:
             place = place.get(stage, {})
         if name not in place:
-            raise ConfigError(f"The configuration {config.name} has no field {dotted}. Compare it with default.yaml.")
+            raise ConfigError(
+                f"The configuration {config.name} has no field {dotted}. Compare it with kinematify.config.Config."
+            )
         place[name] = value
     try:
         return Config.model_validate(values)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from kinematify.config.sources import LanguageModelConfig
+    from kinematify.config.services import LanguageModelConfig
     from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.providers.job import Job
     from kinematify.generate.providers.prompt import Prompt
