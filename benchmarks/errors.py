@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from benchmarks.error_pictures import ShownJoint, draw_error
+from benchmarks.tables import CLOSE_LINE, is_right
 from kinematify.errors import OutputError
 from kinematify.evaluation.axis_metrics import axis_angle
-from kinematify.evaluation.job import CLEAN, erased_item, given_input
+from kinematify.evaluation.job import CLEAN, degraded, erased_item, shown_parts
 from kinematify.evaluation.record import document, replace_text
 from kinematify.evaluation.run import jobs_of
-from kinematify.evaluation.summary import CLOSE_ANGLE, CLOSE_LINE, is_right
+from kinematify.evaluation.summary import CLOSE_ANGLE
 from kinematify.pipeline import infer
 
 if TYPE_CHECKING:
@@ -154,7 +155,9 @@ class _Seen:
 
 def _seen(job: Job) -> _Seen:
     erased = erased_item(job.item, job.condition)
-    inference = infer(given_input(job, erased).assembly, config=job.config)
+    assembly = shown_parts(erased)
+    given = degraded(job, assembly)
+    inference = infer(assembly if given is None else given.assembly, config=job.config)
     place = {name: index for index, name in enumerate(inference.assembly.names)}
     index = {number: place[name] for number, name in enumerate(erased.truth.part_names)}
     return _Seen(

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinematify.assembly.erase import ErasedModel
 from kinematify.evaluation.axis_metrics import opening_sign
-from kinematify.evaluation.job import Degraded, predicted, score_erased, shown_parts
+from kinematify.evaluation.job import predicted, score_erased, shown_parts
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer
 from kinematify.pipeline.stages import choose_joints
@@ -54,7 +54,7 @@ class Mechanism:
 
     def scores(self, answer: Inference) -> dict[str, JointScore]:
         """Compare the joints of an answer about the same parts with the truth, by the part that moves."""
-        prediction, _ = predicted(self.erased, Degraded(assembly=self.inference.assembly), answer)
+        prediction, _ = predicted(self.erased, answer)
         return {joint.child: joint for joint in score_erased(self.erased, prediction).joints}
 
     def wrong(self, answer: Inference) -> frozenset[str]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from benchmarks.studies.refine import sentence
 from benchmarks.study import load_study_report
+from benchmarks.tables import condition_group, median_seconds
 from kinematify.errors import InputError
-from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
 from kinematify.evaluation.record import load_report, number, replace_text, table
 from kinematify.evaluation.run import RESULTS
-from kinematify.evaluation.summary import CLOSE_ANGLE, condition_group, median_seconds, summarise
+from kinematify.evaluation.summary import CLOSE_ANGLE, summarise
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

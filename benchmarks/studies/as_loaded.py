@@ -31,8 +31,8 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.record import grouped, table
-from kinematify.evaluation.truth import score_blueprint
 from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families

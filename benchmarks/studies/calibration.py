@@ -13,10 +13,10 @@ import numpy as np
 from pydantic import Field
 
 from benchmarks.study import Options, Study, explained
+from benchmarks.tables import is_right
 from kinematify.batch.corpus import write_corpus
 from kinematify.evaluation.record import table
 from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
-from kinematify.evaluation.summary import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -21,14 +21,15 @@ import yaml
 from pydantic import Field, TypeAdapter
 
 from benchmarks.study import Options, Study, explained
+from benchmarks.tables import median_seconds
 from kinematify import evaluation
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.job import JobResult
+from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.record import grouped, number, table
-from kinematify.evaluation.summary import median_seconds, summarise
-from kinematify.evaluation.truth import score_blueprint
+from kinematify.evaluation.summary import summarise
 from kinematify.generate.procedural.request import from_text
 from kinematify.model.output import MODEL_FILE
 from kinematify.pipeline import infer

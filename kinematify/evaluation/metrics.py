@@ -7,22 +7,25 @@ counts 90 degrees, a wrong type and a limit overlap of 0. Line and pivot distanc
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kinematify.evaluation.axis_metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
 from kinematify.evaluation.tree_metrics import TreeDistance, parent_errors, root_of, tree_edit_distance, without_nodes
+from kinematify.generate.procedural.truth import ground_truth
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.truth import GroundTruth, TrueJoint
-    from kinematify.evaluation.prediction import Prediction
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
+    from kinematify.topology.tree import KinematicTree
 
 MISSING_ANGLE = 90.0
 """What a joint without a predicted axis counts [deg]."""
@@ -245,3 +248,49 @@ def _opens(joint: TrueJoint, guess: JointEstimate | None) -> bool | None:
 def _loose(kind: str) -> str:
     """Type with continuous and revolute taken as one."""
     return JointType.REVOLUTE if kind == JointType.CONTINUOUS else kind
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Prediction:
+    """A predicted kinematic tree."""
+
+    parents: Mapping[int, int]
+    """Part -> parent part, -1 for the root. Parts that the method set aside are missing; empty if it failed."""
+    joints: tuple[JointEstimate, ...]
+
+
+NOTHING_PREDICTED = Prediction(parents={}, joints=())
+"""What a run that failed is scored as: every joint is missing."""
+
+
+def prediction_of(
+    tree: KinematicTree, estimates: Sequence[JointEstimate], names: Sequence[str], part_index: Mapping[str, int]
+) -> Prediction:
+    """Translate an inferred tree and its joints to the parts of the ground truth.
+
+    Args:
+        tree: The best tree; node i is the part `names[i]`.
+        estimates: One joint per tree edge.
+        names: Part names in the order of the tree's nodes.
+        part_index: Part name -> index of the part in the ground truth.
+    """
+    index = [part_index[name] for name in names]
+    parents = {index[node]: -1 if parent < 0 else index[parent] for node, parent in enumerate(tree.parents)}
+    return Prediction(
+        parents=parents,
+        joints=tuple(
+            replace(estimate, parent=index[estimate.parent], child=index[estimate.child]) for estimate in estimates
+        ),
+    )
+
+
+def score_blueprint(blueprint: Blueprint, inference: Inference) -> ObjectScore:
+    """Compare an inference from the parts of a blueprint with the joints that it was built with."""
+    truth = ground_truth(blueprint)
+    index = {name: number for number, name in enumerate(truth.part_names)}
+    return score_object(
+        truth,
+        prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index),
+        centroids=[part.centroid for part in blueprint.parts],
+        diagonal=blueprint.assembly.diagonal,
+    )

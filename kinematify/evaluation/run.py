@@ -14,7 +14,7 @@ from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
+from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, matching
 from kinematify.evaluation.job import CLEAN, INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.record import Header, Report, new_header
 from kinematify.evaluation.sources import NOT_INFERRING, code_version
@@ -174,32 +174,14 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         raise ConfigError(f"The changes {dict(changes)} do not fit configuration {config.name}: {error}.") from error
 
 
-def selected_objects(request: BenchmarkRequest) -> list[BenchObject]:
-    """Objects that a request asks for.
-
-    Raises:
-        InputError: There is no such data or object.
-    """
-    return list(matching(find_objects(request.data), request.only))
-
-
-def selected_conditions(request: BenchmarkRequest) -> list[Condition]:
-    """Conditions that a request asks for.
-
-    Raises:
-        InputError: There is no such condition.
-    """
-    return [_condition(name) for name in request.conditions]
-
-
 def jobs_of(request: BenchmarkRequest) -> list[Job]:
     """One job per configuration, input, object and condition of a request.
 
     Raises:
         InputError: There is no such data, object or condition.
     """
-    objects = selected_objects(request)
-    conditions = selected_conditions(request)
+    objects = matching(find_objects(request.data), request.only)
+    conditions = [_condition(name) for name in request.conditions]
     return [
         Job(
             item=item,
@@ -237,7 +219,7 @@ def _header(request: BenchmarkRequest, results: Sequence[JobResult], code: str) 
     return new_header(
         "bench",
         workers=request.workers,
-        seeds=[condition.seed for condition in selected_conditions(request)],
+        seeds=[_condition(name).seed for name in request.conditions],
         configuration={
             "objects": len({result.object for result in results}),
             "conditions": list(request.conditions),

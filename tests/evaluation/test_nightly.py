@@ -20,10 +20,9 @@ from lxml import etree
 from kinematify.cli.app import run as run_command
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.nightly.compare import Class, compare
-from kinematify.evaluation.nightly.record import Problem, Run
-from kinematify.evaluation.nightly.run import NightRequest, run_night
+from kinematify.evaluation.nightly.run import NightRequest, run_night, write_smoke_objects
+from kinematify.evaluation.nightly.runs import Problem, Run
 from kinematify.evaluation.nightly.settings import NightlySettings, load_nightly
-from kinematify.evaluation.nightly.smoke import write_smoke_objects
 from kinematify.evaluation.nightly.store import accept, load_nights, locked
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, MORE_IS_BETTER, OPENED, UNITS
+from kinematify.evaluation.nightly.runs import AS_LOADED, MORE_IS_BETTER, OPENED, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kinematify.evaluation.nightly.record import Run, RunKey
+    from kinematify.evaluation.nightly.runs import Run, RunKey
     from kinematify.evaluation.nightly.settings import NightlySettings
 
 

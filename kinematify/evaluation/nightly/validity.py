@@ -15,9 +15,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject
 from kinematify.evaluation.job import erased_item, imported, shown_parts
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
-from kinematify.evaluation.nightly.record import Problem, Run
-from kinematify.evaluation.nightly.scenario import PULLED
+from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED, PULLED, Problem, Run
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model

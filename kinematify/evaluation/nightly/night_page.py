@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.compare import QUALITY, Class
+from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.store import MODELS
 from kinematify.evaluation.nightly.validity import page_name
 from kinematify.validation.check import FAMILIES
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from kinematify.evaluation.nightly.compare import Change
-    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.nightly.store import Night
     from kinematify.validation.formats.html_frame import Cell
 
