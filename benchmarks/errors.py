@@ -15,8 +15,8 @@ import numpy as np
 from benchmarks.error_pictures import ShownJoint, draw_error
 from benchmarks.tables import CLOSE_LINE, is_right
 from kinematify.errors import OutputError
-from kinematify.evaluation.axis_metrics import axis_angle
 from kinematify.evaluation.job import CLEAN, degraded, erased_item, shown_parts
+from kinematify.evaluation.metrics import axis_angle
 from kinematify.evaluation.record import document, replace_text
 from kinematify.evaluation.run import jobs_of
 from kinematify.evaluation.summary import CLOSE_ANGLE

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.erase import ErasedModel
-from kinematify.evaluation.axis_metrics import opening_sign
 from kinematify.evaluation.job import predicted, score_erased, shown_parts
+from kinematify.evaluation.metrics import opening_sign
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer
 from kinematify.pipeline.stages import choose_joints

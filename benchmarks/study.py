@@ -20,8 +20,7 @@ from benchmarks import studies
 from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import Pool
 from kinematify.errors import InputError, OutputError
-from kinematify.evaluation.record import Report, load_report, new_header, write_report
-from kinematify.evaluation.sources import code_version
+from kinematify.evaluation.record import Report, code_version, load_report, new_header, write_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

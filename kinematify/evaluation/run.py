@@ -16,8 +16,7 @@ from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
 from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, matching
 from kinematify.evaluation.job import CLEAN, INFER, Job, JobResult, run_job, unscored
-from kinematify.evaluation.record import Header, Report, new_header
-from kinematify.evaluation.sources import NOT_INFERRING, code_version
+from kinematify.evaluation.record import NOT_INFERRING, Header, Report, code_version, new_header
 from kinematify.evaluation.summary import summaries
 
 if TYPE_CHECKING:

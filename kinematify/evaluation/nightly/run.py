@@ -46,9 +46,8 @@ from kinematify.evaluation.nightly.store import (
 )
 from kinematify.evaluation.nightly.trend_page import trend_page
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
-from kinematify.evaluation.record import replace_text
+from kinematify.evaluation.record import code_version, replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
-from kinematify.evaluation.sources import code_version
 from kinematify.generate.procedural.request import from_text
 from kinematify.pipeline.generate import write_blueprint
 

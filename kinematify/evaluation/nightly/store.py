@@ -25,8 +25,7 @@ from pydantic import ValidationError
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.nightly.compare import CHANGES
 from kinematify.evaluation.nightly.runs import RUN, SCHEMA
-from kinematify.evaluation.record import replace_text
-from kinematify.evaluation.sources import git_commit
+from kinematify.evaluation.record import git_commit, replace_text
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
