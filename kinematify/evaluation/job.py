@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 import importlib
 import json
-import resource
-import sys
 import time
 from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol
@@ -17,6 +15,7 @@ from kinematify.batch.processes import sentence
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import NOTHING_PREDICTED, ObjectScore, Prediction, prediction_of, score_object
+from kinematify.pipeline.clock import peak_mb
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
@@ -224,14 +223,8 @@ def _result(job: Job, status: Status, message: str, answer: _Answer, score: Obje
         message=message,
         seconds=answer.seconds,
         stage_seconds=answer.stage_seconds,
-        peak_mb=None if status in ("timeout", "crash") else _peak_mb(),
+        peak_mb=None if status in ("timeout", "crash") else peak_mb(),
         score=score,
         input=job.input,
         cuts_mended=answer.cuts_mended,
     )
-
-
-def _peak_mb() -> float:
-    """Peak resident memory of this process [MB]; the kernel counts kB on Linux and bytes on macOS."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / 2**20 if sys.platform == "darwin" else peak / 2**10

@@ -1,8 +1,8 @@
 """Scores of one predicted mechanism against the ground truth, per joint and per object (paper IV-A).
 
 Axes and places are those of the world frame of the input. What is missing or wrong is counted, never dropped: a true
-joint whose parent-child pair is not in the predicted tree counts 90 degrees, a wrong type and a limit overlap of 0. Line
-and pivot distances exist only where both axes do.
+joint whose parent-child pair is not in the predicted tree counts 90 degrees, a wrong type and a limit overlap of 0.
+Line and pivot distances exist only where both axes do.
 """
 
 from __future__ import annotations
@@ -239,15 +239,12 @@ def _matches(
     by_pair: dict[tuple[int, int], list[TrueJoint]] = defaultdict(list)
     for joint in joints:
         by_pair[joint.parent, joint.child].append(joint)
-    return {
-        min(rivals, key=lambda joint: _misfit(joint, predicted[pair])).name: predicted[pair]
-        for pair, rivals in by_pair.items()
-        if pair in predicted
-    }
 
+    def misfit(joint: TrueJoint) -> tuple[bool, float]:
+        guess = predicted[joint.parent, joint.child]
+        return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
 
-def _misfit(joint: TrueJoint, guess: JointEstimate) -> tuple[bool, float]:
-    return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
+    return {min(rivals, key=misfit).name: predicted[pair] for pair, rivals in by_pair.items() if pair in predicted}
 
 
 def _confidence(joint: TrueJoint, prediction: Prediction) -> float | None:
@@ -277,7 +274,11 @@ def _joint_score(
         gripper=gripper,
         angle_deg=_angle(joint, guess),
         angle_given_type_deg=_angle_given_type(joint, guess),
-        line_m=_line(joint, guess, near) if guess is not None and placed else None,
+        line_m=axis_line_distance(
+            true_axis=joint.axis, true_pivot=joint.pivot, axis=guess.axis, pivot=guess.pivot, near=near
+        )
+        if guess is not None and placed
+        else None,
         pivot_m=float(np.linalg.norm(joint.pivot - guess.pivot)) if guess is not None and placed else None,
         limit_iou=_limit_iou(joint, guess),
         opens=_opens(joint, guess),
@@ -297,12 +298,6 @@ def _angle_given_type(joint: TrueJoint, guess: JointEstimate | None) -> float:
     axes = (item.axis for item in guess.alternatives if _loose(item.kind) == _loose(joint.kind))
     best = next(axes, None)
     return _angle(joint, guess) if best is None else axis_angle(joint.axis, best)
-
-
-def _line(joint: TrueJoint, guess: JointEstimate, near: FloatArray) -> float:
-    return axis_line_distance(
-        true_axis=joint.axis, true_pivot=joint.pivot, axis=guess.axis, pivot=guess.pivot, near=near
-    )
 
 
 def _limit_iou(joint: TrueJoint, guess: JointEstimate | None) -> float:

@@ -32,9 +32,7 @@ if TYPE_CHECKING:
 _PACKAGE = Path(__file__).resolve().parents[1]
 NOT_INFERRING = (
     "batch", "cli", "configs", "envs", "generate", "manipulation", "refinement", "simulation", "validation", "view",
-    "vision",
-    "evaluation/nightly",
-    *(f"evaluation/{name}.py" for name in ("paper", "record", "regression", "run", "summary")),
+    "vision", "evaluation/nightly", "evaluation/record.py", "evaluation/run.py", "evaluation/summary.py",
 )  # fmt: skip
 """What neither infers nor scores; configurations count by their values."""
 

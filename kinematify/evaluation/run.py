@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
 
 RESULT = TypeAdapter(JobResult)
 RESULTS = TypeAdapter(tuple[JobResult, ...])
-
-DEFAULT_TIMEOUT = 900.0
-"""Wall time for one object [s]; H1 is allowed 40 s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,22 +48,6 @@ class Variant:
 
 
 DEFAULT_VARIANTS = (Variant(label="default", config="default"),)
-PAPER_VARIANTS = (
-    Variant(label="paper", config="paper"),
-    Variant(label="paper without MCTS", config="paper", changes={"topology.mode": "bfs"}),
-    Variant(
-        label="paper without DW-CAVL",
-        config="paper",
-        changes={"cavl.consistency_weight": 0.0, "cavl.pivot_weight": 0.0},
-    ),
-)
-"""The paper as written and its two ablations: breadth-first search for the tree, and no anchor term."""
-DEFAULT_ABLATION = (
-    *DEFAULT_VARIANTS,
-    Variant(label="default without MCTS", config="default", changes={"topology.mode": "bfs"}),
-    Variant(label="default with DW-CAVL", config="default", changes={"joints.method": "cavl"}),
-)
-"""The same questions asked of the default, which has no DW-CAVL: with it in place of all evidence on joints."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,8 +70,8 @@ class BenchmarkRequest:
     fresh: bool = False
     """Forget what the work folder holds; otherwise finished jobs are not run again."""
     workers: int = field(default_factory=lambda: os.cpu_count() or 1)
-    timeout: float = DEFAULT_TIMEOUT
-    """Wall time for one object under one condition [s]."""
+    timeout: float = 900.0
+    """Wall time for one object under one condition [s]; H1 is allowed 40 s."""
     infer: str = INFER
     """Function under test, as ``module:name``; tests give a quick one."""
 
@@ -118,17 +99,22 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
     pool = Pool(folder=request.work_folder, workers=request.workers, fresh=request.fresh)
     pool = pool if progress is None else replace(pool, progress=progress)
     torch_too = ["kinematify.paper.joints"] if any(job.config.joints.method == "cavl" for job in jobs) else []
-    how: _How = {
-        "ledger": "jobs",
-        "timeout": request.timeout,
-        "said": lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
-        "preload": ("kinematify.pipeline", "kinematify.evaluation.job", *torch_too),
-    }
-    answers = pool.run({key: partial(run_job, job) for key, job in by_key.items()}, RESULT, **how)
+
+    def answered(pool: Pool, tasks: Mapping[str, Callable[[], JobResult]]) -> dict[str, JobResult | TaskFailure]:
+        return pool.run(
+            tasks,
+            RESULT,
+            ledger="jobs",
+            timeout=request.timeout,
+            said=lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
+            preload=("kinematify.pipeline", "kinematify.evaluation.job", *torch_too),
+        )
+
+    answers = answered(pool, {key: partial(run_job, job) for key, job in by_key.items()})
     # A job that crashed or ran out of time gets a second process, which only scores the missing answer.
     failed = {key: answer for key, answer in answers.items() if isinstance(answer, TaskFailure)}
     again = {key + _SCORED: partial(run_job, by_key[key], failure) for key, failure in failed.items()}
-    scored = replace(pool, fresh=False).run(again, RESULT, **how) if again else {}
+    scored = answered(replace(pool, fresh=False), again) if again else {}
     results: dict[str, JobResult] = {}
     for key, job in by_key.items():
         answer = scored.get(key + _SCORED, answers[key])
@@ -136,13 +122,6 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
     # Two labels can name the same configuration, which is run once.
     ordered = tuple(replace(results[key], variant=job.variant) for key, job in keyed)
     return Report(header=_header(request, ordered, code), records=ordered, summary={"groups": summaries(ordered)})
-
-
-class _How(TypedDict):
-    ledger: str
-    timeout: float
-    said: Callable[[str, JobResult | TaskFailure], str]
-    preload: tuple[str, ...]
 
 
 _SCORED = " scored"

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.paper import ABLATION
+from benchmarks.paper import ABLATION, DEFAULT_ABLATION, PAPER_VARIANTS
 from benchmarks.tables import benchmark_blocks
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
@@ -22,8 +22,6 @@ from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.record import Report, load_report, write_report
 from kinematify.evaluation.run import (
-    DEFAULT_ABLATION,
-    PAPER_VARIANTS,
     RESULTS,
     Variant,
     changed,

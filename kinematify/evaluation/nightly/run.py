@@ -55,11 +55,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kinematify.batch.pool import Progress
+    from kinematify.config.nightly import NightlySettings
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.nightly.compare import Change
     from kinematify.evaluation.nightly.runs import Run
-    from kinematify.evaluation.nightly.settings import NightlySettings
     from kinematify.evaluation.record import Report
 
 _ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are done, on the benchmark
@@ -110,7 +110,8 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
     """
     with locked(request.out):
         nights, warnings = load_nights(request.out)
-        baseline = _baseline(request, nights)
+        name = request.baseline or accepted(request.out)
+        baseline = None if name is None else chosen(nights, name, request.out)
         objects = _objects(request)
         work = _Work(request, objects)
         state = open_state(request.out, work.plan, {path.name for path in request.out.iterdir()})
@@ -118,7 +119,9 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
         if night is None:
             night = _new_night(work, state, nights, baseline, progress)
             nights = (*nights, night)
-        _finish(request, nights)
+        # The trends, then nothing of what was only needed to resume; all of it can be repeated after a kill.
+        replace_text(request.out / PAGE_FILE, trend_page(nights[-request.settings.shown_nights :]))
+        shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
         none = () if baseline is not None else (_NO_BASELINE,)
         return NightResult(night=night, place=request.out / night.name, notices=(*warnings, *none))
 
@@ -127,11 +130,6 @@ _NO_BASELINE = (
     "No night is accepted as the baseline, so only the night before was compared with. When one is good, accept it: "
     "kinematify nightly --accept NIGHT"
 )
-
-
-def _baseline(request: NightRequest, nights: Sequence[Night]) -> Night | None:
-    name = request.baseline or accepted(request.out)
-    return None if name is None else chosen(nights, name, request.out)
 
 
 def _objects(request: NightRequest) -> list[BenchObject]:
@@ -285,12 +283,6 @@ def _facts(work: _Work, state: State, report: Report[JobResult]) -> dict[str, An
         "objects": len(work.objects),
         "settings": work.settings.model_dump(mode="json"),
     }
-
-
-def _finish(request: NightRequest, nights: Sequence[Night]) -> None:
-    """Draw the trends, then forget what was only needed to resume; all of it can be repeated after a kill."""
-    replace_text(request.out / PAGE_FILE, trend_page(nights[-request.settings.shown_nights :]))
-    shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
 
 
 def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:

@@ -22,11 +22,11 @@ from kinematify.manipulation.request import PULL
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kinematify.config.nightly import NightlySettings
     from kinematify.config.validation import ValidationSettings
     from kinematify.evaluation.datasets import BenchObject, Condition
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.metrics import JointScore, ObjectScore
-    from kinematify.evaluation.nightly.settings import NightlySettings
 
 SCHEMA = 1
 """Number of the layout of `night.json` and `runs.jsonl`; raised when a reader of the old one would go wrong."""
@@ -137,7 +137,6 @@ LESS_IS_BETTER = ("angle_deg", "line_m", "ted")
 MORE_IS_BETTER = ("types", "root", "limit_iou", "opens")
 AS_LOADED, OPENED = "as_loaded", "opened"
 """Metrics of a validation: shares of joints that move as loaded, and of ranges that an arm opens."""
-METRICS = (*LESS_IS_BETTER, *MORE_IS_BETTER)
 UNITS = {"angle_deg": "deg", "line_m": "m"}
 
 
@@ -160,14 +159,13 @@ def accuracy_run(result: JobResult, scenario: str, settings: NightlySettings) ->
         status=result.status,
         message=result.message,
         seconds=round(result.seconds, 3),
-        values={metric: _rounded(values.get(metric)) for metric in METRICS},
+        # Six digits behind the point: what is below is the noise of numeric libraries, and would only make diffs.
+        values={
+            metric: None if (value := values.get(metric)) is None else round(value, 6)
+            for metric in (*LESS_IS_BETTER, *MORE_IS_BETTER)
+        },
         problems=tuple(_problems(result.score, settings)) if result.score is not None else (),
     )
-
-
-def _rounded(value: float | None) -> float | None:
-    """Six digits behind the point: what is below is the noise of numeric libraries, and would only make diffs."""
-    return None if value is None else round(value, 6)
 
 
 def _problems(score: ObjectScore, settings: NightlySettings) -> Iterator[Problem]:

@@ -70,26 +70,28 @@ def trend_page(nights: Sequence[Night]) -> str:
         f'<div class="charts">{_charts(history, None)}</div>',  # only nights over the same runs are joined by a line
         "<h2>Objects</h2>",
         _objects(history, names),
-        *(_object(history, name) for name in names),
+        *(
+            f'<details id="object-{text(name)}"><summary>{text(name)}</summary>'
+            f'<div class="charts">{_charts(history, name)}</div></details>'
+            for name in names
+        ),
     ]
     return page(f"kinematify nightly: {len(nights)} nights", body)
 
 
 def _nights(nights: Sequence[Night]) -> str:
-    rows: list[tuple[Cell, ...]] = []
-    for night in reversed(nights):
-        header, counted = night.header, night.header["counts"]
-        rows.append(
-            (
-                f'<a href="{text(night.name)}/index.html">{text(night.name)}</a>',
-                badge(header["gate"]),
-                str(header["objects"]),
-                str(header["runs"]),
-                *(str(counted.get(kind, 0)) for kind in _CLASSES),
-                f"{header['seconds'] / 60.0:.1f}",
-                text(header["processor"]),
-            )
+    rows: list[tuple[Cell, ...]] = [
+        (
+            f'<a href="{text(night.name)}/index.html">{text(night.name)}</a>',
+            badge(night.header["gate"]),
+            str(night.header["objects"]),
+            str(night.header["runs"]),
+            *(str(night.header["counts"].get(kind, 0)) for kind in _CLASSES),
+            f"{night.header['seconds'] / 60.0:.1f}",
+            text(night.header["processor"]),
         )
+        for night in reversed(nights)
+    ]
     headings = ("night", "gate", "objects", "runs", *_CLASSES, "min", "machine")
     classes = ("", "", *["number"] * (len(_CLASSES) + 3), "")
     return table(headings, rows, name="nights", classes=classes)
@@ -100,9 +102,8 @@ _CLASSES = ("new", "worse", "newly skipped", "still failing", "fixed", "better",
 
 def _measures() -> list[tuple[str, str, Callable[[Sequence[Run]], float | None]]]:
     """Title, unit and value of everything that is drawn."""
-    metrics = [(title, _metric_value(metric)) for metric, title in METRIC_TITLES.items()]
     return [
-        *((title, "", value) for title, value in metrics),
+        *((title, "", _metric_value(metric)) for metric, title in METRIC_TITLES.items()),
         ("inference", "time [s]", _seconds("accuracy")),
         ("findings, published model", "errors and warnings", _findings("truth")),
         ("findings, inferred model", "errors and warnings", _findings("inferred")),
@@ -211,10 +212,3 @@ def _trend_cell(history: _History, name: str, pick: Callable[[Sequence[Run]], fl
         return ""
     part = _series(points)[-1]
     return f"{sparkline([(p.night, p.value) for p in part])} {part[-1].value:.4g}", f"{part[-1].value:.6g}"
-
-
-def _object(history: _History, name: str) -> str:
-    return (
-        f'<details id="object-{text(name)}"><summary>{text(name)}</summary>'
-        f'<div class="charts">{_charts(history, name)}</div></details>'
-    )

@@ -30,7 +30,6 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from kinematify.config.validation import ValidationSettings
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.report import ValidationReport
 
@@ -82,11 +81,13 @@ def run_validation(validation: NightValidation) -> Run:
         if validation.source == "inferred":
             urdf, package_dirs = _inferred(validation, Path(folder)), ()
         selected = [check for check in CHECKS if any(fnmatchcase(check, word) for word in validation.checks)]
+        settings = load_settings(validation.validation_config)
+        patient = settings.budget.model_copy(update={"seconds": validation.budget})
         start = time.perf_counter()
         report = validate(
             urdf,
             package_dirs=tuple(map(str, package_dirs)),
-            settings=_patient(load_settings(validation.validation_config), validation.budget),
+            settings=settings.model_copy(update={"budget": patient}),
             selected=selected,
             engines=validation.engines,
             task=TaskRequest(kind=PULL) if validation.source == PULLED else None,
@@ -118,11 +119,6 @@ def _inferred(validation: NightValidation, folder: Path) -> Path:
     parts = shown_parts(erased_item(validation.item, CONDITIONS[0]))
     inference = imported(validation.infer)(parts, config=load_config(validation.infer_config))
     return write_model(simulable_model(inference.model, inference.config).robot, folder)
-
-
-def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings:
-    budget = settings.budget.model_copy(update={"seconds": seconds})
-    return settings.model_copy(update={"budget": budget})
 
 
 def kept(validation: NightValidation, report: ValidationReport, seconds: float, selected: Collection[str]) -> Run:
