@@ -11,7 +11,7 @@ import click
 import pytest
 
 import kinematify
-from benchmarks.command import study_command
+from benchmarks.study import study_command
 from kinematify.cli.app import COMMANDS, cli
 from tests.places import ROOT
 

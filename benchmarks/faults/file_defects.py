@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.faults.base import link_part, words
-from benchmarks.faults.fault import Fault, Planted
+from benchmarks.faults.fault import Fault, Planted, link_part, words
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import rigid_groups
 from kinematify.validation.finding import Blame

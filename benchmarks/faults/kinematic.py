@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.faults.base import link_part, words
-from benchmarks.faults.fault import Fault, Planted
+from benchmarks.faults.fault import Fault, Planted, link_part, words
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 from kinematify.robot.transforms import rotation_about, rpy_of

@@ -62,13 +62,13 @@ def _study(word: str) -> click.Command | None:
 
     if not has_benchmarks() and (word in (*SETS, PIP_DATA) or Path(word).exists() or "/" in word):
         return None
-    study: click.Command | None = benchmark_module("command", f"The study {word}").study_command(word)
+    study: click.Command | None = benchmark_module("study", f"The study {word}").study_command(word)
     return study
 
 
 def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
     if asked:
-        benchmark_module("command", "The list of studies").print_studies()
+        benchmark_module("study", "The list of studies").print_studies()
         context.exit()
 
 
