@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Planted:
+class PlantedFault:
     """Where a fault was planted."""
 
     how: str
@@ -38,9 +38,9 @@ class Planted:
     """Links of which one may be named instead; empty where the whole model is wrong and any name is right."""
 
 
-JointPlanter = Callable[["_Element", "Joint", "Robot", "np.random.Generator"], Planted | None]
+JointPlanter = Callable[["_Element", "Joint", "Robot", "np.random.Generator"], PlantedFault | None]
 """Changes the robot element in place; None where the fault would change nothing, so that there is none."""
-LinkPlanter = Callable[["_Element", "Link", "Robot", "np.random.Generator"], Planted | None]
+LinkPlanter = Callable[["_Element", "Link", "Robot", "np.random.Generator"], PlantedFault | None]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from benchmarks.faults.fault import BaseModel, Fault, Planted
+    from benchmarks.faults.fault import BaseModel, Fault, PlantedFault
     from kinematify.robot.robot import Joint, Link, Robot
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport
@@ -34,7 +34,7 @@ class Mutant:
 
     model: str
     fault: str
-    planted: Planted
+    planted: PlantedFault
     urdf: str
 
     @property
@@ -93,7 +93,7 @@ def _plant(
     place: Joint | Link,
     model: Robot,
     random: np.random.Generator,
-) -> Planted | None:
+) -> PlantedFault | None:
     planter = fault.plant_joint or fault.plant_link
     if planter is None:
         raise ValueError(f"The fault {fault.name} has no way of being planted.")
@@ -146,7 +146,7 @@ def _fact(finding: Finding) -> Fact:
     }
 
 
-def judge(fault: Fault, planted: Planted, found: Sequence[Fact], untouched: Sequence[Fact]) -> Outcome:
+def judge(fault: Fault, planted: PlantedFault, found: Sequence[Fact], untouched: Sequence[Fact]) -> Outcome:
     """Compare the findings of a mutant with those of the model that it was made from."""
     known = {_key(fact) for fact in untouched}
     new = [fact for fact in found if _key(fact) not in known]
@@ -169,7 +169,7 @@ def _key(fact: Fact) -> tuple[Any, ...]:
     return fact["check"], _counts(fact), fact["joint"], fact["link"], tuple(fact["pair"] or ())
 
 
-def _names(fact: Fact, planted: Planted) -> bool:
+def _names(fact: Fact, planted: PlantedFault) -> bool:
     """The joint itself, or without a joint one of the links; any place where the whole model is wrong."""
     if not planted.links:
         return True

@@ -60,7 +60,7 @@ def measure(options: CalibrationOptions, work: Work) -> Measured:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Judged:
+class ScoredJoint:
     """A joint with what was said of it."""
 
     object: str
@@ -104,10 +104,10 @@ class Reliability:
     """Of equal width."""
 
 
-def judged_joints(results: Iterable[JobResult]) -> list[Judged]:
+def judged_joints(results: Iterable[JobResult]) -> list[ScoredJoint]:
     """All joints with a confidence; those that have none stand for no answer."""
     return [
-        Judged(
+        ScoredJoint(
             object=result.object,
             category=result.category,
             joint=joint.joint,
@@ -121,7 +121,7 @@ def judged_joints(results: Iterable[JobResult]) -> list[Judged]:
     ]
 
 
-def reliability(joints: Sequence[Judged]) -> Reliability:
+def reliability(joints: Sequence[ScoredJoint]) -> Reliability:
     """Compare what was said with what was right.
 
     Args:
