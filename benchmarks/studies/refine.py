@@ -68,7 +68,7 @@ class RefineOptions(Options):
     tiers: Annotated[tuple[str, ...], among(TIERS)] = Field(
         ("geometry",), description="Some of geometry, engines, task."
     )
-    level: bool = Field(default=False, description="PlantedJoint joints score as the best candidate does.")
+    level: bool = Field(default=False, description="Planted joints score as the best candidate does.")
     inferred: tuple[str, ...] = Field((), description="Objects refined as they are inferred as well; * for all.")
     seed: int = Field(0, description="Draws the joints.")
     config: str = Field("default", description="Configuration of the inference.")
@@ -283,4 +283,4 @@ def _misses(records: Sequence[Record]) -> str:
     return "\n".join(lines) or "None."
 
 
-STUDY = Study(title="PlantedJoint wrong joints and refinement", options=RefineOptions, measure=measure, report=report)
+STUDY = Study(title="Planted wrong joints and refinement", options=RefineOptions, measure=measure, report=report)
