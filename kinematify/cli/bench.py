@@ -184,10 +184,10 @@ def command(
     everyday2. Without it robots and everyday objects are measured. The sets are looked for in the folder that the
     variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
 
-    The report is written as Markdown and JSON, with all its tables in a checkout of the repository alone; --degrade,
-    --errors and --results-page need one too. A run that was interrupted goes on where it stopped; a change of the
+    The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
-    --baseline do.
+    --baseline do. Studies, --ablation, --baseline, --degrade, --errors, --results-page and all tables but the first
+    need a checkout of the repository.
 
     --degrade measures the same objects once more with every fault that meshes have in practice: remeshed on a grid of
     1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or in each other,
