@@ -6,7 +6,7 @@ was cut is scored as one where the answer fixes the pieces to each other. Length
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import fast_simplification
@@ -16,9 +16,10 @@ from trimesh.intersections import slice_faces_plane
 
 from kinematify.assembly.assemble import simplified
 from kinematify.assembly.part import Assembly, Part
-from kinematify.evaluation.job import Degraded
+from kinematify.evaluation.metrics import Prediction
 from kinematify.geometry.hull import convex_hull, thickened
 from kinematify.geometry.surface import PartSurface
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.weld import welded
 
 if TYPE_CHECKING:
@@ -167,6 +168,54 @@ def _without_covered(k: int, assembly: Assembly, surfaces: list[PartSurface], re
     return replace(part, faces=np.delete(part.faces, gone, axis=0))
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DegradedParts:
+    """Parts that an inference is given instead of an object's own."""
+
+    assembly: Assembly
+    pieces: Mapping[str, str] = field(default_factory=dict)
+    """Name of a piece that was cut off -> the part that it was cut from."""
+
+    def rejoined(self, prediction: Prediction, index: Mapping[str, int]) -> tuple[Prediction, int]:
+        """Return a prediction over the parts before they were cut, and how many cuts came out as fixed."""
+        return without_pieces(prediction, {index[piece]: index[whole] for piece, whole in self.pieces.items()})
+
+
+def without_pieces(prediction: Prediction, pieces: Mapping[int, int]) -> tuple[Prediction, int]:
+    """A prediction in which pieces that are fixed to each other are one part again.
+
+    Args:
+        prediction: Over all parts.
+        pieces: Index of a piece -> that of the part that it was cut from.
+
+    Returns:
+        The prediction over what is left, and how many cuts came out as fixed.
+    """
+    whole = {part: part for part in prediction.parents}
+    fixed = {joint.child for joint in prediction.joints if joint.kind == JointType.FIXED}
+    for child, parent in prediction.parents.items():
+        if child in fixed and pieces.get(child, child) == pieces.get(parent, parent):
+            kept, gone = sorted((_whole(whole, child), _whole(whole, parent)), key=lambda part: part in pieces)
+            whole[gone] = kept
+    parents = {
+        _whole(whole, part): -1 if above < 0 else _whole(whole, above)
+        for part, above in prediction.parents.items()
+        if above < 0 or _whole(whole, part) != _whole(whole, above)
+    }
+    joints = tuple(
+        replace(joint, parent=_whole(whole, joint.parent), child=_whole(whole, joint.child))
+        for joint in prediction.joints
+        if _whole(whole, joint.parent) != _whole(whole, joint.child)
+    )
+    return Prediction(parents=parents, joints=joints), sum(part != above for part, above in whole.items())
+
+
+def _whole(whole: Mapping[int, int], part: int) -> int:
+    while whole[part] != part:
+        part = whole[part]
+    return part
+
+
 DEGRADATIONS: Mapping[str, Degrade] = {
     "voxels-300": voxels(300),
     "voxels-150": voxels(150),
@@ -189,7 +238,7 @@ DEGRADED = (*DEGRADATIONS, *OVER_SEGMENTED)
 """Rough input that the inference is measured on."""
 
 
-def degraded(name: str, assembly: Assembly, config: Config, *, seed: int) -> Degraded:
+def degraded(name: str, assembly: Assembly, config: Config, *, seed: int) -> DegradedParts:
     """Degrade an object, as the benchmark asks for it.
 
     Args:
@@ -204,10 +253,10 @@ def degraded(name: str, assembly: Assembly, config: Config, *, seed: int) -> Deg
     rough = DEGRADATIONS[name](assembly, rng)
     most = config.assembly.max_part_faces
     parts = [part if len(part.faces) <= most else simplified(part, config.assembly) for part in rough.parts]
-    return Degraded(assembly=with_parts(assembly, parts))
+    return DegradedParts(assembly=with_parts(assembly, parts))
 
 
-def _cut(assembly: Assembly, count: int, rng: Generator) -> Degraded:
+def _cut(assembly: Assembly, count: int, rng: Generator) -> DegradedParts:
     """One part is cut by planes across its longest direction, tilted a little, at places that keep all pieces large."""
     chosen = int(rng.integers(len(assembly.parts)))
     part = assembly.parts[chosen]
@@ -218,7 +267,7 @@ def _cut(assembly: Assembly, count: int, rng: Generator) -> Degraded:
     bands = cut_in_bands(part, direction, (low + shares * (high - low)).tolist())
     pieces = [piece for piece in bands if piece.area > 1e-3 * part.area]
     if len(pieces) < count:
-        return Degraded(assembly=assembly)
+        return DegradedParts(assembly=assembly)
     return _in_pieces(assembly, chosen, pieces)
 
 
@@ -251,14 +300,14 @@ def _half(part: Part, normal: FloatArray, offset: float) -> Part:
     return replace(part, vertices=vertices, faces=faces)
 
 
-def _in_pieces(assembly: Assembly, chosen: int, pieces: Sequence[Part]) -> Degraded:
+def _in_pieces(assembly: Assembly, chosen: int, pieces: Sequence[Part]) -> DegradedParts:
     """The assembly with one part in pieces; the largest one keeps its name."""
     name = assembly.parts[chosen].name
     first, *others = sorted(pieces, key=lambda piece: -piece.area)
     named = [replace(piece, name=f"{name}{_MARK}{number}") for number, piece in enumerate(others, start=1)]
     parts = list(assembly.parts)
     parts[chosen] = first
-    return Degraded(assembly=with_parts(assembly, [*parts, *named]), pieces={piece.name: name for piece in named})
+    return DegradedParts(assembly=with_parts(assembly, [*parts, *named]), pieces={piece.name: name for piece in named})
 
 
 def with_parts(assembly: Assembly, parts: list[Part]) -> Assembly:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kinematify.evaluation.job import CLEAN
+from kinematify.evaluation.metrics import CLOSE_ANGLE
 from kinematify.evaluation.record import grouped, number, table
-from kinematify.evaluation.summary import CLOSE_ANGLE, summarise
+from kinematify.evaluation.summary import summarise
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -14,11 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.paper import PAPER_VARIANTS
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.evaluation.job import score_erased, shown_parts
-from kinematify.evaluation.prediction import Prediction
-from kinematify.evaluation.run import PAPER_VARIANTS, changed
+from kinematify.evaluation.metrics import Prediction
+from kinematify.evaluation.run import changed
 from kinematify.geometry.surface import part_surfaces
 from kinematify.pipeline import infer
 from kinematify.pipeline.stages import find_trees

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.erase import ErasedModel
-from kinematify.evaluation.axis_metrics import opening_sign
-from kinematify.evaluation.job import Degraded, predicted, score_erased, shown_parts
+from kinematify.evaluation.job import predicted, score_erased, shown_parts
+from kinematify.evaluation.metrics import opening_sign
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer
 from kinematify.pipeline.stages import choose_joints
@@ -43,7 +43,7 @@ RANGE = "range"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Mechanism:
+class TrueMechanism:
     """An object whose tree and joints are the true ones."""
 
     erased: ErasedModel
@@ -54,7 +54,7 @@ class Mechanism:
 
     def scores(self, answer: Inference) -> dict[str, JointScore]:
         """Compare the joints of an answer about the same parts with the truth, by the part that moves."""
-        prediction, _ = predicted(self.erased, Degraded(assembly=self.inference.assembly), answer)
+        prediction, _ = predicted(self.erased, answer)
         return {joint.child: joint for joint in score_erased(self.erased, prediction).joints}
 
     def wrong(self, answer: Inference) -> frozenset[str]:
@@ -74,7 +74,7 @@ class Mechanism:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Planted:
+class PlantedJoint:
     """A mechanism with one wrong joint."""
 
     fault: str
@@ -84,7 +84,7 @@ class Planted:
     inference: Inference
 
 
-def true_mechanism(erased: ErasedModel, config: Config) -> Mechanism | None:
+def true_mechanism(erased: ErasedModel, config: Config) -> TrueMechanism | None:
     """Return an object with its true joints; None where they are no tree of single joints, or fewer than two parts."""
     truth = erased.truth
     edges = Counter((joint.parent, joint.child) for joint in truth.joints)
@@ -95,7 +95,7 @@ def true_mechanism(erased: ErasedModel, config: Config) -> Mechanism | None:
     chosen = choose_joints(inference.assembly, inference.graph, tree, inference.bearings, config)
     true = {joint.child: joint for joint in truth.joints}
     joints = tuple(_true_joint(joint, true[joint.child]) for joint in chosen)
-    return Mechanism(
+    return TrueMechanism(
         erased=erased, inference=replace(inference, trees=(tree, *inference.trees), joints=joints), chosen=chosen
     )
 
@@ -132,8 +132,8 @@ def _agree(one: JointCandidate, other: JointCandidate) -> bool:
 
 
 def planted_faults(
-    mechanism: Mechanism, seed: int, faults: tuple[str, ...] = FAULTS, *, level: bool = False
-) -> Iterator[Planted]:
+    mechanism: TrueMechanism, seed: int, faults: tuple[str, ...] = FAULTS, *, level: bool = False
+) -> Iterator[PlantedJoint]:
     """Plant each fault once, in a joint drawn from the seed; a fault that fits no joint is left out.
 
     Args:
@@ -153,8 +153,8 @@ def planted_faults(
 
 
 def _planted(
-    mechanism: Mechanism, index: int, fault: str, random: np.random.Generator, *, level: bool
-) -> Planted | None:
+    mechanism: TrueMechanism, index: int, fault: str, random: np.random.Generator, *, level: bool
+) -> PlantedJoint | None:
     inference = mechanism.inference
     joint, part = inference.joints[index], inference.assembly.parts[inference.joints[index].child]
     tree = inference.trees[0]
@@ -183,7 +183,7 @@ def _planted(
     by_child = {item.child: item for item in (*inference.joints[:index], wrong, *inference.joints[index + 1 :])}
     joints = tuple(by_child[child] for _, child in tree.edges())
     trees = (tree,) if fault == PARENT else (tree, *inference.trees[1:])
-    return Planted(fault=fault, part=part.name, inference=replace(inference, trees=trees, joints=joints))
+    return PlantedJoint(fault=fault, part=part.name, inference=replace(inference, trees=trees, joints=joints))
 
 
 def _believed(joint: JointEstimate) -> JointEstimate:
@@ -234,7 +234,7 @@ def _other_parent(
     return KinematicTree(parents=parents), replace(joint, parent=parent)
 
 
-def _second_best(mechanism: Mechanism, index: int) -> JointEstimate | None:
+def _second_best(mechanism: TrueMechanism, index: int) -> JointEstimate | None:
     """Return what inference would have chosen next, each with the score of the other; None where it errs anyway."""
     inference, chosen = mechanism.inference, mechanism.chosen[index]
     name = inference.assembly.names[chosen.child]

@@ -1,6 +1,7 @@
 """A study answers one question by measuring: data -> records, each made in a process of its own -> a report.
 
-Every module of `benchmarks.studies` is one and defines `STUDY`; `kinematify bench NAME` runs it.
+Every module of `benchmarks.studies` is one and defines `STUDY`; `kinematify bench NAME` runs it, with options that are
+read off the study's own type.
 """
 
 from __future__ import annotations
@@ -8,25 +9,30 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib
+import os
 import pkgutil
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
+import click
+from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from benchmarks import studies
 from kinematify.batch.engine import TaskFailure
-from kinematify.batch.pool import Pool
-from kinematify.errors import InputError, OutputError
-from kinematify.evaluation.record import Report, load_report, new_header, write_report
-from kinematify.evaluation.sources import code_version
+from kinematify.batch.pool import WORK_FOLDER, Pool
+from kinematify.cli.answer import json_option, write_answer
+from kinematify.cli.progress import progress_reporter
+from kinematify.cli.table import format_table
+from kinematify.errors import ExitStatus, InputError, OutputError
+from kinematify.evaluation.record import Report, as_json, code_version, load_report, new_header, write_report
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from matplotlib.figure import Figure
+    from pydantic.fields import FieldInfo
 
 Record = dict[str, Any]
 """What was measured of one thing, as plain JSON values."""
@@ -238,3 +244,82 @@ def among(known: Iterable[str]) -> AfterValidator:
 def explained(doc: str | None) -> str:
     """Return what the docstring of a study's module says below its question."""
     return (doc or "").partition("\n\n")[2].strip()
+
+
+def study_command(name: str) -> click.Command | None:
+    """Return the command of a study, None if there is none of this name."""
+    if name not in study_names():
+        return None
+    study = load_study(name)
+    options = [_option(field, info) for field, info in study.options.model_fields.items()]
+
+    @click.option("-o", "--out", type=click.Path(path_type=Path), default=Path("results"), help="Report folder.")
+    @click.option("--name", "stem", metavar="NAME", help="File name of the report, without suffix.")
+    @click.option("--work", type=click.Path(path_type=Path), help="Folder of what has ended, for a run that goes on.")
+    @click.option("--jobs", type=click.IntRange(min=1), help="Processes at a time; as many as there are cores.")
+    @click.option("--fresh", is_flag=True, help="Measure all again.")
+    @click.option("--tables", is_flag=True, help="Measure nothing; write the report anew from its JSON.")
+    @json_option
+    def run(**values: Any) -> int:
+        return _run(name, study, values)
+
+    command = click.command(name, help=f"{study.title}.\n\n{study_text(name)}")(run)
+    command.params = [*options, *command.params]
+    return command
+
+
+def print_studies() -> None:
+    """Print name and question of every study."""
+    rows = [(name, study_text(name).partition("\n")[0]) for name in study_names()]
+    click.echo(format_table(("study", "what it answers"), rows))
+
+
+def _option(name: str, info: FieldInfo) -> click.Option:
+    words = [f"--{name.replace('_', '-')}", name]
+    if info.annotation is bool:
+        return click.Option(words, is_flag=True, help=info.description)
+    default = info.default
+    shown = ",".join(map(str, default)) if isinstance(default, tuple) else default
+    note = f"{info.description}" + (f"  [default: {shown}]" if shown not in (None, "") else "")
+    return click.Option(words, metavar="LIST" if isinstance(default, tuple) else "VALUE", help=note)
+
+
+def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
+    stem = values["stem"] or file_stem(name)
+    if values["tables"]:
+        report = load_report(values["out"] / f"{stem}.json", RECORDS)
+    else:
+        options = _options(study, values)
+        with progress_reporter() as progress:
+            pool = Pool(
+                folder=values["work"] or WORK_FOLDER,
+                workers=values["jobs"] or os.cpu_count() or 1,
+                fresh=values["fresh"],
+                progress=progress,
+            )
+            report = run_study(name, options, pool)
+    written = write_study(report, values["out"], stem)
+    faults = study.faults(report)
+    if values["json_to"]:
+        write_answer(as_json(report, RECORDS), values["json_to"])
+    if values["json_to"] != "-":
+        click.echo(f"{len(report.records)} records. Report: {', '.join(map(str, written))}")
+    for fault in faults:
+        click.echo(fault, err=True)
+    return ExitStatus.FAILURES if faults else ExitStatus.FINE
+
+
+def _options(study: Study[Any], values: dict[str, Any]) -> Options:
+    """What was typed, as the study's own type; lists stand there separated by commas."""
+    given = {}
+    for name, info in study.options.model_fields.items():
+        value = values[name]
+        if value is not None:
+            given[name] = tuple(filter(None, value.split(","))) if isinstance(info.default, tuple) else value
+    try:
+        options: Options = study.options(**given)
+    except ValidationError as error:
+        first = error.errors()[0]
+        option = str(first["loc"][0]).replace("_", "-")
+        raise click.UsageError(f"--{option} {first['input']!r} does not fit: {first['msg']}.") from error
+    return options

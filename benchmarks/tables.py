@@ -4,21 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from statistics import fmean
+from statistics import fmean, median
 from typing import TYPE_CHECKING
 
 from benchmarks.degrade_tables import degradation_sections, degraded
-from kinematify.evaluation.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
+from kinematify.evaluation.metrics import CLOSE_ANGLE
 from kinematify.evaluation.record import grouped, number, table
-from kinematify.evaluation.summary import (
-    CLOSE_ANGLE,
-    Summary,
-    condition_group,
-    median_seconds,
-    motion_rates,
-    summarise,
-    summarise_types,
-)
+from kinematify.evaluation.summary import Summary, motion_rates, summarise, summarise_types
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -27,6 +20,8 @@ if TYPE_CHECKING:
     from kinematify.evaluation.metrics import JointScore
     from kinematify.evaluation.record import Report
 
+CLOSE_LINE = 0.05
+"""An axis line counts as found within this share of the object's diagonal."""
 READING = """\
 Every number is the mean over an object's joints, then over its conditions, then over objects. A joint whose
 parent-child pair is not in the predicted tree counts 90 deg (`matched` leaves those out), a wrong type and a limit
@@ -70,6 +65,28 @@ COLUMNS = (
     Column(title="time [s]", metric="seconds", digits=1),
     Column(title="peak [MB]", metric="peak_mb", digits=0),
 )
+
+
+def is_right(joint: JointScore, diagonal: float) -> bool:
+    """Whether parent, type and axis are right.
+
+    Args:
+        joint: Against the truth.
+        diagonal: Of the object [m].
+    """
+    close = joint.angle_deg <= CLOSE_ANGLE and (joint.line_m is None or joint.line_m <= CLOSE_LINE * diagonal)
+    return joint.matched and joint.type_right and close
+
+
+def median_seconds(results: Iterable[JobResult]) -> float | None:
+    """Return the median over objects of the mean inference time [s], None without results."""
+    objects = grouped(results, by=lambda result: result.object).values()
+    return median(fmean(run.seconds for run in runs) for runs in objects) if objects else None
+
+
+def condition_group(name: str) -> str:
+    """Return the column that a condition belongs to: seeds of the random configuration share one."""
+    return "random" if name.startswith("random") else name
 
 
 def benchmark_blocks(report: Report[JobResult], baseline: Report[JobResult] | None = None) -> list[str]:

@@ -1,4 +1,4 @@
-"""Cabinets on disk for tests of the benchmark, whose names must not reach an inference, and requests that measure them."""
+"""Cabinets on disk for tests of the benchmark, whose names must not reach an inference, and requests for them."""
 
 from __future__ import annotations
 

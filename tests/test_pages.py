@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kinematify.config.nightly import load_nightly
 from kinematify.evaluation.nightly.compare import compare
-from kinematify.evaluation.nightly.pages.night import night_page, problem_anchor
-from kinematify.evaluation.nightly.pages.trends import trend_page
-from kinematify.evaluation.nightly.record import Problem, Run
-from kinematify.evaluation.nightly.settings import load_nightly
+from kinematify.evaluation.nightly.night_page import night_page, problem_anchor
+from kinematify.evaluation.nightly.runs import Problem, Run
 from kinematify.evaluation.nightly.store import Night, earlier_runs
+from kinematify.evaluation.nightly.trend_page import trend_page
 from kinematify.robot.read import read_robot
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.view_data import view_data

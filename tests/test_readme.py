@@ -11,8 +11,8 @@ import click
 import pytest
 
 import kinematify
+from benchmarks.study import study_command
 from kinematify.cli.app import COMMANDS, cli
-from kinematify.cli.study import study_command
 from tests.places import ROOT
 
 PAGES = ("README.md", "CONTRIBUTING.md", *sorted(f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import trimesh
 from lxml import etree
 
-from benchmarks.faults.base import write_base
+from benchmarks.faults.fault import write_base
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
 

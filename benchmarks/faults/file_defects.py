@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.faults.base import link_part, words
-from benchmarks.faults.fault import Fault, Planted
+from benchmarks.faults.fault import Fault, PlantedFault, link_part, words
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import rigid_groups
 from kinematify.validation.finding import Blame
@@ -41,11 +40,11 @@ def _joint(robot: _Element, joint: Joint) -> _Element:
     return next(item for item in robot.findall("joint") if item.get("name") == joint.name)
 
 
-def _at_joint(joint: Joint, how: str) -> Planted:
-    return Planted(how=how, joint=joint.name, links=(joint.child,))
+def _at_joint(joint: Joint, how: str) -> PlantedFault:
+    return PlantedFault(how=how, joint=joint.name, links=(joint.child,))
 
 
-def _zero_axis(robot: _Element, joint: Joint, model: Robot, random: Random) -> Planted:
+def _zero_axis(robot: _Element, joint: Joint, model: Robot, random: Random) -> PlantedFault:
     element = _joint(robot, joint)
     axis = element.find("axis")
     if axis is None:
@@ -55,7 +54,7 @@ def _zero_axis(robot: _Element, joint: Joint, model: Robot, random: Random) -> P
     return _at_joint(joint, "axis 0 0 0")
 
 
-def _swapped_limits(robot: _Element, joint: Joint, model: Robot, random: Random) -> Planted | None:
+def _swapped_limits(robot: _Element, joint: Joint, model: Robot, random: Random) -> PlantedFault | None:
     limit = _joint(robot, joint).find("limit")
     if not np.isfinite(joint.upper) or limit is None:
         return None
@@ -64,7 +63,7 @@ def _swapped_limits(robot: _Element, joint: Joint, model: Robot, random: Random)
     return _at_joint(joint, f"limits {joint.upper:.3g} to {joint.lower:.3g}")
 
 
-def _degrees(robot: _Element, joint: Joint, model: Robot, random: Random) -> Planted | None:
+def _degrees(robot: _Element, joint: Joint, model: Robot, random: Random) -> PlantedFault | None:
     limit = _joint(robot, joint).find("limit")
     if joint.kind is not JointType.REVOLUTE or limit is None:
         return None
@@ -80,23 +79,23 @@ def _link(robot: _Element, link: Link) -> _Element:
     return next(item for item in robot.findall("link") if item.get("name") == link.name)
 
 
-def _at_link(link: Link, model: Robot, how: str) -> Planted:
+def _at_link(link: Link, model: Robot, how: str) -> PlantedFault:
     above = model.joint_above.get(link.name)
-    return Planted(how=how, joint=None if above is None else above.name, links=(link.name,))
+    return PlantedFault(how=how, joint=None if above is None else above.name, links=(link.name,))
 
 
-def _units_of_link(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _units_of_link(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     factor = 1000.0 if random.random() < 0.5 else 0.001
     if not _scaled([_link(robot, link)], factor):
         return None
     return _at_link(link, model, f"meshes scaled by {factor:g}")
 
 
-def _units_of_all(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _units_of_all(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     factor = 1000.0 if random.random() < 0.5 else 0.001
     if not _scaled(robot.findall("link"), factor):
         return None
-    return Planted(how=f"all meshes scaled by {factor:g}", joint=None, links=())
+    return PlantedFault(how=f"all meshes scaled by {factor:g}", joint=None, links=())
 
 
 def _scaled(links: Sequence[_Element], factor: float) -> int:
@@ -107,7 +106,7 @@ def _scaled(links: Sequence[_Element], factor: float) -> int:
     return len(meshes)
 
 
-def _inertia(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _inertia(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     inertia = _link(robot, link).find("inertial/inertia")
     if inertia is None:
         return None
@@ -124,7 +123,7 @@ def _inertia(robot: _Element, link: Link, model: Robot, random: Random) -> Plant
     return _at_link(link, model, f"inertia: {how}")
 
 
-def _mass(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _mass(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     mass = _link(robot, link).find("inertial/mass")
     if mass is None:
         return None
@@ -134,7 +133,7 @@ def _mass(robot: _Element, link: Link, model: Robot, random: Random) -> Planted 
     return _at_link(link, model, f"mass {value:.3g} kg instead of {before:.3g} kg")
 
 
-def _missing_mesh(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _missing_mesh(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     meshes = list(_link(robot, link).iter("mesh"))
     if not meshes:
         return None
@@ -142,7 +141,7 @@ def _missing_mesh(robot: _Element, link: Link, model: Robot, random: Random) -> 
     return _at_link(link, model, "a mesh file is missing")
 
 
-def _missing_collision(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _missing_collision(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     element = _link(robot, link)
     shapes = element.findall("collision")
     for shape in shapes:
@@ -150,7 +149,7 @@ def _missing_collision(robot: _Element, link: Link, model: Robot, random: Random
     return _at_link(link, model, "no collision geometry") if shapes else None
 
 
-def _offset_collision(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _offset_collision(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     way = random.normal(size=3)
     shift = OFFSET_SHARE * link_part(link).diagonal * way / np.linalg.norm(way)
     shapes = _link(robot, link).findall("collision")
@@ -168,7 +167,7 @@ def _move_origin(element: _Element, shift: np.ndarray) -> None:
     origin.set("xyz", words(before + shift))
 
 
-def _mass_outside(robot: _Element, link: Link, model: Robot, random: Random) -> Planted | None:
+def _mass_outside(robot: _Element, link: Link, model: Robot, random: Random) -> PlantedFault | None:
     inertial = _link(robot, link).find("inertial")
     if inertial is None:
         return None

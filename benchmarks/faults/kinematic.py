@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchmarks.faults.base import link_part, words
-from benchmarks.faults.fault import Fault, Planted
+from benchmarks.faults.fault import Fault, PlantedFault, link_part, words
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 from kinematify.robot.transforms import rotation_about, rpy_of
@@ -96,8 +95,8 @@ def _child(element: _Element, tag: str) -> _Element:
     return found
 
 
-def _planted(joint: Joint, how: str) -> Planted:
-    return Planted(how=how, joint=joint.name, links=(joint.child,))
+def _planted(joint: Joint, how: str) -> PlantedFault:
+    return PlantedFault(how=how, joint=joint.name, links=(joint.child,))
 
 
 def _across(axis: FloatArray, random: np.random.Generator) -> FloatArray:
@@ -107,13 +106,13 @@ def _across(axis: FloatArray, random: np.random.Generator) -> FloatArray:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
-def _turn_axis_20(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted:
+def _turn_axis_20(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault:
     axis = rotation_about(_across(joint.axis, random), np.radians(20.0)) @ joint.axis
     _child(_element(robot, joint), "axis").set("xyz", words(axis))
     return _planted(joint, "axis turned by 20 deg")
 
 
-def _turn_axis_90(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted:
+def _turn_axis_90(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault:
     """About another axis of the joint's own frame, as when x and z are confused; at random for a slanted axis."""
     across = [row for row in np.eye(3) if abs(row @ joint.axis) < 1e-6]
     about = across[random.integers(len(across))] if len(across) > 1 else _across(joint.axis, random)
@@ -121,7 +120,7 @@ def _turn_axis_90(robot: _Element, joint: Joint, model: Robot, random: np.random
     return _planted(joint, "axis turned by 90 deg")
 
 
-def _move_pivot(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
+def _move_pivot(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault | None:
     if not joint.kind.turns:
         return None  # the place of a slide's axis means nothing
     shift = PIVOT_SHARE * _Model(model).size(joint) * _across(joint.axis, random)
@@ -141,7 +140,7 @@ def _shift_frame(robot: _Element, link: str, shift: FloatArray) -> None:
         origin.set("xyz", words(before + shift))
 
 
-def _swap_type(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted:
+def _swap_type(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault:
     """The range becomes one of about the same motion at the middle of the part."""
     lever = 0.5 * _Model(model).size(joint)
     element = _element(robot, joint)
@@ -163,7 +162,7 @@ def _set_limits(element: _Element, lower: float, upper: float) -> None:
         limit.set(name, limit.get(name) or "10")
 
 
-def _double_range(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
+def _double_range(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault | None:
     """A range that begins at zero keeps its beginning; others grow about their middle."""
     if not np.isfinite(joint.upper):
         return None
@@ -176,7 +175,7 @@ def _double_range(robot: _Element, joint: Joint, model: Robot, random: np.random
     return _planted(joint, f"range of {width:.3g} doubled")
 
 
-def _flip(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
+def _flip(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault | None:
     """Only where the range is one-sided: turning the axis of a symmetric one round changes nothing."""
     short, long = sorted((abs(joint.lower), abs(joint.upper)))
     if not np.isfinite(long) or short >= ONE_SIDED * long or joint.lower > 0.0 or joint.upper < 0.0:
@@ -185,7 +184,7 @@ def _flip(robot: _Element, joint: Joint, model: Robot, random: np.random.Generat
     return _planted(joint, "direction flipped")
 
 
-def _change_parent(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> Planted | None:
+def _change_parent(robot: _Element, joint: Joint, model: Robot, random: np.random.Generator) -> PlantedFault | None:
     known = _Model(model)
     carried = known.carried(joint)
     own = known.body_of[joint.parent]

@@ -1,25 +1,29 @@
-"""Which faults are planted where: evenly over kinds and objects, the same for the same seed."""
+"""Which faults are planted in which models, and what of each a report has found."""
 
 from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchmarks.faults.base import write_model
+from benchmarks.faults.fault import write_model
 from benchmarks.faults.file_defects import FILE_DEFECTS, moving_links
 from benchmarks.faults.kinematic import KINEMATIC_FAULTS, movable_joints
+from kinematify.validation.checks import CHECKS
+from kinematify.validation.finding import Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from lxml.etree import _Element
 
-    from benchmarks.faults.base import BaseModel
-    from benchmarks.faults.fault import Fault, Planted
+    from benchmarks.faults.fault import BaseModel, Fault, PlantedFault
     from kinematify.robot.robot import Joint, Link, Robot
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.report import ValidationReport
 
 FAULTS: tuple[Fault, ...] = KINEMATIC_FAULTS + FILE_DEFECTS
 
@@ -30,7 +34,7 @@ class Mutant:
 
     model: str
     fault: str
-    planted: Planted
+    planted: PlantedFault
     urdf: str
 
     @property
@@ -89,8 +93,87 @@ def _plant(
     place: Joint | Link,
     model: Robot,
     random: np.random.Generator,
-) -> Planted | None:
+) -> PlantedFault | None:
     planter = fault.plant_joint or fault.plant_link
     if planter is None:
         raise ValueError(f"The fault {fault.name} has no way of being planted.")
     return planter(robot, place, model, random)  # type: ignore[arg-type]
+
+
+Fact = dict[str, Any]
+"""What is kept of a finding: check, severity, blame, joint, link, pair."""
+
+
+class Verdict(StrEnum):
+    """What became of a planted fault."""
+
+    FOUND = "found"
+    """A new warning or error names the joint or link and puts the right blame."""
+    NOTED = "only as a note"
+    """A new note does: the shapes suggest otherwise, and no fact agrees."""
+    ELSEWHERE = "elsewhere"
+    """There are new warnings or errors, but they name something else or blame something else."""
+    MISSED = "missed"
+    """Nothing new was found."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """A mutant and what was said of it."""
+
+    verdict: Verdict
+    right: tuple[Fact, ...]
+    other: tuple[Fact, ...]
+
+
+def facts(report: ValidationReport) -> list[Fact]:
+    """Warnings and errors of a report, and the notes that hold something against a joint, short."""
+    return [
+        _fact(finding)
+        for finding in report.findings
+        if finding.severity is not Severity.NOTE or CHECKS[finding.check].opinion
+    ]
+
+
+def _fact(finding: Finding) -> Fact:
+    return {
+        "check": finding.check,
+        "severity": finding.severity.value,
+        "blame": finding.blame.value,
+        "joint": finding.joint,
+        "link": finding.link,
+        "pair": list(finding.pair) if finding.pair else None,
+    }
+
+
+def judge(fault: Fault, planted: PlantedFault, found: Sequence[Fact], untouched: Sequence[Fact]) -> Outcome:
+    """Compare the findings of a mutant with those of the model that it was made from."""
+    known = {_key(fact) for fact in untouched}
+    new = [fact for fact in found if _key(fact) not in known]
+    right = [fact for fact in new if _names(fact, planted) and fact["blame"] in fault.blames]
+    other = tuple(fact for fact in new if fact not in right)
+    if any(_counts(fact) for fact in right):
+        verdict = Verdict.FOUND
+    elif right:
+        verdict = Verdict.NOTED
+    else:
+        verdict = Verdict.ELSEWHERE if any(map(_counts, other)) else Verdict.MISSED
+    return Outcome(verdict=verdict, right=tuple(right), other=other)
+
+
+def _counts(fact: Fact) -> bool:
+    return bool(fact["severity"] != Severity.NOTE)
+
+
+def _key(fact: Fact) -> tuple[Any, ...]:
+    return fact["check"], _counts(fact), fact["joint"], fact["link"], tuple(fact["pair"] or ())
+
+
+def _names(fact: Fact, planted: PlantedFault) -> bool:
+    """The joint itself, or without a joint one of the links; any place where the whole model is wrong."""
+    if not planted.links:
+        return True
+    if fact["joint"] is not None and planted.joint is not None:
+        return bool(fact["joint"] == planted.joint)
+    named: Collection[str] = [name for name in (fact["link"], *(fact["pair"] or ())) if name]
+    return any(link in named for link in planted.links)

@@ -56,7 +56,7 @@ _REUSE = 50  # objects of one worker: libraries leak
 
 
 @dataclass(frozen=True, kw_only=True)
-class Source:
+class CorpusSource:
     """One object to measure; small and picklable."""
 
     origin: str
@@ -70,22 +70,22 @@ class Source:
     """With pieces broken off."""
 
 
-def generated_sources(rounds: int, composed: int) -> list[Source]:
+def generated_sources(rounds: int, composed: int) -> list[CorpusSource]:
     """`rounds` objects of every family and recipe, each modelled in another way, and `composed` random mechanisms."""
     named = [(FAMILY if name in FAMILIES else DESCRIBED, name) for name in sorted(known_families())]
     named += [(PROGRAMMED, name) for name in sorted(OBJECTS)]
-    found = [Source(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
-    return found + [Source(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
+    found = [CorpusSource(origin=origin, name=name, number=n) for n in range(rounds) for origin, name in named]
+    return found + [CorpusSource(origin=COMPOSED, name="composed", number=n) for n in range(composed)]
 
 
-def real_sources(folder: Path) -> list[Source]:
+def real_sources(folder: Path) -> list[CorpusSource]:
     """Every object of a folder of objects, or of a folder of such folders.
 
     Raises:
         InputError: There is none.
     """
     found = [
-        Source(origin=path.parent.parent.name, name=path.parent.name, folder=path.parent)
+        CorpusSource(origin=path.parent.parent.name, name=path.parent.name, folder=path.parent)
         for path in sorted([*folder.glob("*/model.urdf"), *folder.glob("*/*/model.urdf")])
     ]
     if not found:
@@ -93,7 +93,7 @@ def real_sources(folder: Path) -> list[Source]:
     return found
 
 
-def broken_sources(sources: Sequence[Source]) -> list[Source]:
+def broken_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
     """Of every real object, and of two of every recipe, the same with pieces broken off."""
     return [
         replace(source, broken=True)
@@ -102,7 +102,7 @@ def broken_sources(sources: Sequence[Source]) -> list[Source]:
     ]
 
 
-def tree_sources(sources: Sequence[Source]) -> list[Source]:
+def tree_sources(sources: Sequence[CorpusSource]) -> list[CorpusSource]:
     """Those whose contacts the edges of the tree are fitted to: whole ones, and two of every family and recipe."""
     return [
         source
@@ -112,7 +112,7 @@ def tree_sources(sources: Sequence[Source]) -> list[Source]:
 
 
 def gather_examples(
-    sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
+    sources: Sequence[CorpusSource], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
 ) -> list[Example]:
     """Measure objects, or read what an earlier run has measured of them.
 
@@ -131,7 +131,7 @@ def gather_examples(
 
 
 def gather_trees(
-    sources: Sequence[Source], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
+    sources: Sequence[CorpusSource], cache: Path, *, seed: int, workers: int, progress: Callable[[str, float], None]
 ) -> list[TreeExample]:
     """The contact graphs of objects and their true trees; arguments as of `gather_examples`.
 
@@ -143,8 +143,8 @@ def gather_trees(
 
 
 def _gathered(
-    measure: Callable[[Source, Path, int], None],
-    sources: Sequence[Source],
+    measure: Callable[[CorpusSource, Path, int], None],
+    sources: Sequence[CorpusSource],
     cache: Path,
     *,
     seed: int,
@@ -168,7 +168,7 @@ def _gathered(
     return paths
 
 
-def _key(source: Source, seed: int) -> str:
+def _key(source: CorpusSource, seed: int) -> str:
     """Hash of what the measurements depend on, but not of the code: an emptied folder measures anew."""
     files = [] if source.folder is None else sorted(source.folder.rglob("*.*"))
     sizes = [(path.name, path.stat().st_size) for path in files]
@@ -176,7 +176,7 @@ def _key(source: Source, seed: int) -> str:
     return content_key(facts, sizes, seed, load_config().joints.model_dump(mode="json"))
 
 
-def _measure(source: Source, path: Path, seed: int) -> None:
+def _measure(source: CorpusSource, path: Path, seed: int) -> None:
     """Measure one object; one that cannot be built or read gives no example."""
     opened = _opened(source, seed)
     if opened is None:
@@ -203,7 +203,7 @@ def _measure(source: Source, path: Path, seed: int) -> None:
     write_examples(path, found)
 
 
-def _measure_tree(source: Source, path: Path, seed: int) -> None:
+def _measure_tree(source: CorpusSource, path: Path, seed: int) -> None:
     """The same of the contacts of an object."""
     opened = _opened(source, seed)
     if opened is None:
@@ -221,12 +221,12 @@ def _measure_tree(source: Source, path: Path, seed: int) -> None:
     write_tree_examples(path, [example])
 
 
-def _name(source: Source) -> str:
+def _name(source: CorpusSource) -> str:
     """Of an object, among those of its origin."""
     return f"{source.name}_{source.number}" if source.folder is None else source.name
 
 
-def _opened(source: Source, seed: int) -> _Opened | None:
+def _opened(source: CorpusSource, seed: int) -> _Opened | None:
     """The object; None where it cannot be built or read."""
     try:
         return _generated(source, seed) if source.folder is None else _read(source.folder)
@@ -269,7 +269,7 @@ def may_be_fitted_to(facts: Mapping[str, object]) -> bool:
     return not any(word in licence for word in _RESEARCH)
 
 
-def _generated(source: Source, seed: int) -> _Opened:
+def _generated(source: CorpusSource, seed: int) -> _Opened:
     number = seed + source.number
     blueprint = _drawn(source, number)
     if len(blueprint.joints) > _MOST_JOINTS:
@@ -286,7 +286,7 @@ def _generated(source: Source, seed: int) -> _Opened:
     )
 
 
-def _drawn(source: Source, number: int) -> Blueprint:
+def _drawn(source: CorpusSource, number: int) -> Blueprint:
     ways = list(WAYS)
     if source.origin == PROGRAMMED:
         return drawn_object(source.name, number)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.contact.build import build_contact_graph
-from kinematify.evaluation.axis_metrics import opening_sign
+from kinematify.evaluation.metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints

@@ -134,7 +134,7 @@ def _model(inputs: int) -> nn.Module:
 
     hidden, shared = int(PARAMETERS["hidden"]), int(PARAMETERS["shared"])
 
-    class Scores(nn.Module):
+    class NetworkScores(nn.Module):
         def __init__(self) -> None:
             super().__init__()
             self.embed = nn.Linear(inputs, hidden)
@@ -156,7 +156,7 @@ def _model(inputs: int) -> nn.Module:
             scores: Tensor = self.score(self.drop(compared))[:, 0]
             return scores
 
-    return Scores()
+    return NetworkScores()
 
 
 def log_probabilities_of(scores: Tensor, edge: Tensor, edges: int) -> Tensor:

@@ -146,7 +146,7 @@ def unfitted_model() -> nn.Module:
 
     width, pooled, hidden, shared = (int(PARAMETERS[name]) for name in ("points", "pooled", "hidden", "shared"))
 
-    class Scores(nn.Module):
+    class PointScores(nn.Module):
         def __init__(self) -> None:
             super().__init__()
             self.first = nn.Linear(POINT_INPUTS, width)
@@ -177,4 +177,4 @@ def unfitted_model() -> nn.Module:
             scores: Tensor = self.score(self.drop(compared))[:, 0]
             return scores
 
-    return Scores()
+    return PointScores()

@@ -31,8 +31,8 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
+from kinematify.evaluation.metrics import score_blueprint
 from kinematify.evaluation.record import grouped, table
-from kinematify.evaluation.truth import score_blueprint
 from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
@@ -89,7 +89,7 @@ class AsLoadedOptions(Options):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Case:
+class TriedFile:
     """One file to try, and how it comes about."""
 
     made: Literal["inferred", "as given", "after fix", "exact"]
@@ -106,7 +106,7 @@ class Case:
 
 def measure(options: AsLoadedOptions, work: Work) -> Measured:
     """Write every object and try it in every engine."""
-    case = partial(Case, engines=options.engines, collision=options.collision)
+    case = partial(TriedFile, engines=options.engines, collision=options.collision)
     inferred = {item.name: item for data in options.data for item in find_objects(data)}
     given = {item.name: item for data in options.given for item in find_objects(data)}
     cases = {f"{name} inferred": case(made="inferred", item=item) for name, item in inferred.items()}
@@ -131,7 +131,7 @@ def measure(options: AsLoadedOptions, work: Work) -> Measured:
     }
 
 
-def tried_as_loaded(case: Case) -> Record:
+def tried_as_loaded(case: TriedFile) -> Record:
     """Infer, build, mend or take a model, and try it."""
     config = load_config()
     config = config.model_copy(update={"collision": config.collision.model_copy(update={"mode": case.collision})})
@@ -171,7 +171,7 @@ def _joints_right(blueprint: Blueprint, inference: Inference) -> bool:
     )
 
 
-def _generated(case: Case) -> Blueprint:
+def _generated(case: TriedFile) -> Blueprint:
     if case.sentence:
         return from_text(case.sentence).build(seed=case.seed)
     if case.family:

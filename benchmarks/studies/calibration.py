@@ -13,10 +13,10 @@ import numpy as np
 from pydantic import Field
 
 from benchmarks.study import Options, Study, explained
+from benchmarks.tables import is_right
 from kinematify.batch.corpus import write_corpus
 from kinematify.evaluation.record import table
 from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
-from kinematify.evaluation.summary import is_right
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -60,7 +60,7 @@ def measure(options: CalibrationOptions, work: Work) -> Measured:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Judged:
+class ScoredJoint:
     """A joint with what was said of it."""
 
     object: str
@@ -104,10 +104,10 @@ class Reliability:
     """Of equal width."""
 
 
-def judged_joints(results: Iterable[JobResult]) -> list[Judged]:
+def judged_joints(results: Iterable[JobResult]) -> list[ScoredJoint]:
     """All joints with a confidence; those that have none stand for no answer."""
     return [
-        Judged(
+        ScoredJoint(
             object=result.object,
             category=result.category,
             joint=joint.joint,
@@ -121,7 +121,7 @@ def judged_joints(results: Iterable[JobResult]) -> list[Judged]:
     ]
 
 
-def reliability(joints: Sequence[Judged]) -> Reliability:
+def reliability(joints: Sequence[ScoredJoint]) -> Reliability:
     """Compare what was said with what was right.
 
     Args:

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import Field
 
-from benchmarks.faults.base import UNTOUCHED, write_base
-from benchmarks.faults.outcome import Verdict, facts, judge
-from benchmarks.faults.plan import FAULTS, write_mutants
+from benchmarks.faults.fault import UNTOUCHED, write_base
+from benchmarks.faults.plan import FAULTS, Verdict, facts, judge, write_mutants
 from benchmarks.study import Options, Study, explained
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import find_objects
@@ -29,7 +28,7 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from benchmarks.faults.outcome import Fact
+    from benchmarks.faults.plan import Fact
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
 

@@ -30,14 +30,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
+from benchmarks.paper import ABLATION, TABLE_I, mean_over_robots
 from benchmarks.paper_configurations import OWN, configured
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
-from kinematify.evaluation.axis_metrics import axis_angle
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
 from kinematify.evaluation.job import erased_item, shown_parts
-from kinematify.evaluation.paper import ABLATION, TABLE_I, mean_over_robots
+from kinematify.evaluation.metrics import axis_angle
 from kinematify.evaluation.record import grouped, table
 from kinematify.evaluation.tree_metrics import parent_errors, tree_edit_distance
 from kinematify.geometry.sampling import sample_surface

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Part
     from kinematify.evaluation.record import Report
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 """The checkout that this runs from."""
 _SUBREAPER = 36
 """Of `prctl`: orphans of a command become children of this process, so that their time counts."""

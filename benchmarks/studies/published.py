@@ -82,7 +82,7 @@ class PublishedOptions(Options):
     models: tuple[str, ...] = Field((), description="Only these, patterns separated by commas.")
 
 
-class Judgement(StageConfig):
+class ExpertVerdict(StageConfig):
     """What a person makes of some findings on one model."""
 
     model: str
@@ -105,12 +105,12 @@ class Judgement(StageConfig):
         )
 
 
-class Judged(StageConfig):
+class ExpertVerdicts(StageConfig):
     """All that was judged."""
 
-    judged: list[Judgement]
+    judged: list[ExpertVerdict]
 
-    def of(self, model: str, finding: Record) -> Judgement | None:
+    def of(self, model: str, finding: Record) -> ExpertVerdict | None:
         """The first entry that fits a finding."""
         return next((entry for entry in self.judged if entry.fits(model, finding)), None)
 
@@ -277,21 +277,21 @@ def _beside_others(busy: dict[str, Any]) -> str:
     )
 
 
-def load_judged() -> Judged:
+def load_judged() -> ExpertVerdicts:
     """Read what was judged by hand.
 
     Raises:
         ConfigError: An entry does not fit.
     """
-    return load(Judged, _JUDGED)
+    return load(ExpertVerdicts, _JUDGED)
 
 
-def _verdict(judged: Judged, record: Record, finding: Record) -> str:
+def _verdict(judged: ExpertVerdicts, record: Record, finding: Record) -> str:
     entry = judged.of(record["model"], finding)
     return "unjudged" if entry is None else entry.verdict
 
 
-def _confusion(records: Sequence[Record], judged: Judged) -> list[tuple[str, ...]]:
+def _confusion(records: Sequence[Record], judged: ExpertVerdicts) -> list[tuple[str, ...]]:
     counts = Counter(
         (finding["severity"], finding["blame"] == Blame.KINEMATICS, _verdict(judged, record, finding))
         for record in records
@@ -307,7 +307,7 @@ def _confusion(records: Sequence[Record], judged: Judged) -> list[tuple[str, ...
     ]
 
 
-def _row(record: Record, judged: Judged) -> tuple[str, ...]:
+def _row(record: Record, judged: ExpertVerdicts) -> tuple[str, ...]:
     if record["unusable"]:
         return (
             record["model"],
@@ -331,7 +331,7 @@ def _row(record: Record, judged: Judged) -> tuple[str, ...]:
     return record["model"], str(record["seconds"]), str(record["lines"]), *cells
 
 
-def _reasons(records: Sequence[Record], judged: Judged) -> Iterator[str]:
+def _reasons(records: Sequence[Record], judged: ExpertVerdicts) -> Iterator[str]:
     """Every entry that fits something, with the number of findings that it speaks of."""
     used: Counter[int] = Counter()
     for record in records:

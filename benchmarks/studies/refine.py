@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from benchmarks.planted import FAULTS, NOTHING, PARENT, SECOND, Planted, planted_faults, true_mechanism
+from benchmarks.planted import FAULTS, NOTHING, PARENT, SECOND, PlantedJoint, planted_faults, true_mechanism
 from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
@@ -44,7 +44,7 @@ from kinematify.refinement.tiers import TIERS, DearTiers
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from benchmarks.planted import Mechanism
+    from benchmarks.planted import TrueMechanism
     from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.record import Report
 
@@ -115,7 +115,7 @@ def refined_faults(asked: Planting) -> Record:
     mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config(asked.config))
     if mechanism is None:
         return {"faults": []}
-    untouched = Planted(fault=NOTHING, part="", inference=mechanism.inference)
+    untouched = PlantedJoint(fault=NOTHING, part="", inference=mechanism.inference)
     planted = (untouched, *planted_faults(mechanism, asked.seed, asked.faults, level=asked.level))
     return {"faults": [_refined(mechanism, fault, asked) for fault in planted]}
 
@@ -125,7 +125,7 @@ def judged_inferences(asked: Planting) -> Record:
     mechanism = true_mechanism(erased_item(asked.item, CONDITIONS[0]), load_config(asked.config))
     if mechanism is None:
         return {"faults": []}
-    whole = Planted(fault=AS_INFERRED, part="", inference=replace(mechanism.inference, joints=mechanism.chosen))
+    whole = PlantedJoint(fault=AS_INFERRED, part="", inference=replace(mechanism.inference, joints=mechanism.chosen))
     judged = [
         {"object": asked.item.name, "tier": asked.tier, "fault": INFERRED, **row}
         for row in mistakes(mechanism, asked.tier)
@@ -133,7 +133,7 @@ def judged_inferences(asked: Planting) -> Record:
     return {"faults": [_refined(mechanism, whole, asked), *judged]}
 
 
-def mistakes(mechanism: Mechanism, tier: str) -> list[Record]:
+def mistakes(mechanism: TrueMechanism, tier: str) -> list[Record]:
     """Simulate the right near-best hypotheses of every joint that was chosen wrong, beside the chosen one."""
     answer = replace(mechanism.inference, joints=mechanism.chosen)
     plan = Plan(assembly=answer.assembly, config=answer.config, tree=answer.trees[0], joints=answer.joints)
@@ -169,7 +169,7 @@ def mistakes(mechanism: Mechanism, tier: str) -> list[Record]:
     return records
 
 
-def _refined(mechanism: Mechanism, planted: Planted, asked: Planting) -> Record:
+def _refined(mechanism: TrueMechanism, planted: PlantedJoint, asked: Planting) -> Record:
     start = time.perf_counter()
     refinement = refine(planted.inference, tier=asked.tier, seconds=_SECONDS)
     seconds = time.perf_counter() - start

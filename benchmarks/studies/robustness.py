@@ -13,8 +13,7 @@ import numpy as np
 from pydantic import Field
 
 from benchmarks.corruption.bases import all_bases
-from benchmarks.corruption.cases import KINDS
-from benchmarks.corruption.validation import READY, CorruptionTask, run_case
+from benchmarks.corruption.cases import KINDS, READY, CorruptionTask, run_case
 from benchmarks.study import Options, Study, explained
 from kinematify.evaluation.record import table
 from kinematify.validation.checks import CHECKS

@@ -49,7 +49,7 @@ _ENDLESS = "endless"  # wheels and dials have no range to be opened
 _FAULTS = ("axis turned by 90 deg", "axis turned by 20 deg", "type swapped")
 
 
-class TaskOptions(Options):
+class ArmTaskOptions(Options):
     """Which joints, and what is done with them."""
 
     data: str = Field("everyday", description="Folder or set of objects.")
@@ -77,7 +77,7 @@ class WrongCopy:
     fault: str
 
 
-def measure(options: TaskOptions, work: Work) -> Measured:
+def measure(options: ArmTaskOptions, work: Work) -> Measured:
     """Open every joint, then wrong copies of joints that opened, spread over the objects."""
     objects = [
         item
@@ -243,7 +243,7 @@ def _summary(opened: tuple[Record, ...], tried: list[Record]) -> str:
 
 STUDY = Study(
     title="The built-in arm opens the benchmark's doors and drawers",
-    options=TaskOptions,
+    options=ArmTaskOptions,
     measure=measure,
     report=report,
 )

@@ -44,7 +44,7 @@ class TasksOptions(Options):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trial:
+class TaskTrial:
     """One task."""
 
     task: str
@@ -58,13 +58,13 @@ def measure(options: TasksOptions, work: Work) -> Measured:
     if options.steps:
         stable_baselines()
     asked = {
-        name: Trial(task=name, episodes=options.episodes, steps=options.steps, seed=options.seed)
+        name: TaskTrial(task=name, episodes=options.episodes, steps=options.steps, seed=options.seed)
         for name in options.tasks
     }
     return list(work.each(tried, asked).values()), {}
 
 
-def tried(asked: Trial) -> Record:
+def tried(asked: TaskTrial) -> Record:
     """Success of chance, expert and PPO in a task."""
     rng = np.random.default_rng(asked.seed)
 
@@ -99,7 +99,9 @@ def _made(task: str, object_seed: int) -> gymnasium.Env[Any, Any]:
     return gymnasium.make(TASK_IDS[task], object_seed=object_seed)
 
 
-def _success(asked: Trial, begun: Callable[[Any], Callable[[Any], Any]], objects: Iterable[int], seeds: range) -> float:
+def _success(
+    asked: TaskTrial, begun: Callable[[Any], Callable[[Any], Any]], objects: Iterable[int], seeds: range
+) -> float:
     """Share of episodes in which the task is done at the end; `begun` gives a policy for an environment."""
     ends = []
     for object_seed in objects:
@@ -115,7 +117,7 @@ def _success(asked: Trial, begun: Callable[[Any], Callable[[Any], Any]], objects
     return float(np.mean(ends))
 
 
-def _longest_reset(asked: Trial) -> float:
+def _longest_reset(asked: TaskTrial) -> float:
     """Processor time [ms]."""
     env = _made(asked.task, TEST.objects[0])
     taken = []
@@ -127,7 +129,7 @@ def _longest_reset(asked: Trial) -> float:
     return 1e3 * max(taken)
 
 
-def _trained(asked: Trial) -> Any:
+def _trained(asked: TaskTrial) -> Any:
     """A policy that learned on all training objects at once."""
     ppo, _ = stable_baselines()
     from stable_baselines3.common.monitor import Monitor  # noqa: PLC0415  # an optional package

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.record import Report
-    from kinematify.evaluation.regression import Regression
     from kinematify.evaluation.run import Variant
 
 
@@ -63,13 +62,13 @@ def _study(word: str) -> click.Command | None:
 
     if not has_benchmarks() and (word in (*SETS, PIP_DATA) or Path(word).exists() or "/" in word):
         return None
-    study: click.Command | None = benchmark_module("command", f"The study {word}").study_command(word)
+    study: click.Command | None = benchmark_module("study", f"The study {word}").study_command(word)
     return study
 
 
 def _list(context: click.Context, _parameter: click.Parameter, asked: bool) -> None:
     if asked:
-        benchmark_module("command", "The list of studies").print_studies()
+        benchmark_module("study", "The list of studies").print_studies()
         context.exit()
 
 
@@ -118,7 +117,7 @@ def _write_results_page(context: click.Context, _parameter: click.Parameter, ask
     default=("default",),
     show_default=True,
     metavar="NAME|FILE",
-    help="May be given more than once; paper brings its two ablations with it.",
+    help="May be given more than once; paper brings its two ablations with it, in a checkout.",
 )
 @click.option(
     "--ablation", is_flag=True, help="Measure default without MCTS, and with DW-CAVL in place of its own joints, too."
@@ -185,10 +184,10 @@ def command(
     everyday2. Without it robots and everyday objects are measured. The sets are looked for in the folder that the
     variable KINEMATIFY_BENCH names, else in ../shared/bench beside the repository.
 
-    The report is written as Markdown and JSON, with all its tables in a checkout of the repository alone; --degrade,
-    --errors and --results-page need one too. A run that was interrupted goes on where it stopped; a change of the
+    The report is written as Markdown and JSON. A run that was interrupted goes on where it stopped; a change of the
     code or of the configuration starts anew. Wrong answers do not change the exit status, worse ones than those of
-    --baseline do.
+    --baseline do. Studies, --ablation, --baseline, --degrade, --errors, --results-page and all tables but the first
+    need a checkout of the repository.
 
     --degrade measures the same objects once more with every fault that meshes have in practice: remeshed on a grid of
     1/300 or 1/150 of the diagonal, noisy, decimated, as hulls, with holes or flipped faces, apart or in each other,
@@ -198,7 +197,6 @@ def command(
     """
     from kinematify.evaluation.job import CLEAN
     from kinematify.evaluation.record import as_json, load_report, table, write_report
-    from kinematify.evaluation.regression import find_regressions
     from kinematify.evaluation.run import RESULTS, BenchmarkRequest, run_benchmark
 
     if folder is not None and data is not None:
@@ -207,6 +205,7 @@ def command(
     if degrade != "none" and baseline is not None:
         raise click.UsageError("--degrade cannot be combined with --baseline. Give one of them.")
     earlier = load_report(baseline, RESULTS) if baseline is not None else None
+    find = None if baseline is None else benchmark_module("regression", "--baseline").find_regressions
     detailed = has_benchmarks()
     faults, by = _faults(degrade)
     gallery = benchmark_module("errors", "--errors") if shown is not None else None
@@ -232,13 +231,13 @@ def command(
                 report, request, out, name=f"{name}_errors", count=shown, progress=progress
             )
             written = (*written, page)
-    regressions = find_regressions(report, earlier) if earlier is not None else ()
+    regressions = () if find is None else find(report, earlier)
     if json_to:
         write_answer(as_json(report, RESULTS), json_to)
     if json_to != "-":
         click.echo(f"{_describe(report)}\n\nReport: {', '.join(map(str, written))}")
-    for regression in regressions:
-        click.echo(_describe_regression(regression), err=True)
+    for worse in regressions:
+        click.echo(worse.sentence, err=True)
     return ExitStatus.FAILURES if regressions else 0
 
 
@@ -251,10 +250,13 @@ def _faults(given: str) -> tuple[tuple[str, ...], str]:
 
 
 def _variants(configs: Sequence[str], *, ablation: bool) -> tuple[Variant, ...]:
-    """Return one variant per configuration; `paper` stands for its ablations too, `default` if they are asked for."""
-    from kinematify.evaluation.run import DEFAULT_ABLATION, PAPER_VARIANTS, Variant
+    """One variant per configuration; in a checkout `paper` has its ablations too, and `default` where it is asked."""
+    from kinematify.evaluation.run import Variant
 
-    several = {"paper": PAPER_VARIANTS, **({"default": DEFAULT_ABLATION} if ablation else {})}
+    several: dict[str, tuple[Variant, ...]] = {}
+    if ablation or has_benchmarks():
+        published = benchmark_module("paper", "--ablation")
+        several = {"paper": published.PAPER_VARIANTS, **({"default": published.DEFAULT_ABLATION} if ablation else {})}
     own = [Variant(label=Path(config).stem, config=config) for config in configs]
     return tuple(variant for one in own for variant in several.get(one.label, (one,)))
 
@@ -265,14 +267,15 @@ def _describe(report: Report[JobResult]) -> str:
 
 
 def _rows(report: Report[JobResult]) -> list[tuple[str, ...]]:
-    from kinematify.evaluation.paper import TABLE_I, mean_over_robots
-
     rows = [
         _summary_row(key, [run for run in report.records if (run.variant, run.kind, run.input) == key])
         for key in dict.fromkeys((run.variant, run.kind, run.input) for run in report.records)
     ]
-    for paper in (mean_over_robots(), TABLE_I["everyday"]):
-        rows.append(("(the paper)", paper.label, "", f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}", "", "", "", ""))
+    if has_benchmarks():
+        published = benchmark_module("paper", "The report")
+        for paper in (published.mean_over_robots(), published.TABLE_I["everyday"]):
+            values = (f"{paper.angle_deg:.2f}", "", f"{paper.ted:.2f}")
+            rows.append(("(the paper)", paper.label, "", *values, "", "", "", ""))
     return rows
 
 
@@ -289,8 +292,3 @@ def _summary_row(key: tuple[str, str, str], runs: Sequence[JobResult]) -> tuple[
     variant, kind, given = key
     objects = kind if given == CLEAN else f"{kind}, {given}"
     return (variant, objects, str(summary.objects), *cells, str(summary.failed_runs + summary.unscored_runs))
-
-
-def _describe_regression(regression: Regression) -> str:
-    change = f"{regression.metric} went from {regression.before:.4g} to {regression.now:.4g} {regression.unit}".rstrip()
-    return f"Worse than the baseline: {change} ({regression.kind} objects, configuration {regression.variant})."

@@ -14,7 +14,7 @@ from kinematify.cli.report_files import ReportFiles
 from kinematify.cli.verdict import describe_briefly, say
 from kinematify.config import load_config
 from kinematify.errors import ExitStatus
-from kinematify.evaluation.truth import score_blueprint
+from kinematify.evaluation.metrics import score_blueprint
 from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.model.preview import render_preview
 from kinematify.pipeline import infer

@@ -16,9 +16,9 @@ from kinematify.errors import ExitStatus
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kinematify.config.nightly import NightlySettings
     from kinematify.evaluation.nightly.compare import Change
     from kinematify.evaluation.nightly.run import NightResult
-    from kinematify.evaluation.nightly.settings import NightlySettings
 
 _SHOWN = 20
 """Changes of a class that are told on the terminal; the page has all."""
@@ -116,7 +116,7 @@ def _accept(folder: Path, name: str) -> int:
 
 
 def _settings(config: str, *, data: str | None, smoke: bool) -> NightlySettings:
-    from kinematify.evaluation.nightly.settings import load_nightly
+    from kinematify.config.nightly import load_nightly
 
     settings = load_nightly(config)
     changes: dict[str, object] = {} if data is None else {"data": data}

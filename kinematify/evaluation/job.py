@@ -5,20 +5,17 @@ from __future__ import annotations
 import hashlib
 import importlib
 import json
-import resource
-import sys
 import time
 from dataclasses import asdict, dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.batch.processes import sentence
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
-from kinematify.evaluation.metrics import ObjectScore, score_object
-from kinematify.evaluation.prediction import NOTHING_PREDICTED, Prediction, prediction_of
-from kinematify.robot.joint_type import JointType
+from kinematify.evaluation.metrics import NOTHING_PREDICTED, ObjectScore, Prediction, prediction_of, score_object
+from kinematify.pipeline.clock import peak_mb
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
@@ -94,13 +91,20 @@ class JobResult:
     """Cuts whose two sides came out as fixed to each other."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Degraded:
+class Degraded(Protocol):
     """Parts that an inference is given instead of an object's own."""
 
     assembly: Assembly
-    pieces: Mapping[str, str] = field(default_factory=dict)
+    pieces: Mapping[str, str]
     """Name of a piece that was cut off -> the part that it was cut from."""
+
+    def rejoined(self, prediction: Prediction, index: Mapping[str, int]) -> tuple[Prediction, int]:
+        """Return a prediction over the parts before they were cut, and how many cuts came out as fixed.
+
+        Args:
+            prediction: Over all parts.
+            index: Part or piece -> its number in the prediction.
+        """
 
 
 def run_job(job: Job, failure: TaskFailure | None = None) -> JobResult:
@@ -115,15 +119,18 @@ def run_job(job: Job, failure: TaskFailure | None = None) -> JobResult:
     """
     try:
         erased = erased_item(job.item, job.condition)
-        given = given_input(job, erased)
+        assembly = shown_parts(erased)
+        given = degraded(job, assembly)
     except Exception as error:
         return _result(job, "unreadable", sentence(error), _Answer(), None)
     answer = (
-        _infer(job, erased, given) if failure is None else _Answer(seconds=failure.seconds, message=failure.message)
+        _infer(job, erased, assembly, given)
+        if failure is None
+        else _Answer(seconds=failure.seconds, message=failure.message)
     )
     status: Status = failure.status if failure is not None else "error" if answer.message else "ok"
     score = score_erased(erased, answer.prediction, gripper_joints=job.item.gripper_joints)
-    return replace(_result(job, status, answer.message, answer, score), cuts=len(given.pieces))
+    return replace(_result(job, status, answer.message, answer, score), cuts=0 if given is None else len(given.pieces))
 
 
 def unscored(job: Job, failure: TaskFailure) -> JobResult:
@@ -154,56 +161,20 @@ def shown_parts(erased: ErasedModel) -> Assembly:
     return Assembly(parts=erased.parts, source="benchmark")
 
 
-def given_input(job: Job, erased: ErasedModel) -> Degraded:
-    """What the inference of a job is given."""
-    assembly = shown_parts(erased)
+def degraded(job: Job, assembly: Assembly) -> Degraded | None:
+    """What the inference of a job is given instead of the parts; None where it is given the parts."""
     if job.input == CLEAN:
-        return Degraded(assembly=assembly)
-    degraded: Degraded = imported(job.degrade)(job.input, assembly, job.config, seed=job.condition.seed)
-    return degraded
+        return None
+    made: Degraded = imported(job.degrade)(job.input, assembly, job.config, seed=job.condition.seed)
+    return made
 
 
-def predicted(erased: ErasedModel, given: Degraded, inference: Inference) -> tuple[Prediction, int]:
+def predicted(erased: ErasedModel, inference: Inference, given: Degraded | None = None) -> tuple[Prediction, int]:
     """Return an inference by the parts of the truth, and how many cuts it mended."""
-    part_index = {name: index for index, name in enumerate((*erased.truth.part_names, *given.pieces))}
-    prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, part_index)
-    pieces = {part_index[piece]: part_index[whole] for piece, whole in given.pieces.items()}
-    return without_pieces(prediction, pieces)
-
-
-def without_pieces(prediction: Prediction, pieces: Mapping[int, int]) -> tuple[Prediction, int]:
-    """A prediction in which pieces that are fixed to each other are one part again.
-
-    Args:
-        prediction: Over all parts.
-        pieces: Index of a piece -> that of the part that it was cut from.
-
-    Returns:
-        The prediction over what is left, and how many cuts were mended.
-    """
-    whole = {part: part for part in prediction.parents}
-    fixed = {joint.child for joint in prediction.joints if joint.kind == JointType.FIXED}
-    for child, parent in prediction.parents.items():
-        if child in fixed and pieces.get(child, child) == pieces.get(parent, parent):
-            kept, gone = sorted((_whole(whole, child), _whole(whole, parent)), key=lambda part: part in pieces)
-            whole[gone] = kept
-    parents = {
-        _whole(whole, part): -1 if above < 0 else _whole(whole, above)
-        for part, above in prediction.parents.items()
-        if above < 0 or _whole(whole, part) != _whole(whole, above)
-    }
-    joints = tuple(
-        replace(joint, parent=_whole(whole, joint.parent), child=_whole(whole, joint.child))
-        for joint in prediction.joints
-        if _whole(whole, joint.parent) != _whole(whole, joint.child)
-    )
-    return Prediction(parents=parents, joints=joints), sum(part != above for part, above in whole.items())
-
-
-def _whole(whole: Mapping[int, int], part: int) -> int:
-    while whole[part] != part:
-        part = whole[part]
-    return part
+    names = (*erased.truth.part_names, *(given.pieces if given is not None else ()))
+    index = {name: number for number, name in enumerate(names)}
+    prediction = prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index)
+    return (prediction, 0) if given is None else given.rejoined(prediction, index)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -215,12 +186,14 @@ class _Answer:
     cuts_mended: int = 0
 
 
-def _infer(job: Job, erased: ErasedModel, given: Degraded) -> _Answer:
+def _infer(job: Job, erased: ErasedModel, assembly: Assembly, given: Degraded | None) -> _Answer:
     start = time.perf_counter()
     try:
-        inference = imported(job.infer)(given.assembly, config=job.config, **_known(job, erased))
+        inference = imported(job.infer)(
+            given.assembly if given is not None else assembly, config=job.config, **_known(job, erased)
+        )
         seconds = time.perf_counter() - start
-        prediction, mended = predicted(erased, given, inference)
+        prediction, mended = predicted(erased, inference, given)
     except Exception as error:
         return _Answer(seconds=time.perf_counter() - start, message=sentence(error))
     return _Answer(prediction=prediction, seconds=seconds, stage_seconds=dict(inference.timings), cuts_mended=mended)
@@ -251,14 +224,8 @@ def _result(job: Job, status: Status, message: str, answer: _Answer, score: Obje
         message=message,
         seconds=answer.seconds,
         stage_seconds=answer.stage_seconds,
-        peak_mb=None if status in ("timeout", "crash") else _peak_mb(),
+        peak_mb=None if status in ("timeout", "crash") else peak_mb(),
         score=score,
         input=job.input,
         cuts_mended=answer.cuts_mended,
     )
-
-
-def _peak_mb() -> float:
-    """Peak resident memory of this process [MB]; the kernel counts kB on Linux and bytes on macOS."""
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return peak / 2**20 if sys.platform == "darwin" else peak / 2**10

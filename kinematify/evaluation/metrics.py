@@ -1,28 +1,116 @@
 """Scores of one predicted mechanism against the ground truth, per joint and per object (paper IV-A).
 
-What is missing or wrong is counted, never dropped: a true joint whose parent-child pair is not in the predicted tree
-counts 90 degrees, a wrong type and a limit overlap of 0. Line and pivot distances exist only where both axes do.
+Axes and places are those of the world frame of the input. What is missing or wrong is counted, never dropped: a true
+joint whose parent-child pair is not in the predicted tree counts 90 degrees, a wrong type and a limit overlap of 0.
+Line and pivot distances exist only where both axes do.
 """
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.evaluation.axis_metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
 from kinematify.evaluation.tree_metrics import TreeDistance, parent_errors, root_of, tree_edit_distance, without_nodes
+from kinematify.generate.procedural.truth import ground_truth
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.truth import GroundTruth, TrueJoint
-    from kinematify.evaluation.prediction import Prediction
+    from kinematify.generate.blueprint import Blueprint
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
+    from kinematify.topology.tree import KinematicTree
+
+FULL_TURN = 2.0 * math.pi
+ONE_SIDED = 0.5
+"""A joint opens towards one side where that side has this much more of its travel, as a share: three to one."""
+
+
+def axis_angle(first: FloatArray, second: FloatArray) -> float:
+    """Return the angle between two axes [deg], opposite directions counting as equal: in [0, 90].
+
+    Args:
+        first: Direction of any non-zero length, shape (3,).
+        second: Direction of any non-zero length, shape (3,).
+    """
+    sine = float(np.linalg.norm(np.cross(first, second)))
+    return math.degrees(math.atan2(sine, abs(float(first @ second))))
+
+
+def axis_line_distance(
+    *, true_axis: FloatArray, true_pivot: FloatArray, axis: FloatArray, pivot: FloatArray, near: FloatArray
+) -> float:
+    """Return how far the predicted axis line passes from the true one at the part that moves [m].
+
+    It is the distance to the predicted line from the point of the true line nearest to `near`, the child part's
+    centroid. The usual distance between two skew lines jumps at parallel lines: lines 10 cm apart and tilted by 0.01
+    deg cross somewhere far away and count 0. This one is continuous everywhere, does not change when either pivot
+    slides along its line, nor when an axis is flipped, and equals the offset where the lines are parallel.
+
+    Args:
+        true_axis: True direction, shape (3,).
+        true_pivot: A point on the true axis [m], shape (3,).
+        axis: Predicted direction, shape (3,).
+        pivot: A point on the predicted axis [m], shape (3,).
+        near: Where the joint does its work [m], shape (3,).
+    """
+    anchor = true_pivot + _along(near - true_pivot, true_axis)
+    offset = anchor - pivot
+    return float(np.linalg.norm(offset - _along(offset, axis)))
+
+
+def limit_overlap(
+    true_limits: tuple[float, float], limits: tuple[float, float], *, same_sign: bool, turns: bool
+) -> float:
+    """Return intersection over union of two ranges of motion, in [0, 1].
+
+    A turning range of a full turn or more reaches every angle, as a continuous joint does; where one of the two is
+    such a range, the overlap is the share of the turn that the other one reaches.
+
+    Args:
+        true_limits: Lower and upper limit [rad or m], measured from the configuration of the input.
+        limits: The predicted ones, same zero and unit; infinite for a continuous joint.
+        same_sign: True where the axes point the same way; otherwise the predicted range is mirrored.
+        turns: True for angles, False for travels.
+    """
+    lower, upper = limits if same_sign else (-limits[1], -limits[0])
+    widths = (true_limits[1] - true_limits[0], upper - lower)
+    if turns and max(widths) >= FULL_TURN:
+        return min(FULL_TURN, *widths) / FULL_TURN
+    shared = min(true_limits[1], upper) - max(true_limits[0], lower)
+    if shared < 0.0:
+        return 0.0
+    hull = max(true_limits[1], upper) - min(true_limits[0], lower)
+    return shared / hull if hull > 0.0 else 1.0
+
+
+def opening_sign(lower: float, upper: float) -> int:
+    """Return the direction in which a joint opens from zero: 1, -1, or 0 where its range does not say.
+
+    It does not where the range is not one-sided (most robot joints), has no end, or leaves out zero.
+
+    Args:
+        lower: Lower limit in the joint's own zero [rad or m]; may be infinite.
+        upper: Upper limit in the same unit.
+    """
+    finite = math.isfinite(lower) and math.isfinite(upper)
+    if not finite or not lower <= 0.0 <= upper or lower == upper:
+        return 0
+    share = (upper + lower) / (upper - lower)
+    return 0 if abs(share) < ONE_SIDED else int(math.copysign(1, share))
+
+
+def _along(vector: FloatArray, direction: FloatArray) -> FloatArray:
+    """Component of `vector` along `direction`."""
+    return direction * (float(vector @ direction) / float(direction @ direction))
+
 
 MISSING_ANGLE = 90.0
 """What a joint without a predicted axis counts [deg]."""
@@ -176,15 +264,12 @@ def _matches(
     by_pair: dict[tuple[int, int], list[TrueJoint]] = defaultdict(list)
     for joint in joints:
         by_pair[joint.parent, joint.child].append(joint)
-    return {
-        min(rivals, key=lambda joint: _misfit(joint, predicted[pair])).name: predicted[pair]
-        for pair, rivals in by_pair.items()
-        if pair in predicted
-    }
 
+    def misfit(joint: TrueJoint) -> tuple[bool, float]:
+        guess = predicted[joint.parent, joint.child]
+        return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
 
-def _misfit(joint: TrueJoint, guess: JointEstimate) -> tuple[bool, float]:
-    return _loose(joint.kind) != _loose(guess.kind), axis_angle(joint.axis, guess.axis)
+    return {min(rivals, key=misfit).name: predicted[pair] for pair, rivals in by_pair.items() if pair in predicted}
 
 
 def _confidence(joint: TrueJoint, prediction: Prediction) -> float | None:
@@ -215,7 +300,11 @@ def _joint_score(
         gripper=gripper,
         angle_deg=_angle(joint, guess),
         angle_given_type_deg=_angle_given_type(joint, guess),
-        line_m=_line(joint, guess, near) if guess is not None and placed else None,
+        line_m=axis_line_distance(
+            true_axis=joint.axis, true_pivot=joint.pivot, axis=guess.axis, pivot=guess.pivot, near=near
+        )
+        if guess is not None and placed
+        else None,
         pivot_m=float(np.linalg.norm(joint.pivot - guess.pivot)) if guess is not None and placed else None,
         limit_iou=_limit_iou(joint, guess),
         opens=_opens(joint, guess),
@@ -236,12 +325,6 @@ def _angle_given_type(joint: TrueJoint, guess: JointEstimate | None) -> float:
     axes = (item.axis for item in guess.alternatives if _loose(item.kind) == _loose(joint.kind))
     best = next(axes, None)
     return _angle(joint, guess) if best is None else axis_angle(joint.axis, best)
-
-
-def _line(joint: TrueJoint, guess: JointEstimate, near: FloatArray) -> float:
-    return axis_line_distance(
-        true_axis=joint.axis, true_pivot=joint.pivot, axis=guess.axis, pivot=guess.pivot, near=near
-    )
 
 
 def _limit_iou(joint: TrueJoint, guess: JointEstimate | None) -> float:
@@ -272,3 +355,50 @@ def _opens(joint: TrueJoint, guess: JointEstimate | None) -> bool | None:
 def _loose(kind: str) -> str:
     """Type with continuous and revolute taken as one."""
     return JointType.REVOLUTE if kind == JointType.CONTINUOUS else kind
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Prediction:
+    """A predicted kinematic tree."""
+
+    parents: Mapping[int, int]
+    """Part -> parent part, -1 for the root. Parts that the method set aside are missing; empty if it failed."""
+    joints: tuple[JointEstimate, ...]
+
+
+NOTHING_PREDICTED = Prediction(parents={}, joints=())
+"""What a run that failed is scored as: every joint is missing."""
+
+
+def prediction_of(
+    tree: KinematicTree, estimates: Sequence[JointEstimate], names: Sequence[str], part_index: Mapping[str, int]
+) -> Prediction:
+    """Translate an inferred tree and its joints to the parts of the ground truth.
+
+    Args:
+        tree: The best tree; node i is the part `names[i]`.
+        estimates: One joint per tree edge.
+        names: Part names in the order of the tree's nodes.
+        part_index: Part name -> index of the part in the ground truth.
+    """
+    index = [part_index[name] for name in names]
+    parents = {index[node]: -1 if parent < 0 else index[parent] for node, parent in enumerate(tree.parents)}
+    return Prediction(
+        parents=parents,
+        joints=tuple(
+            replace(estimate, parent=index[estimate.parent], child=index[estimate.child]) for estimate in estimates
+        ),
+    )
+
+
+def score_blueprint(blueprint: Blueprint, inference: Inference) -> ObjectScore:
+    """Compare an inference from the parts of a blueprint with the joints that it was built with."""
+    truth = ground_truth(blueprint)
+    index = {name: number for number, name in enumerate(truth.part_names)}
+    return score_object(
+        truth,
+        prediction_of(inference.trees[0], inference.joints, inference.assembly.names, index),
+        centroids=[part.centroid for part in blueprint.parts],
+        part_diagonals=[part.diagonal for part in blueprint.parts],
+        diagonal=blueprint.assembly.diagonal,
+    )

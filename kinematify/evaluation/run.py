@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
@@ -14,10 +14,9 @@ from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, Condition, find_objects, matching
+from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, matching
 from kinematify.evaluation.job import CLEAN, INFER, Job, JobResult, run_job, unscored
-from kinematify.evaluation.record import Header, Report, new_header
-from kinematify.evaluation.sources import NOT_INFERRING, code_version
+from kinematify.evaluation.record import NOT_INFERRING, Header, Report, code_version, new_header
 from kinematify.evaluation.summary import summaries
 
 if TYPE_CHECKING:
@@ -27,9 +26,6 @@ if TYPE_CHECKING:
 
 RESULT = TypeAdapter(JobResult)
 RESULTS = TypeAdapter(tuple[JobResult, ...])
-
-DEFAULT_TIMEOUT = 900.0
-"""Wall time for one object [s]; H1 is allowed 40 s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,22 +48,6 @@ class Variant:
 
 
 DEFAULT_VARIANTS = (Variant(label="default", config="default"),)
-PAPER_VARIANTS = (
-    Variant(label="paper", config="paper"),
-    Variant(label="paper without MCTS", config="paper", changes={"topology.mode": "bfs"}),
-    Variant(
-        label="paper without DW-CAVL",
-        config="paper",
-        changes={"cavl.consistency_weight": 0.0, "cavl.pivot_weight": 0.0},
-    ),
-)
-"""The paper as written and its two ablations: breadth-first search for the tree, and no anchor term."""
-DEFAULT_ABLATION = (
-    *DEFAULT_VARIANTS,
-    Variant(label="default without MCTS", config="default", changes={"topology.mode": "bfs"}),
-    Variant(label="default with DW-CAVL", config="default", changes={"joints.method": "cavl"}),
-)
-"""The same questions asked of the default, which has no DW-CAVL: with it in place of all evidence on joints."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,8 +70,8 @@ class BenchmarkRequest:
     fresh: bool = False
     """Forget what the work folder holds; otherwise finished jobs are not run again."""
     workers: int = field(default_factory=lambda: os.cpu_count() or 1)
-    timeout: float = DEFAULT_TIMEOUT
-    """Wall time for one object under one condition [s]."""
+    timeout: float = 900.0
+    """Wall time for one object under one condition [s]; H1 is allowed 40 s."""
     infer: str = INFER
     """Function under test, as ``module:name``; tests give a quick one."""
 
@@ -119,17 +99,22 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
     pool = Pool(folder=request.work_folder, workers=request.workers, fresh=request.fresh)
     pool = pool if progress is None else replace(pool, progress=progress)
     torch_too = ["kinematify.paper.joints"] if any(job.config.joints.method == "cavl" for job in jobs) else []
-    how: _How = {
-        "ledger": "jobs",
-        "timeout": request.timeout,
-        "said": lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
-        "preload": ("kinematify.pipeline", "kinematify.evaluation.job", *torch_too),
-    }
-    answers = pool.run({key: partial(run_job, job) for key, job in by_key.items()}, RESULT, **how)
+
+    def answered(pool: Pool, tasks: Mapping[str, Callable[[], JobResult]]) -> dict[str, JobResult | TaskFailure]:
+        return pool.run(
+            tasks,
+            RESULT,
+            ledger="jobs",
+            timeout=request.timeout,
+            said=lambda key, result: _line(by_key[key.removesuffix(_SCORED)], result),
+            preload=("kinematify.pipeline", "kinematify.evaluation.job", *torch_too),
+        )
+
+    answers = answered(pool, {key: partial(run_job, job) for key, job in by_key.items()})
     # A job that crashed or ran out of time gets a second process, which only scores the missing answer.
     failed = {key: answer for key, answer in answers.items() if isinstance(answer, TaskFailure)}
     again = {key + _SCORED: partial(run_job, by_key[key], failure) for key, failure in failed.items()}
-    scored = replace(pool, fresh=False).run(again, RESULT, **how) if again else {}
+    scored = answered(replace(pool, fresh=False), again) if again else {}
     results: dict[str, JobResult] = {}
     for key, job in by_key.items():
         answer = scored.get(key + _SCORED, answers[key])
@@ -137,13 +122,6 @@ def run_benchmark(request: BenchmarkRequest, progress: Progress | None = None) -
     # Two labels can name the same configuration, which is run once.
     ordered = tuple(replace(results[key], variant=job.variant) for key, job in keyed)
     return Report(header=_header(request, ordered, code), records=ordered, summary={"groups": summaries(ordered)})
-
-
-class _How(TypedDict):
-    ledger: str
-    timeout: float
-    said: Callable[[str, JobResult | TaskFailure], str]
-    preload: tuple[str, ...]
 
 
 _SCORED = " scored"
@@ -176,32 +154,14 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         raise ConfigError(f"The changes {dict(changes)} do not fit configuration {config.name}: {error}.") from error
 
 
-def selected_objects(request: BenchmarkRequest) -> list[BenchObject]:
-    """Objects that a request asks for.
-
-    Raises:
-        InputError: There is no such data or object.
-    """
-    return list(matching(find_objects(request.data), request.only))
-
-
-def selected_conditions(request: BenchmarkRequest) -> list[Condition]:
-    """Conditions that a request asks for.
-
-    Raises:
-        InputError: There is no such condition.
-    """
-    return [_condition(name) for name in request.conditions]
-
-
 def jobs_of(request: BenchmarkRequest) -> list[Job]:
     """One job per configuration, input, object and condition of a request.
 
     Raises:
         InputError: There is no such data, object or condition.
     """
-    objects = selected_objects(request)
-    conditions = selected_conditions(request)
+    objects = matching(find_objects(request.data), request.only)
+    conditions = [_condition(name) for name in request.conditions]
     return [
         Job(
             item=item,
@@ -239,7 +199,7 @@ def _header(request: BenchmarkRequest, results: Sequence[JobResult], code: str) 
     return new_header(
         "bench",
         workers=request.workers,
-        seeds=[condition.seed for condition in selected_conditions(request)],
+        seeds=[_condition(name).seed for name in request.conditions],
         configuration={
             "objects": len({result.object for result in results}),
             "conditions": list(request.conditions),

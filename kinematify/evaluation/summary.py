@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import asdict, dataclass
-from statistics import fmean, median
+from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from kinematify.evaluation.metrics import CLOSE_ANGLE
@@ -18,20 +18,6 @@ if TYPE_CHECKING:
     from kinematify.evaluation.metrics import JointScore, ObjectScore
 
     Numbers = Mapping[str, float | None]
-
-CLOSE_LINE = 0.05
-"""An axis line counts as found within this share of the object's diagonal."""
-
-
-def is_right(joint: JointScore, diagonal: float) -> bool:
-    """Whether parent, type and axis are right.
-
-    Args:
-        joint: Against the truth.
-        diagonal: Of the object [m].
-    """
-    close = joint.angle_deg <= CLOSE_ANGLE and (joint.line_m is None or joint.line_m <= CLOSE_LINE * diagonal)
-    return joint.matched and joint.type_right and close
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,17 +149,6 @@ def summaries(results: Iterable[JobResult]) -> list[dict[str, Any]]:
         }
         for (variant, kind, given), group in groups.items()
     ]
-
-
-def median_seconds(results: Iterable[JobResult]) -> float | None:
-    """Return the median over objects of the mean inference time [s], None without results."""
-    objects = grouped(results, by=lambda result: result.object).values()
-    return median(fmean(run.seconds for run in runs) for runs in objects) if objects else None
-
-
-def condition_group(name: str) -> str:
-    """Return the column that a condition belongs to: seeds of the random configuration share one."""
-    return "random" if name.startswith("random") else name
 
 
 def _numbers(result: JobResult, score: ObjectScore, with_gripper: bool) -> Numbers:

@@ -236,7 +236,7 @@ class _MappingSearch:
             elif allowed & self._row_mask(row):
                 worths.append(1)
         if not self.labelled:
-            return 2 * min(len(worths), self._columns_left(allowed))
+            return 2 * min(len(worths), sum(bool(allowed & mask) for mask in self.column_masks))
         return sum(worths) - self._conflicts(depth, allowed)
 
     def _conflicts(self, depth: int, allowed: int) -> int:
@@ -251,9 +251,6 @@ class _MappingSearch:
                 pairs.remove(rival)
                 count += 1
         return count
-
-    def _columns_left(self, allowed: int) -> int:
-        return sum(bool(allowed & mask) for mask in self.column_masks)
 
     def _row_mask(self, row: int) -> int:
         width = len(self.columns)

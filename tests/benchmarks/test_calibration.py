@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 from objects import BUILDERS
 
-from benchmarks.studies.calibration import Judged, reliability
+from benchmarks.studies.calibration import ScoredJoint, reliability
 from benchmarks.study import write_study
+from benchmarks.tables import is_right
 from kinematify.config import Config, load_config
 from kinematify.evaluation.metrics import JointScore
 from kinematify.evaluation.record import Report, new_header
-from kinematify.evaluation.summary import is_right
 from kinematify.pipeline import infer
 
 
-def judged(confidences: list[float], right: list[bool]) -> list[Judged]:
+def judged(confidences: list[float], right: list[bool]) -> list[ScoredJoint]:
     return [
-        Judged(object="o", category="c", joint=f"j{k}", confidence=said, right=good)
+        ScoredJoint(object="o", category="c", joint=f"j{k}", confidence=said, right=good)
         for k, (said, good) in enumerate(zip(confidences, right, strict=True))
     ]
 

@@ -10,13 +10,13 @@ import pytest
 import trimesh
 from objects import BUILDERS
 
-from benchmarks.degrade import DEGRADED, OPEN_REACH, OVER_SEGMENTED, VERTEX_NOISE, degraded
+from benchmarks.degrade import DEGRADED, OPEN_REACH, OVER_SEGMENTED, VERTEX_NOISE, DegradedParts, degraded
 from benchmarks.tables import benchmark_blocks
 from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.words import words_of
 from kinematify.config import load_config
-from kinematify.evaluation.job import CLEAN, Degraded
+from kinematify.evaluation.job import CLEAN
 from kinematify.evaluation.run import run_benchmark
 from tests.secret_cabinets import request, write_object
 
@@ -37,7 +37,7 @@ def two_parts() -> Assembly:
     return Assembly(parts=(part_of(trimesh.creation.box((1, 1, 0.1)), "plate"), part_of(pin, "pin")), source="test")
 
 
-def after(name: str, assembly: Assembly, seed: int = 3) -> Degraded:
+def after(name: str, assembly: Assembly, seed: int = 3) -> DegradedParts:
     return degraded(name, assembly, CONFIG, seed=seed)
 
 

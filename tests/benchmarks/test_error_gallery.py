@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from benchmarks.error_pictures import ShownJoint, draw_error
-from benchmarks.errors import write_error_gallery, wrong_joints
+from benchmarks.errors import ShownJoint, draw_error, write_error_gallery, wrong_joints
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.evaluation.run import run_benchmark

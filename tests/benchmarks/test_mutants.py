@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from benchmarks.faults.base import BaseModel, write_base
-from benchmarks.faults.fault import Planted
-from benchmarks.faults.outcome import Verdict, judge
-from benchmarks.faults.plan import FAULTS, Mutant, write_mutants
+from benchmarks.faults.fault import BaseModel, PlantedFault, write_base
+from benchmarks.faults.plan import FAULTS, Mutant, Verdict, judge, write_mutants
 from kinematify.assembly.erase import ErasedModel, erase
 from kinematify.evaluation.datasets import BenchObject
 from kinematify.robot.read import read_robot
@@ -116,7 +114,7 @@ def test_what_changes_nothing_is_not_planted(tmp_path: Path) -> None:
 
 FACT = {"check": "KV342", "severity": "error", "blame": "kinematics", "joint": "hinge", "link": None, "pair": None}
 NOTE = {**FACT, "severity": "note"}
-PLANTED = Planted(how="turned", joint="hinge", links=("door",))
+PLANTED = PlantedFault(how="turned", joint="hinge", links=("door",))
 
 
 @pytest.mark.parametrize(

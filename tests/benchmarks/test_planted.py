@@ -16,7 +16,7 @@ from benchmarks.planted import (
     SECOND,
     SIGN,
     TYPE,
-    Mechanism,
+    TrueMechanism,
     planted_faults,
     true_mechanism,
 )
@@ -41,20 +41,20 @@ def written(folder: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def door(tmp_path_factory: pytest.TempPathFactory) -> Mechanism:
+def door(tmp_path_factory: pytest.TempPathFactory) -> TrueMechanism:
     urdf = written(tmp_path_factory.mktemp("planted") / "door")
     found = true_mechanism(erase(read_robot(urdf, geometry="shown")), CONFIG)
     assert found is not None
     return found
 
 
-def test_the_true_mechanism_is_right_and_holds_the_truth_among_its_candidates(door: Mechanism) -> None:
+def test_the_true_mechanism_is_right_and_holds_the_truth_among_its_candidates(door: TrueMechanism) -> None:
     assert not door.wrong(door.inference)
     (joint,) = door.inference.joints
     assert any(item.source == "truth" for item in joint.alternatives)
 
 
-def test_each_fault_is_wrong_in_its_own_way(door: Mechanism) -> None:
+def test_each_fault_is_wrong_in_its_own_way(door: TrueMechanism) -> None:
     (right,) = door.inference.joints
     planted = {item.fault: item for item in planted_faults(door, 0)}
     assert set(planted) == set(FAULTS) - {PARENT}, "two parts leave no other parent"
@@ -68,7 +68,7 @@ def test_each_fault_is_wrong_in_its_own_way(door: Mechanism) -> None:
     assert wrong[SECOND].alternatives[0].score == pytest.approx(right.alternatives[0].score), "believed as the best was"
 
 
-def test_the_same_seed_plants_the_same(door: Mechanism) -> None:
+def test_the_same_seed_plants_the_same(door: TrueMechanism) -> None:
     one, same = ([item.inference.joints[0].pivot.tolist() for item in planted_faults(door, 7)] for _ in range(2))
     assert one == same
 
@@ -92,7 +92,7 @@ def test_bench_counts_what_refinement_finds_and_repairs(
 
 
 def test_simulation_tells_a_blocked_mistake_from_a_right_hypothesis_if_one_is_proposed(
-    door: Mechanism,
+    door: TrueMechanism,
 ) -> None:
     planted = {item.fault: item.inference.joints for item in planted_faults(door, 0)}
     assert mistakes(replace(door, chosen=door.inference.joints), "geometry") == []

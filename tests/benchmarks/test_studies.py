@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.studies.published import Judged, Judgement, load_judged
+from benchmarks.studies.published import ExpertVerdict, ExpertVerdicts, load_judged
 from benchmarks.studies.same_joints import differences
 from benchmarks.study import file_stem, load_study, load_study_report, study_names
 from benchmarks.tables import benchmark_blocks
@@ -117,16 +117,16 @@ def test_wrong_words_end_with_2(
 
 
 def test_an_unknown_study_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(InputError, match=r"There are .*calibration, colors, detection"):
+    with pytest.raises(InputError, match=r"There are .*batch, calibration, detection"):
         load_study("alchemy")
 
 
 def test_the_first_judgement_that_fits_a_finding_counts() -> None:
     entries = [
-        Judgement(model="arm", check="KV31*", where="el*", verdict="right", reason="seen"),
-        Judgement(model="*", check="KV312", verdict="wrong", reason="not seen"),
+        ExpertVerdict(model="arm", check="KV31*", where="el*", verdict="right", reason="seen"),
+        ExpertVerdict(model="*", check="KV312", verdict="wrong", reason="not seen"),
     ]
-    judged = Judged(judged=entries)
+    judged = ExpertVerdicts(judged=entries)
     finding = {"check": "KV312", "joint": "elbow", "link": None, "pair": None}
     assert judged.of("arm", finding) is entries[0]
     assert judged.of("arm", {**finding, "joint": None, "pair": ["base", "elbow"]}) is entries[0]

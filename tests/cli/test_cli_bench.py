@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.regression import find_regressions
 from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
 from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.record import Header, Report
-from kinematify.evaluation.regression import find_regressions
 from kinematify.evaluation.run import BenchmarkRequest
 from kinematify.evaluation.tree_metrics import TreeDistance
 

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kinematify.evaluation.axis_metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
+from kinematify.evaluation.metrics import axis_angle, axis_line_distance, limit_overlap, opening_sign
 
 X, Y, Z = np.eye(3)
 ORIGIN = np.zeros(3)

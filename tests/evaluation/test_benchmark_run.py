@@ -14,16 +14,14 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.paper import ABLATION, DEFAULT_ABLATION, PAPER_VARIANTS
 from benchmarks.tables import benchmark_blocks
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
 from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.job import JobResult
-from kinematify.evaluation.paper import ABLATION
 from kinematify.evaluation.record import Report, load_report, write_report
 from kinematify.evaluation.run import (
-    DEFAULT_ABLATION,
-    PAPER_VARIANTS,
     RESULTS,
     Variant,
     changed,

@@ -11,8 +11,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.assembly.erase import GroundTruth, TrueJoint
-from kinematify.evaluation.metrics import JointScore, ObjectScore, score_object
-from kinematify.evaluation.prediction import NOTHING_PREDICTED, Prediction, prediction_of
+from kinematify.evaluation.metrics import (
+    NOTHING_PREDICTED,
+    JointScore,
+    ObjectScore,
+    Prediction,
+    prediction_of,
+    score_object,
+)
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.robot.joint_type import JointType
 from kinematify.topology.tree import KinematicTree

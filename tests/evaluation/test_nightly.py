@@ -18,12 +18,11 @@ import pytest
 from lxml import etree
 
 from kinematify.cli.app import run as run_command
+from kinematify.config.nightly import NightlySettings, load_nightly
 from kinematify.errors import InputError, OutputError
 from kinematify.evaluation.nightly.compare import Class, compare
-from kinematify.evaluation.nightly.record import Problem, Run
-from kinematify.evaluation.nightly.run import NightRequest, run_night
-from kinematify.evaluation.nightly.settings import NightlySettings, load_nightly
-from kinematify.evaluation.nightly.smoke import write_smoke_objects
+from kinematify.evaluation.nightly.run import NightRequest, run_night, write_smoke_objects
+from kinematify.evaluation.nightly.runs import Problem, Run
 from kinematify.evaluation.nightly.store import accept, load_nights, locked
 from tests.manipulation.furniture import write_drawer_cabinet
 from tests.places import ROOT
@@ -240,7 +239,7 @@ def test_an_arm_opens_what_is_named_and_the_share_is_kept(tmp_path: Path) -> Non
 _NIGHT = """
 from pathlib import Path
 from kinematify.evaluation.nightly.run import NightRequest, run_night
-from kinematify.evaluation.nightly.settings import NightlySettings
+from kinematify.config.nightly import NightlySettings
 settings = NightlySettings.model_validate_json({settings!r})
 request = NightRequest(settings=settings, out=Path({out!r}), workers=2, infer="quick_inference:slow_star")
 run_night(request, lambda what, share: None)

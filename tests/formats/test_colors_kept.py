@@ -12,15 +12,6 @@ import pytest
 import trimesh
 from PIL import Image
 
-from benchmarks.studies.colors import (
-    dressed,
-    make_object,
-    seen_of_glb,
-    seen_of_mjcf,
-    seen_of_urdf,
-    seen_of_usd,
-    unlike,
-)
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
 from kinematify.formats.export import export
@@ -34,6 +25,15 @@ from kinematify.render.picture import PictureScene, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
 from kinematify.topology.tree import KinematicTree
+from tests.colored_objects import (
+    dressed,
+    make_object,
+    seen_of_glb,
+    seen_of_mjcf,
+    seen_of_urdf,
+    seen_of_usd,
+    unlike,
+)
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly

@@ -16,7 +16,7 @@ from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.errors import InputError
-from kinematify.evaluation.prediction import Prediction
+from kinematify.evaluation.metrics import Prediction
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded

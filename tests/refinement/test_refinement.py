@@ -12,14 +12,14 @@ import pytest
 import trimesh
 
 import kinematify
+from benchmarks.degrade import without_pieces
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.errors import InputError
-from kinematify.evaluation.job import without_pieces
-from kinematify.evaluation.prediction import Prediction
+from kinematify.evaluation.metrics import Prediction
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference
 from kinematify.pipeline.record import file_hashes

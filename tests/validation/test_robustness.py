@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.corruption.bases import Base, built_base
-from benchmarks.corruption.cases import KINDS, write_case
-from benchmarks.corruption.validation import READY, CorruptionTask, run_case
+from benchmarks.corruption.cases import KINDS, READY, CorruptionTask, run_case, write_case
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.plan import later_stages, needed
 from kinematify.validation.run import validate

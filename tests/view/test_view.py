@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.studies.colors import make_object, unlike
 from kinematify.cli.app import run
 from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
@@ -23,6 +22,7 @@ from kinematify.view.alternatives import Alternative, described, distinct
 from kinematify.view.part_glb import glb_of
 from kinematify.view.record import load_alternatives
 from kinematify.view.scene import ViewScene
+from tests.colored_objects import make_object, unlike
 
 _URDF = """<robot name="door">
 <link name="frame"><collision><geometry><box size="1 0.1 2"/></geometry></collision></link>

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, MORE_IS_BETTER, OPENED, UNITS
+from kinematify.evaluation.nightly.runs import AS_LOADED, MORE_IS_BETTER, OPENED, UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kinematify.evaluation.nightly.record import Run, RunKey
-    from kinematify.evaluation.nightly.settings import NightlySettings
+    from kinematify.config.nightly import NightlySettings
+    from kinematify.evaluation.nightly.runs import Run, RunKey
 
 
 class Class(StrEnum):
@@ -87,12 +87,14 @@ def compare(
         earlier = before.get(place, ())
         same = next((other for other in earlier if other.scenario == run.scenario), None)
         if same is None:
-            found.append(_new_series(run, changed=bool(earlier)))
+            why = "input, pose or thresholds are others than before" if earlier else "there is no earlier night with it"
+            found.append(_change(run, Class.NEW_SERIES, "", f"scenario {run.scenario}: {why}"))
         else:
             found += _quality(run, same, settings)
             found += _timing(run, same, settings) if same_machine else ()
     if complete:
-        found += [_gone(earlier[0]) for place, earlier in before.items() if place not in tonight and earlier]
+        missing = [earlier[0] for place, earlier in before.items() if place not in tonight and earlier]
+        found += [_change(run, Class.GONE, "", "an earlier night had it, this one has no such run") for run in missing]
     order = list(Class)
     return tuple(sorted(found, key=lambda change: (order.index(change.kind), not change.gate)))
 
@@ -105,7 +107,9 @@ def counts(changes: Iterable[Change]) -> dict[str, int]:
 
 def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
     if not run.answered:
-        yield from _unanswered(run, same, settings)
+        kind = Class.NEWLY_SKIPPED if same.answered else Class.STILL_FAILING
+        gate = same.answered and settings.gate_newly_skipped
+        yield _change(run, kind, "", f"{run.status}: {run.message}", gate=gate)
         return
     old = {problem.id: problem for problem in same.problems}
     now = {problem.id: problem for problem in run.problems}
@@ -122,13 +126,6 @@ def _quality(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]
         for check in sorted(run.not_run.keys() - same.not_run.keys()):
             yield _change(run, Class.NEWLY_SKIPPED, check, run.not_run[check], gate=settings.gate_newly_skipped)
     yield from _metrics(run, same, settings)
-
-
-def _unanswered(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
-    if same.answered:
-        yield _change(run, Class.NEWLY_SKIPPED, "", f"{run.status}: {run.message}", gate=settings.gate_newly_skipped)
-    else:
-        yield _change(run, Class.STILL_FAILING, "", f"{run.status}: {run.message}")
 
 
 def _metrics(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
@@ -151,15 +148,6 @@ def _timing(run: Run, same: Run, settings: NightlySettings) -> Iterator[Change]:
         yield _change(run, Class.SLOWER, "seconds", text)
     elif same.seconds > settings.slower * run.seconds:
         yield _change(run, Class.FASTER, "seconds", text)
-
-
-def _new_series(run: Run, *, changed: bool) -> Change:
-    why = "input, pose or thresholds are others than before" if changed else "there is no earlier night with it"
-    return _change(run, Class.NEW_SERIES, "", f"scenario {run.scenario}: {why}")
-
-
-def _gone(run: Run) -> Change:
-    return _change(run, Class.GONE, "", "an earlier night had it, this one has no such run")
 
 
 def _change(run: Run, kind: Class, subject: str, text: str, *, gate: bool = False) -> Change:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from kinematify.evaluation.nightly.compare import Change
-    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.nightly.store import Night
 
 

@@ -17,43 +17,49 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects, matching
 from kinematify.evaluation.job import INFER
-from kinematify.evaluation.nightly.accuracy import accuracy_run
 from kinematify.evaluation.nightly.compare import compare, counts
 from kinematify.evaluation.nightly.junit import as_junit
-from kinematify.evaluation.nightly.pages.night import night_page
-from kinematify.evaluation.nightly.pages.trends import trend_page
-from kinematify.evaluation.nightly.record import RUN, SCHEMA
-from kinematify.evaluation.nightly.scenario import PULLED, accuracy_scenario, digest, validation_scenario
-from kinematify.evaluation.nightly.smoke import write_smoke_objects
-from kinematify.evaluation.nightly.state import open_state
+from kinematify.evaluation.nightly.night_page import night_page
+from kinematify.evaluation.nightly.runs import (
+    PULLED,
+    RUN,
+    SCHEMA,
+    accuracy_run,
+    accuracy_scenario,
+    digest,
+    validation_scenario,
+)
 from kinematify.evaluation.nightly.store import (
     JUNIT_FILE,
     MODELS,
     PAGE_FILE,
     UNFINISHED,
     Night,
+    State,
     accepted,
     chosen,
     earlier_runs,
     load_nights,
     locked,
+    open_state,
     write_night,
 )
+from kinematify.evaluation.nightly.trend_page import trend_page
 from kinematify.evaluation.nightly.validity import NightValidation, run_validation
-from kinematify.evaluation.record import replace_text
+from kinematify.evaluation.record import code_version, replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
-from kinematify.evaluation.sources import code_version
+from kinematify.generate.procedural.request import from_text
+from kinematify.pipeline.generate import write_blueprint
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kinematify.batch.pool import Progress
+    from kinematify.config.nightly import NightlySettings
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.nightly.compare import Change
-    from kinematify.evaluation.nightly.record import Run
-    from kinematify.evaluation.nightly.settings import NightlySettings
-    from kinematify.evaluation.nightly.state import State
+    from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.record import Report
 
 _ACCURACY, _VALIDATION = 0.45, 0.97  # shares of the time at which these are done, on the benchmark
@@ -104,7 +110,8 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
     """
     with locked(request.out):
         nights, warnings = load_nights(request.out)
-        baseline = _baseline(request, nights)
+        name = request.baseline or accepted(request.out)
+        baseline = None if name is None else chosen(nights, name, request.out)
         objects = _objects(request)
         work = _Work(request, objects)
         state = open_state(request.out, work.plan, {path.name for path in request.out.iterdir()})
@@ -112,7 +119,9 @@ def run_night(request: NightRequest, progress: Progress) -> NightResult:
         if night is None:
             night = _new_night(work, state, nights, baseline, progress)
             nights = (*nights, night)
-        _finish(request, nights)
+        # The trends, then nothing of what was only needed to resume; all of it can be repeated after a kill.
+        replace_text(request.out / PAGE_FILE, trend_page(nights[-request.settings.shown_nights :]))
+        shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
         none = () if baseline is not None else (_NO_BASELINE,)
         return NightResult(night=night, place=request.out / night.name, notices=(*warnings, *none))
 
@@ -121,11 +130,6 @@ _NO_BASELINE = (
     "No night is accepted as the baseline, so only the night before was compared with. When one is good, accept it: "
     "kinematify nightly --accept NIGHT"
 )
-
-
-def _baseline(request: NightRequest, nights: Sequence[Night]) -> Night | None:
-    name = request.baseline or accepted(request.out)
-    return None if name is None else chosen(nights, name, request.out)
 
 
 def _objects(request: NightRequest) -> list[BenchObject]:
@@ -281,7 +285,23 @@ def _facts(work: _Work, state: State, report: Report[JobResult]) -> dict[str, An
     }
 
 
-def _finish(request: NightRequest, nights: Sequence[Night]) -> None:
-    """Draw the trends, then forget what was only needed to resume; all of it can be repeated after a kill."""
-    replace_text(request.out / PAGE_FILE, trend_page(nights[-request.settings.shown_nights :]))
-    shutil.rmtree(request.out / UNFINISHED, ignore_errors=True)
+def write_smoke_objects(folder: Path, sentences: Sequence[str]) -> None:
+    """Write an object with known joints for each sentence, if it is not there yet.
+
+    Args:
+        folder: Gets a folder per object.
+        sentences: As `kinematify generate --text` takes them.
+
+    Raises:
+        InputError: A sentence is not understood.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, sentence in enumerate(sentences, start=1):
+        blueprint = from_text(sentence).build(seed=0)
+        place = folder / f"{blueprint.name}_{number}"
+        if place.is_dir():
+            continue
+        aside = folder / f".{place.name}.{os.getpid()}"
+        shutil.rmtree(aside, ignore_errors=True)
+        write_blueprint(blueprint, aside, load_config())
+        aside.rename(place)

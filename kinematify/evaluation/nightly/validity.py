@@ -15,9 +15,7 @@ from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject
 from kinematify.evaluation.job import erased_item, imported, shown_parts
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
-from kinematify.evaluation.nightly.record import Problem, Run
-from kinematify.evaluation.nightly.scenario import PULLED
+from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED, PULLED, Problem, Run
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
@@ -32,7 +30,6 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from kinematify.config.validation import ValidationSettings
     from kinematify.validation.finding import CheckResult, Finding
     from kinematify.validation.report import ValidationReport
 
@@ -84,11 +81,13 @@ def run_validation(validation: NightValidation) -> Run:
         if validation.source == "inferred":
             urdf, package_dirs = _inferred(validation, Path(folder)), ()
         selected = [check for check in CHECKS if any(fnmatchcase(check, word) for word in validation.checks)]
+        settings = load_settings(validation.validation_config)
+        patient = settings.budget.model_copy(update={"seconds": validation.budget})
         start = time.perf_counter()
         report = validate(
             urdf,
             package_dirs=tuple(map(str, package_dirs)),
-            settings=_patient(load_settings(validation.validation_config), validation.budget),
+            settings=settings.model_copy(update={"budget": patient}),
             selected=selected,
             engines=validation.engines,
             task=TaskRequest(kind=PULL) if validation.source == PULLED else None,
@@ -120,11 +119,6 @@ def _inferred(validation: NightValidation, folder: Path) -> Path:
     parts = shown_parts(erased_item(validation.item, CONDITIONS[0]))
     inference = imported(validation.infer)(parts, config=load_config(validation.infer_config))
     return write_model(simulable_model(inference.model, inference.config).robot, folder)
-
-
-def _patient(settings: ValidationSettings, seconds: float) -> ValidationSettings:
-    budget = settings.budget.model_copy(update={"seconds": seconds})
-    return settings.model_copy(update={"budget": budget})
 
 
 def kept(validation: NightValidation, report: ValidationReport, seconds: float, selected: Collection[str]) -> Run:

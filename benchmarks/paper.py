@@ -1,9 +1,11 @@
-"""Results that the paper reports (Table I and the ablation table), printed beside ours."""
+"""Results that the paper reports (Table I and the ablation table), printed beside ours, and its ablations."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from statistics import fmean
+
+from kinematify.evaluation.run import DEFAULT_VARIANTS, Variant
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,3 +64,21 @@ def mean_over_robots() -> PaperRow:
         position_m=fmean(row.position_m for row in rows),
         ted=fmean(row.ted for row in rows),
     )
+
+
+PAPER_VARIANTS = (
+    Variant(label="paper", config="paper"),
+    Variant(label="paper without MCTS", config="paper", changes={"topology.mode": "bfs"}),
+    Variant(
+        label="paper without DW-CAVL",
+        config="paper",
+        changes={"cavl.consistency_weight": 0.0, "cavl.pivot_weight": 0.0},
+    ),
+)
+"""The paper as written and its two ablations: breadth-first search for the tree, and no anchor term."""
+DEFAULT_ABLATION = (
+    *DEFAULT_VARIANTS,
+    Variant(label="default without MCTS", config="default", changes={"topology.mode": "bfs"}),
+    Variant(label="default with DW-CAVL", config="default", changes={"joints.method": "cavl"}),
+)
+"""The same questions asked of the default, which has no DW-CAVL: with it in place of all evidence on joints."""

@@ -27,6 +27,12 @@ class Regression:
     now: float
     unit: str
 
+    @property
+    def sentence(self) -> str:
+        """For the terminal."""
+        change = f"{self.metric} went from {self.before:.4g} to {self.now:.4g} {self.unit}".rstrip()
+        return f"Worse than the baseline: {change} ({self.kind} objects, configuration {self.variant})."
+
 
 _SLACK = {
     "angle_deg": (0.01, "deg"),

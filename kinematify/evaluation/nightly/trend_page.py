@@ -9,16 +9,15 @@ from dataclasses import dataclass
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
-from kinematify.evaluation.nightly.pages.night import METRIC_SCALES, METRIC_TITLES
-from kinematify.evaluation.nightly.scenario import PULLED
+from kinematify.evaluation.nightly.night_page import METRIC_SCALES, METRIC_TITLES
+from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED, PULLED
 from kinematify.validation.formats.chart import Axes, Series, line_chart, sparkline
 from kinematify.validation.formats.html_frame import badge, page, table, text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
-    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.nightly.store import Night
     from kinematify.validation.formats.html_frame import Cell
 
@@ -68,29 +67,31 @@ def trend_page(nights: Sequence[Night]) -> str:
         "<h2>Nights</h2>",
         _nights(nights),
         "<h2>Means over all objects</h2>",
-        f'<div class="charts">{_means(history)}</div>',
+        f'<div class="charts">{_charts(history, None)}</div>',  # only nights over the same runs are joined by a line
         "<h2>Objects</h2>",
         _objects(history, names),
-        *(_object(history, name) for name in names),
+        *(
+            f'<details id="object-{text(name)}"><summary>{text(name)}</summary>'
+            f'<div class="charts">{_charts(history, name)}</div></details>'
+            for name in names
+        ),
     ]
     return page(f"kinematify nightly: {len(nights)} nights", body)
 
 
 def _nights(nights: Sequence[Night]) -> str:
-    rows: list[tuple[Cell, ...]] = []
-    for night in reversed(nights):
-        header, counted = night.header, night.header["counts"]
-        rows.append(
-            (
-                f'<a href="{text(night.name)}/index.html">{text(night.name)}</a>',
-                badge(header["gate"]),
-                str(header["objects"]),
-                str(header["runs"]),
-                *(str(counted.get(kind, 0)) for kind in _CLASSES),
-                f"{header['seconds'] / 60.0:.1f}",
-                text(header["processor"]),
-            )
+    rows: list[tuple[Cell, ...]] = [
+        (
+            f'<a href="{text(night.name)}/index.html">{text(night.name)}</a>',
+            badge(night.header["gate"]),
+            str(night.header["objects"]),
+            str(night.header["runs"]),
+            *(str(night.header["counts"].get(kind, 0)) for kind in _CLASSES),
+            f"{night.header['seconds'] / 60.0:.1f}",
+            text(night.header["processor"]),
         )
+        for night in reversed(nights)
+    ]
     headings = ("night", "gate", "objects", "runs", *_CLASSES, "min", "machine")
     classes = ("", "", *["number"] * (len(_CLASSES) + 3), "")
     return table(headings, rows, name="nights", classes=classes)
@@ -99,16 +100,10 @@ def _nights(nights: Sequence[Night]) -> str:
 _CLASSES = ("new", "worse", "newly skipped", "still failing", "fixed", "better", "slower", "faster", "new series")
 
 
-def _means(history: _History) -> str:
-    """Charts over all objects; only nights over the same runs are joined by a line."""
-    return _charts(history, None)
-
-
 def _measures() -> list[tuple[str, str, Callable[[Sequence[Run]], float | None]]]:
     """Title, unit and value of everything that is drawn."""
-    metrics = [(title, _metric_value(metric)) for metric, title in METRIC_TITLES.items()]
     return [
-        *((title, "", value) for title, value in metrics),
+        *((title, "", _metric_value(metric)) for metric, title in METRIC_TITLES.items()),
         ("inference", "time [s]", _seconds("accuracy")),
         ("findings, published model", "errors and warnings", _findings("truth")),
         ("findings, inferred model", "errors and warnings", _findings("inferred")),
@@ -119,34 +114,31 @@ def _measures() -> list[tuple[str, str, Callable[[Sequence[Run]], float | None]]
 
 
 def _share(metric: str, case: str) -> Callable[[Sequence[Run]], float | None]:
-    def value(runs: Sequence[Run]) -> float | None:
-        known = [run.values[metric] for run in runs if run.case == case and run.values.get(metric) is not None]
-        return fmean(item for item in known if item is not None) if known else None
-
-    return value
+    return lambda runs: _mean(run.values.get(metric) for run in runs if run.case == case)
 
 
 def _metric_value(metric: str) -> Callable[[Sequence[Run]], float | None]:
     def value(runs: Sequence[Run]) -> float | None:
-        known = [run.values[metric] for run in runs if run.what == "accuracy" and run.values.get(metric) is not None]
-        mean = _mean([float(item) for item in known if item is not None])
+        mean = _mean(run.values.get(metric) for run in runs if run.what == "accuracy")
         return None if mean is None else METRIC_SCALES.get(metric, 1.0) * mean
 
     return value
 
 
 def _seconds(what: str) -> Callable[[Sequence[Run]], float | None]:
-    return lambda runs: _mean([run.seconds for run in runs if run.what == what])
+    return lambda runs: _mean(run.seconds for run in runs if run.what == what)
 
 
 def _findings(case: str) -> Callable[[Sequence[Run]], float | None]:
     return lambda runs: _mean(
-        [float(len(run.problems)) for run in runs if run.what == "validation" and run.case == case and run.answered]
+        float(len(run.problems)) for run in runs if run.what == "validation" and run.case == case and run.answered
     )
 
 
-def _mean(values: Sequence[float]) -> float | None:
-    return fmean(values) if values else None
+def _mean(values: Iterable[float | None]) -> float | None:
+    """Mean of the values that exist."""
+    known = [value for value in values if value is not None]
+    return fmean(known) if known else None
 
 
 def _points(history: _History, name: str | None, pick: Callable[[Sequence[Run]], float | None]) -> list[_Point]:
@@ -220,10 +212,3 @@ def _trend_cell(history: _History, name: str, pick: Callable[[Sequence[Run]], fl
         return ""
     part = _series(points)[-1]
     return f"{sparkline([(p.night, p.value) for p in part])} {part[-1].value:.4g}", f"{part[-1].value:.6g}"
-
-
-def _object(history: _History, name: str) -> str:
-    return (
-        f'<details id="object-{text(name)}"><summary>{text(name)}</summary>'
-        f'<div class="charts">{_charts(history, name)}</div></details>'
-    )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from kinematify.evaluation.nightly.accuracy import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.compare import QUALITY, Class
+from kinematify.evaluation.nightly.runs import AS_LOADED, OPENED
 from kinematify.evaluation.nightly.store import MODELS
 from kinematify.evaluation.nightly.validity import page_name
 from kinematify.validation.check import FAMILIES
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from kinematify.evaluation.nightly.compare import Change
-    from kinematify.evaluation.nightly.record import Run
+    from kinematify.evaluation.nightly.runs import Run
     from kinematify.evaluation.nightly.store import Night
     from kinematify.validation.formats.html_frame import Cell
 
@@ -29,8 +29,14 @@ METRIC_TITLES = {
     "limit_iou": "limit overlap",
     "opens": "opens right",
 }
+_GOOD = (Class.FIXED, Class.BETTER)
 _COUNTED = ("errors", "warnings", "move as loaded", "opened by an arm", "s")
 METRIC_SCALES = {"line_m": 1000.0}
+_LEGEND = (
+    '<p class="faint">truth: the published model; inferred: what the inference makes of its parts at rest; '
+    "pulled: the published model, opened by an arm. "
+    "Skipped: none of the family's checks applied; blocked: something kept a check from running.</p>"
+)
 _SEEN = 20
 """Rows that a page shows before they are asked for: a night of many objects stays readable on a few screens."""
 
@@ -100,12 +106,8 @@ def _change_table(changes: Sequence[Change], name: str) -> str:
 
 
 def _class_cell(change: Change) -> str:
-    state = "fail" if change.gate else "warn" if change.kind in QUALITY else "pass" if _good(change) else "note"
+    state = "fail" if change.gate else "warn" if change.kind in QUALITY else "pass" if change.kind in _GOOD else "note"
     return f'<span class="verdict {state}">{text(change.kind.value)}</span>'
-
-
-def _good(change: Change) -> bool:
-    return change.kind in (Class.FIXED, Class.BETTER)
 
 
 def _subject(change: Change) -> str:
@@ -139,21 +141,13 @@ def _matrix(night: Night, pages: Collection[str]) -> list[str]:
     headings = ("object", "model", "verdict", *(f"{f} {FAMILIES[f]}" for f in families), *_COUNTED)
     classes = ("", "", "state", *["state"] * len(families), *["number"] * len(_COUNTED))
     listed = table(headings, rows, name="validation", classes=classes)
-    return ["<h2>Validation</h2>", _legend(), _folded(f"{len(rows)} models, family by family", listed)]
+    return ["<h2>Validation</h2>", _LEGEND, _folded(f"{len(rows)} models, family by family", listed)]
 
 
 def _model(run: Run, pages: Collection[str]) -> str:
     """Which model, leading to its page where there is one."""
     name = page_name(run.object, run.case)
     return f'<a href="{MODELS}/{text(name)}">{text(run.case)}</a>' if name in pages else text(run.case)
-
-
-def _legend() -> str:
-    return (
-        '<p class="faint">truth: the published model; inferred: what the inference makes of its parts at rest; '
-        "pulled: the published model, opened by an arm. "
-        "Skipped: none of the family's checks applied; blocked: something kept a check from running.</p>"
-    )
 
 
 def _accuracy(night: Night) -> list[str]:
