@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
 
-from kinematify.batch.engine import TaskFailure
+from kinematify.processes.pool import TaskFailure
 from kinematify.batch.pool import Pool
 from kinematify.errors import InputError, OutputError
 from benchmarks import studies

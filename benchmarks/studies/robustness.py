@@ -20,7 +20,7 @@ from benchmarks.study import Options, Study, explained
 from kinematify.validation.checks import CHECKS
 
 if TYPE_CHECKING:
-    from kinematify.batch.engine import TaskFailure
+    from kinematify.processes.pool import TaskFailure
     from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
 

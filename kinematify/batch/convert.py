@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.assembly.load import load_assembly
-from kinematify.batch.processes import sentence
 from kinematify.batch.record import ObjectRecord
 from kinematify.batch.source import content_hash, fetched, publish
 from kinematify.config import Config
@@ -23,6 +22,7 @@ from kinematify.model.output import MODEL_FILE
 from kinematify.pipeline.clock import StageClock, peak_mb
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.record import write_inference_files
+from kinematify.processes.pool import sentence
 from kinematify.refinement.loop import refine
 from kinematify.robot.joint_type import JointType
 from kinematify.validation.formats.json_lines import as_json_text

@@ -15,9 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify import __version__
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.pool import run_tasks
-from kinematify.batch.processes import Processes
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.composer.compose import compose, draw_composition
@@ -25,6 +22,7 @@ from kinematify.generate.composer.sentence import told
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.generate import write_blueprint
+from kinematify.processes.pool import Processes, Task, TaskFailure, run_tasks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -126,9 +124,9 @@ def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -
         for entry in entries:
             yield _write_object(out, entry)
         return
-    tasks = ((entry["name"], partial(_write_object, out, entry)) for entry in entries)
+    tasks = (Task(key=entry["name"], call=partial(_write_object, out, entry), timeout=_LONGEST) for entry in entries)
     engine = Processes(workers, preload=(__name__,))
-    with closing(run_tasks(tasks, engine, timeout=_LONGEST, reuse=len(entries))) as running:
+    with closing(run_tasks(tasks, engine, reuse=len(entries))) as running:
         for name, answer in running:
             if isinstance(answer, TaskFailure):
                 raise EnvironmentFault(

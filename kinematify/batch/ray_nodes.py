@@ -5,15 +5,14 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.processes import Processes
 from kinematify.errors import EnvironmentFault
+from kinematify.processes.pool import Processes, TaskFailure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
     from types import ModuleType
 
-    from kinematify.batch.processes import WorkerProcess
+    from kinematify.processes.pool import WorkerProcess
 
 _PATIENCE = 120.0
 """Seconds over its time after which a task is not waited for any more: its node, or the way to it, is gone."""

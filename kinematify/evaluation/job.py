@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING, Literal
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.batch.processes import sentence
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import ObjectScore, score_object
 from kinematify.evaluation.perturb import CLEAN, perturbed, without_pieces
 from kinematify.evaluation.prediction import NOTHING_PREDICTED, prediction_of
+from kinematify.processes.pool import sentence
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kinematify.assembly.erase import ErasedModel
-    from kinematify.batch.engine import TaskFailure
     from kinematify.evaluation.perturb import Perturbed
     from kinematify.evaluation.prediction import Prediction
     from kinematify.pipeline import Inference
+    from kinematify.processes.pool import TaskFailure
 
 INFER = "kinematify.pipeline:infer"
 """Function under test, as ``module:name``."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 from pydantic import TypeAdapter
 
-from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
@@ -20,6 +19,7 @@ from kinematify.evaluation.perturb import CLEAN
 from kinematify.evaluation.record import Header, Report, new_header
 from kinematify.evaluation.sources import NOT_INFERRING, code_version
 from kinematify.evaluation.summary import summaries
+from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

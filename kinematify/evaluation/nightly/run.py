@@ -11,7 +11,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import Pool
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
@@ -43,6 +42,7 @@ from kinematify.evaluation.nightly.validity import NightValidation, run_validati
 from kinematify.evaluation.record import replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
 from kinematify.evaluation.sources import code_version
+from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
