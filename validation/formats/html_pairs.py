@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kinematify.validation.formats.content import number
 from kinematify.validation.formats.html_frame import table, text
 from kinematify.validation.formats.html_motion import show_button
-from kinematify.validation.formats.text import number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

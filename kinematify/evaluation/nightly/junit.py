@@ -12,7 +12,7 @@ from lxml import etree
 
 from kinematify.evaluation.nightly.compare import Class
 from kinematify.validation.formats.junit import count_cases
-from kinematify.validation.formats.text import printable
+from kinematify.validation.formats.content import printable
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
