@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from kinematify.processes.pool import Task, TaskFailure, WorkerProcess, run_tasks, tell, wait_for
+from kinematify.processes.pool import TaskFailure, WorkerProcess, WorkItem, run_tasks, tell, wait_for
 from kinematify.processes.start import ONE_THREAD, environment_variables, use_server, without_main, worker_context
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class StageEnd:
 
 
 class _StageProcesses:
-    """The engine of stages: a process for each."""
+    """The executor of stages: a process for each."""
 
     def __init__(self, workers: int, ahead: Sequence[Stage]) -> None:
         self.capacity = workers
@@ -92,7 +92,7 @@ class _StageProcesses:
             return WorkerProcess(worker_context(), session=False)
 
     def wait(self, workers: Collection[WorkerProcess]) -> list[WorkerProcess]:
-        """Wait as any engine does; the first time, load what later stages need while these run."""
+        """Wait as any executor does; the first time, load what later stages need while these run."""
         if self._ahead:
             load_imports(self._ahead)
             self._ahead = ()
@@ -139,7 +139,7 @@ def run_stages(
     before: dict[str, float] = {}  # processor time of those that a stage comes after [s]
     told: dict[str, list[CheckResult | Summary]] = {stage.name: [] for stage in stages}
 
-    def tasks() -> Iterator[Task[float] | None]:
+    def tasks() -> Iterator[WorkItem[float] | None]:
         while waiting:
             stage = next((stage for stage in waiting if all(name in ended for name in stage.after)), None)
             if stage is None:
@@ -149,11 +149,11 @@ def run_stages(
             before[stage.name] = max((ended[name].seconds for name in stage.after), default=0.0)
             given = replace(request, deadline=max(0.0, request.deadline - before[stage.name]))
             timeout = _PATIENCE * given.deadline + _GRACE
-            yield Task(key=stage.name, call=partial(_work, stage, given), timeout=timeout)
+            yield WorkItem(key=stage.name, call=partial(_work, stage, given), timeout=timeout)
 
     by_name = {stage.name: stage for stage in stages}
-    engine = _StageProcesses(workers, ahead)
-    with closing(run_tasks(tasks(), engine, heard=lambda name, message: told[name].append(message))) as running:
+    executor = _StageProcesses(workers, ahead)
+    with closing(run_tasks(tasks(), executor, heard=lambda name, message: told[name].append(message))) as running:
         for name, answer in running:
             failure, late, seconds = None, False, 0.0
             if isinstance(answer, TaskFailure):

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.processes.pool import Processes, Task, TaskFailure, run_tasks
+from kinematify.processes.pool import Processes, WorkItem, TaskFailure, run_tasks
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from benchmarks.fit.broken_off import with_pieces_broken_off
@@ -154,7 +154,7 @@ def _gathered(
     paths = [cache / f"{_key(source, seed)}.npz" for source in sources]
     missing = {path: source for source, path in zip(sources, paths, strict=True) if not path.exists()}
     tasks = [
-        Task(key=str(path), call=partial(measure, source, path, seed), timeout=_TIMEOUT)
+        WorkItem(key=str(path), call=partial(measure, source, path, seed), timeout=_TIMEOUT)
         for path, source in missing.items()
     ]
     with closing(run_tasks(tasks, Processes(workers, preload=(__name__,)), reuse=_REUSE)) as running:

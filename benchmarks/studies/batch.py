@@ -26,7 +26,7 @@ from pydantic import Field
 from scipy.optimize import nnls
 
 from kinematify.batch.corpus import write_corpus
-from kinematify.batch.record import RECORD
+from kinematify.batch.manifest import RECORD
 from kinematify.batch.summary import STEP_HEADINGS, step_rows
 from kinematify.evaluation.record import table
 from benchmarks.study import Options, Study, explained
@@ -34,7 +34,7 @@ from benchmarks.study import Options, Study, explained
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.batch.record import ObjectRecord
+    from kinematify.batch.manifest import ObjectRecord
     from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
 

@@ -22,7 +22,7 @@ from kinematify.generate.composer.sentence import told
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.generate import write_blueprint
-from kinematify.processes.pool import Processes, Task, TaskFailure, run_tasks
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -72,7 +72,7 @@ def write_corpus(
     """
     manifest = out / MANIFEST
     _check_seed(manifest, seed)
-    entries = [_composed_entry(k, seed) if composed else _entry(k, seed) for k in range(count)]
+    entries = [_entry(k, seed, composed=composed) for k in range(count)]
     try:
         out.mkdir(parents=True, exist_ok=True)
         counts = Counter(entry["category"] for entry in entries)
@@ -91,22 +91,15 @@ def write_corpus(
     return manifest
 
 
-def _entry(k: int, seed: int) -> dict[str, Any]:
+def _entry(k: int, seed: int, *, composed: bool) -> dict[str, Any]:
     """Object k of a corpus; what it is like hangs on its name alone, so that new families change no other."""
     names = sorted(FAMILIES)
-    family, number = names[k % len(names)], k // len(names)
-    rng = np.random.default_rng([seed, zlib.crc32(family.encode()), number])
+    family, number = (COMPOSED, k) if composed else (names[k % len(names)], k // len(names))
+    rng = np.random.default_rng([seed, k] if composed else [seed, zlib.crc32(family.encode()), number])
     drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
     share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
-    return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn, "open": share}
-
-
-def _composed_entry(k: int, seed: int) -> dict[str, Any]:
-    """Composed object k of a corpus."""
-    rng = np.random.default_rng([seed, k])
-    drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
-    share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
-    return {"name": f"{COMPOSED}_{k:04d}", "category": COMPOSED, "seed": drawn, "open": share}
+    name = f"{family}_{number:04d}" if composed else f"{family}_{number:03d}"
+    return {"name": name, "category": family, "seed": drawn, "open": share}
 
 
 def _built(entry: dict[str, Any]) -> Blueprint:
@@ -124,7 +117,9 @@ def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -
         for entry in entries:
             yield _write_object(out, entry)
         return
-    tasks = (Task(key=entry["name"], call=partial(_write_object, out, entry), timeout=_LONGEST) for entry in entries)
+    tasks = (
+        WorkItem(key=entry["name"], call=partial(_write_object, out, entry), timeout=_LONGEST) for entry in entries
+    )
     engine = Processes(workers, preload=(__name__,))
     with closing(run_tasks(tasks, engine, reuse=len(entries))) as running:
         for name, answer in running:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from kinematify.batch.ledger import Ledger
-from kinematify.processes.pool import Processes, Task, TaskFailure, run_tasks
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -64,7 +64,7 @@ class Pool:
             if self.fresh:
                 file.rewrite(())
             known = {key: result for key, result in _kept(file, adapter) if key in tasks}
-            missing = [Task(key=k, call=call, timeout=timeout) for k, call in tasks.items() if k not in known]
+            missing = [WorkItem(key=k, call=call, timeout=timeout) for k, call in tasks.items() if k not in known]
             if known:
                 self.progress("taken up from an earlier run", len(known) / len(tasks))
             running = run_tasks(missing, Processes(self.workers, preload=preload), reuse=reuse)

@@ -19,7 +19,7 @@ _PATIENCE = 120.0
 
 
 class RayNodes:
-    """The engine of a cluster, or of this machine where there is none."""
+    """The executor of a cluster, or of this machine where there is none."""
 
     def __init__(
         self, address: str | None, *, workers: int | None = None, preload: Sequence[str] = (), memory: int | None = None
@@ -99,14 +99,14 @@ class _Keeper:
     """The actor: it hands tasks to a process of its node, which may die, hang or leak."""
 
     def __init__(self, preload: Sequence[str], memory: int | None) -> None:
-        self._engine = Processes(1, preload=preload, memory=memory)
+        self._executor = Processes(1, preload=preload, memory=memory)
         self._worker: WorkerProcess | None = None
 
     def do(self, task: Callable[[], Any], timeout: float) -> tuple[Any, bool]:
         """Return the result of a task, or its failure, and whether the process lives."""
-        worker = self._worker or self._engine.start()
+        worker = self._worker or self._executor.start()
         worker.take(task, timeout)
-        self._engine.wait([worker])
+        self._executor.wait([worker])
         result, alive = worker.answer()
         if not alive:
             worker.stop()

@@ -17,11 +17,10 @@ from typing import TYPE_CHECKING
 
 from kinematify import __version__
 from kinematify.batch.convert import FORMATS, STEPS, Conversion, convert
-from kinematify.batch.manifest import Manifest
-from kinematify.batch.record import ObjectRecord
+from kinematify.batch.manifest import Manifest, ObjectRecord
 from kinematify.batch.source import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.errors import InputError, OutputError
-from kinematify.processes.pool import Task, TaskFailure, run_tasks
+from kinematify.processes.pool import TaskFailure, WorkItem, run_tasks
 from kinematify.simulation.engines import DEFAULT_ENGINES
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.config.validation import ValidationSettings
     from kinematify.pipeline.clock import Progress
-    from kinematify.processes.pool import Engine
+    from kinematify.processes.pool import Executor
 
 OBJECTS = "objects"
 """Folder of the output with a folder for each object."""
@@ -122,7 +121,7 @@ class BatchResult:
     interrupted: bool
 
 
-def run_batch(request: BatchRequest, engine: Engine, progress: Progress | None = None) -> BatchResult:
+def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None = None) -> BatchResult:
     """Convert all objects that have no record yet; what has ended is kept whatever happens.
 
     Args:
@@ -154,7 +153,7 @@ def run_batch(request: BatchRequest, engine: Engine, progress: Progress | None =
             told("taken up from an earlier run", 1.0 - len(missing) / len(sources))
         by_place = {source.place: source for source in missing}
         tasks = (
-            Task(
+            WorkItem(
                 key=place,
                 call=partial(convert, source, conversion, posixpath.join(out, OBJECTS, source.name), staging),
                 timeout=request.timeout,

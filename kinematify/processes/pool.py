@@ -31,7 +31,7 @@ _Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task(Generic[_Result]):
+class WorkItem(Generic[_Result]):
     """What a worker is given."""
 
     key: str
@@ -69,14 +69,14 @@ class Worker(Protocol):
     def answer(self) -> tuple[Any, bool]:
         """Return the result of the task, its `TaskFailure` or a `Message`, and whether the worker can take another one.
 
-        To be called when `Engine.wait` has named the worker.
+        To be called when `Executor.wait` has named the worker.
         """
 
     def stop(self) -> None:
         """End it now, with all that it has started."""
 
 
-class Engine(Protocol):
+class Executor(Protocol):
     """Starts workers."""
 
     @property
@@ -91,8 +91,8 @@ class Engine(Protocol):
 
 
 def run_tasks(
-    tasks: Iterable[Task[_Result] | None],
-    engine: Engine,
+    tasks: Iterable[WorkItem[_Result] | None],
+    executor: Executor,
     *,
     reuse: int = 1,
     lives: int = 1,
@@ -103,23 +103,23 @@ def run_tasks(
     Args:
         tasks: Started in this order, and taken from the iterator as workers come free; None where the next one waits
             for the end of one that runs.
-        engine: Starts the workers.
+        executor: Starts the workers.
         reuse: Tasks that a worker takes one after the other.
         lives: A task whose worker dies is begun again until it has cost as many; then that is its failure.
         heard: Told the key of a task and what it tells before it ends.
     """
     upcoming, deaths = iter(tasks), Counter[str]()
-    again: deque[Task[_Result]] = deque()
-    active: dict[Worker, tuple[Task[_Result], int]] = {}  # its task, and how many it has taken with it
+    again: deque[WorkItem[_Result]] = deque()
+    active: dict[Worker, tuple[WorkItem[_Result], int]] = {}  # its task, and how many it has taken with it
     try:
         while True:
-            while len(active) < engine.capacity and (task := again.popleft() if again else next(upcoming, None)):
-                worker = engine.start()
+            while len(active) < executor.capacity and (task := again.popleft() if again else next(upcoming, None)):
+                worker = executor.start()
                 active[worker] = task, 1
                 worker.take(task.call, task.timeout)
             if not active:
                 return
-            for worker in engine.wait(active):
+            for worker in executor.wait(active):
                 result, alive = worker.answer()
                 ended, taken = active[worker]
                 if isinstance(result, Message):
@@ -146,7 +146,7 @@ def run_tasks(
 
 
 class Processes:
-    """The engine of one machine: workers with bounded memory that take one task after the other."""
+    """The executor of this machine: workers with bounded memory that take one task after the other."""
 
     def __init__(self, workers: int, *, preload: Sequence[str] = (), memory: int | None = None) -> None:
         """Start the server that processes are forked from: heavy imports are paid once, one thread per library.

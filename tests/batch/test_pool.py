@@ -16,7 +16,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from kinematify.batch.pool import Pool
-from kinematify.processes.pool import Processes, Task, TaskFailure, run_tasks
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from tests.places import ROOT
 
 NUMBER = TypeAdapter(int)
@@ -120,7 +120,7 @@ def crash_once(marker: Path) -> int:
 
 def test_a_task_whose_worker_died_is_begun_again(tmp_path: Path) -> None:
     calls = {"once": partial(crash_once, tmp_path / "marker"), "always": crash}
-    tasks = [Task(key=key, call=call, timeout=60.0) for key, call in calls.items()]
+    tasks = [WorkItem(key=key, call=call, timeout=60.0) for key, call in calls.items()]
     found = dict(run_tasks(tasks, Processes(1), lives=2))
     assert found["once"] == 7
     assert isinstance(found["always"], TaskFailure)
@@ -132,7 +132,7 @@ def take_memory() -> int:
 
 
 def test_what_needs_more_memory_than_allowed_fails_alone() -> None:
-    tasks = [Task(key=call.__name__, call=call, timeout=60.0) for call in (take_memory, fail)]
+    tasks = [WorkItem(key=call.__name__, call=call, timeout=60.0) for call in (take_memory, fail)]
     found = dict(run_tasks(tasks, Processes(1, memory=2**32)))
     assert isinstance(found["take_memory"], TaskFailure)
     assert found["take_memory"].message.startswith("MemoryError")

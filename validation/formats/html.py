@@ -18,6 +18,7 @@ from kinematify.validation.formats.content import (
     joint_table,
     measure,
     next_best_table,
+    number,
     round_table,
     summary_words,
     title,
@@ -25,7 +26,6 @@ from kinematify.validation.formats.content import (
 )
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
-from kinematify.validation.formats.html_pairs import pair_matrix
 from kinematify.validation.inferred import round_words
 from kinematify.validation.outcome import Unusable, severity_counts
 
@@ -37,9 +37,14 @@ if TYPE_CHECKING:
     from kinematify.validation.formats.content import FindingBlock
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
+    from kinematify.validation.summary import PairSummary, PairTable
 
 _COUNTS = ("", "", "number", "number", "number", "number", "number")
 """Classes of the columns of the table of families."""
+_MATRIX_AT_MOST = 40
+"""Bodies; a larger matrix is read by nobody."""
+_OPEN_AT_MOST = 10
+_CLEAR = "\N{MIDDLE DOT}"
 
 
 def as_html(outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str] | None = None) -> str:
@@ -132,7 +137,7 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         ),
         _rounds(index, outcome),
         curves(outcome),
-        pair_matrix(index, outcome.pairs),
+        _pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
         _checks(index, outcome),
         _environment(outcome),
@@ -224,6 +229,81 @@ def _consequences(block: FindingBlock) -> str:
 
 def _code(code: str) -> str:
     return f"<pre>{text(code)}</pre>" if code else ""
+
+
+def _pair_matrix(index: int, pairs: PairTable | None) -> str:
+    """Which bodies meet which: a matrix for the eye, and a table with the reason of every pair; empty without any."""
+    if pairs is None or len(pairs.bodies) < 2:
+        return ""
+    rest = len(pairs.bodies) * (len(pairs.bodies) - 1) // 2 - len(pairs.pairs)
+    opened = " open" if len(pairs.bodies) <= _OPEN_AT_MOST else ""
+    inner = (_pair_grid(index, pairs) if len(pairs.bodies) <= _MATRIX_AT_MOST else "") + _pair_table(index, pairs.pairs)
+    words = f"{len(pairs.pairs)} touch at rest or meet, {rest} stay clear in all that was looked at"
+    return f"<details{opened}><summary>Pairs of bodies: {words}</summary>{inner}</details>"
+
+
+def _pair_grid(index: int, pairs: PairTable) -> str:
+    known = {frozenset(item.pair): item for item in pairs.pairs}
+    head = "".join(f'<th scope="col" title="{text(body)}">{k + 1}</th>' for k, body in enumerate(pairs.bodies))
+    rows = "".join(
+        f'<tr><th scope="row">{k + 1} {text(body)}</th>'
+        + "".join(_pair_cell(body, other, known.get(frozenset((body, other)))) for other in pairs.bodies)
+        + "</tr>"
+        for k, body in enumerate(pairs.bodies)
+    )
+    body_rows = f"<thead><tr><th></th>{head}</tr></thead><tbody>{rows}</tbody>"
+    return (
+        '<div class="scroll" tabindex="0" role="region" aria-label="Matrix of pairs">'
+        f'<table id="matrix-{index}"><caption>{_PAIR_LETTERS}</caption>{body_rows}</table></div>'
+    )
+
+
+_PAIR_LETTERS = (
+    "J: joined and in contact at rest; R: in contact at rest; A: in contact nearly always; M: meet while a joint "
+    f"moves; {_CLEAR}: stay clear."
+)
+
+
+def _pair_cell(body: str, other: str, item: PairSummary | None) -> str:
+    if body == other:
+        return "<td></td>"
+    if item is None:
+        return f'<td class="faint">{_CLEAR}</td>'
+    letter = _pair_letter(item)
+    state = ' class="fail"' if item.meets else ""
+    return f'<td{state} title="{text(f"{body} - {other}: {_pair_reason(item)}")}">{letter}</td>'
+
+
+def _pair_letter(item: PairSummary) -> str:
+    first = "" if item.reason is None else {"joined": "J", "in contact at": "R"}.get(_reason_kind(item.reason), "A")
+    return first + ("M" if item.meets else "")
+
+
+def _reason_kind(reason: str) -> str:
+    return next((start for start in ("joined", "in contact at") if reason.startswith(start)), "")
+
+
+def _pair_reason(item: PairSummary) -> str:
+    met = [f"meet while {joint} moves, from {number(value)}" for joint, value, _ in item.meets]
+    return "; ".join([*([item.reason] if item.reason else []), *met])
+
+
+def _pair_table(index: int, pairs: Sequence[PairSummary]) -> str:
+    if not pairs:
+        return ""
+    rows = [
+        (
+            text(" - ".join(item.pair)),
+            text(_pair_reason(item)),
+            number(1e3 * item.at_rest),
+            number(1e3 * item.tolerated),
+            number(1e3 * max((depth for _, _, depth in item.meets), default=0.0)),
+            show_button(index, {joint: value for joint, value, _ in item.meets[:1]}, item.pair, "Show"),
+        )
+        for item in pairs
+    ]
+    headings = ("pair", "reason", "at rest [mm]", "tolerated [mm]", "deeper on the way [mm]", "in 3-D")
+    return table(headings, rows, name=f"pair-reasons-{index}", classes=("", "", "number", "number", "number", ""))
 
 
 def _pairs(index: int, report: ValidationReport) -> str:
