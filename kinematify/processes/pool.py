@@ -28,15 +28,16 @@ if TYPE_CHECKING:
     from multiprocessing.process import BaseProcess
 
 _Result = TypeVar("_Result")
+_Result_co = TypeVar("_Result_co", covariant=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class WorkItem(Generic[_Result]):
+class WorkItem(Generic[_Result_co]):
     """What a worker is given."""
 
     key: str
     """Each task has its own."""
-    call: Callable[[], _Result]
+    call: Callable[[], _Result_co]
     """Picklable; while it runs it can `tell` the caller more than its result."""
     timeout: float
     """Wall time after which it is stopped with all that it has started [s]."""

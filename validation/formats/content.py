@@ -91,7 +91,7 @@ class Table:
     """Rows of plain text; empty where there is nothing to list."""
 
     headings: tuple[str, ...]
-    rows: list[tuple[str, ...]]
+    rows: Sequence[tuple[str, ...]]
 
 
 def joint_table(report: ValidationReport) -> Table:
@@ -141,6 +141,28 @@ def family_table(report: ValidationReport) -> Table:
     return Table(headings=("family", "engine", *(status.value for status in Status), "seconds"), rows=rows)
 
 
+def check_table(report: ValidationReport) -> Table:
+    """Every check with what became of it, why, and what it measured."""
+    rows = []
+    for check in report.checks:
+        figures = ", ".join(f"{name} {number(float(value))}" for name, value in check.measured.items())
+        remark = "; ".join(part for part in (check.reason or "", figures) if part)
+        rows.append((title(check), check.status.value, f"{check.seconds:.3f}", remark))
+    return Table(headings=("check", "status", "seconds", "remark"), rows=rows)
+
+
+def is_pair_note(told: Told) -> bool:
+    """Whether a finding is a note on a pair, such as why it may touch: often hundreds, so no block each."""
+    return told.finding.severity is Severity.NOTE and told.finding.pair is not None and not told.consequences
+
+
+def pair_note_table(report: ValidationReport) -> Table:
+    """Notes on pairs."""
+    notes = [told.finding for told in report.told if is_pair_note(told)]
+    rows = [(where(note), title(note), measure(note), note.message) for note in notes]
+    return Table(headings=("pair", "check", "measured", "reason"), rows=rows)
+
+
 def alternative(joint: JointSummary) -> str:
     """The joint that would explain the geometry better, in a few words; a dash if there is none."""
     better = joint.best_alternative
@@ -156,11 +178,6 @@ def _candidate(better: Mapping[str, Any]) -> str:
     kind = [str(better["kind"])] if better.get("kind") else []
     score = [f"score {number(float(better['score']))}"] if better.get("score") is not None else []
     return ", ".join([*kind, *places, *score])
-
-
-def figures(check: CheckResult) -> str:
-    """What a check measured, by name."""
-    return ", ".join(f"{name} {number(float(value))}" for name, value in check.measured.items())
 
 
 def title(told: CheckResult | Finding) -> str:

@@ -13,16 +13,16 @@ from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.formats.content import (
     Table,
     block_of,
+    check_table,
     family_table,
-    figures,
+    is_pair_note,
     joint_table,
-    measure,
     next_best_table,
     number,
+    pair_note_table,
     round_table,
     summary_words,
     title,
-    where,
 )
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
@@ -32,8 +32,7 @@ from kinematify.validation.outcome import Unusable, severity_counts
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.validation.causes import Told
-    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.finding import Finding
     from kinematify.validation.formats.content import FindingBlock
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
@@ -146,8 +145,11 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
 
 
 def _table(heading: str, content: Table, name: str, classes: Sequence[str] = ()) -> str:
-    rows = [tuple(map(text, row)) for row in content.rows]
-    return f"<h3>{heading}</h3>{table(content.headings, rows, name=name, classes=classes)}"
+    return f"<h3>{heading}</h3>{_plain_table(content, name, classes)}"
+
+
+def _plain_table(content: Table, name: str, classes: Sequence[str] = ()) -> str:
+    return table(content.headings, [tuple(map(text, row)) for row in content.rows], name=name, classes=classes)
 
 
 def _rounds(index: int, report: ValidationReport) -> str:
@@ -181,7 +183,7 @@ _PNG_SIZES = slice(16, 24)
 
 
 def _findings(index: int, report: ValidationReport, *, with_viewer: bool) -> str:
-    told = [item for item in report.told if not _is_pair_note(item)]
+    told = [item for item in report.told if not is_pair_note(item)]
     cards = (
         _finding(
             block_of([item]), f"finding-{index}-{k + 1}", _shown(index, report, item.finding) if with_viewer else ""
@@ -307,32 +309,19 @@ def _pair_table(index: int, pairs: Sequence[PairSummary]) -> str:
 
 
 def _pairs(index: int, report: ValidationReport) -> str:
-    """Notes about pairs, such as why they may touch: often hundreds, so a table and not a card each."""
-    notes = [item.finding for item in report.told if _is_pair_note(item)]
-    if not notes:
+    """Notes about pairs, folded up; nothing if there are none."""
+    content = pair_note_table(report)
+    if not content.rows:
         return ""
-    rows = [tuple(map(text, (where(f), title(f), measure(f), f.message))) for f in notes]
-    inner = table(("pair", "check", "measured", "reason"), rows, name=f"pairs-{index}")
-    return f"<details><summary>{len(rows)} notes on pairs, such as why they may touch</summary>{inner}</details>"
-
-
-def _is_pair_note(told: Told) -> bool:
-    return told.finding.severity is Severity.NOTE and told.finding.pair is not None and not told.consequences
+    inner = _plain_table(content, f"pairs-{index}")
+    return (
+        f"<details><summary>{len(content.rows)} notes on pairs, such as why they may touch</summary>{inner}</details>"
+    )
 
 
 def _checks(index: int, report: ValidationReport) -> str:
-    rows = [
-        (text(title(check)), check.status.value, f"{check.seconds:.3f}", text(_remark(check)))
-        for check in report.checks
-    ]
-    inner = table(
-        ("check", "status", "seconds", "remark"), rows, name=f"checks-{index}", classes=("", "state", "number", "")
-    )
-    return f"<details><summary>All {len(rows)} checks</summary>{inner}</details>"
-
-
-def _remark(check: CheckResult) -> str:
-    return "; ".join(part for part in (check.reason or "", figures(check)) if part)
+    inner = _plain_table(check_table(report), f"checks-{index}", ("", "state", "number", ""))
+    return f"<details><summary>All {len(report.checks)} checks</summary>{inner}</details>"
 
 
 def _explained(outcomes: Sequence[Outcome]) -> str:
