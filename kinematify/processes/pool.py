@@ -195,7 +195,8 @@ class WorkerProcess:
         self.channel, other = context.Pipe()
         # The server may have been started under another environment, before credentials of a store were set.
         environment = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
-        arguments = (other, self.channel, memory, session, environment)
+        inherited = self.channel if context.get_start_method() == "fork" else None
+        arguments = (other, inherited, memory, session, environment)
         self._session = session
         self._process: BaseProcess = context.Process(target=_serve, args=arguments, daemon=not session)
         with deaf():  # an interrupt amid the request would make the server print a traceback
@@ -245,10 +246,11 @@ def tell(message: Any) -> None:
 
 
 def _serve(
-    channel: Connection, callers: Connection, memory: int | None, session: bool, environment: Mapping[str, str]
+    channel: Connection, callers: Connection | None, memory: int | None, session: bool, environment: Mapping[str, str]
 ) -> None:
     """Body of a process. Ctrl-C is answered by the caller alone."""
-    callers.close()  # a copy of the caller's own end: while it is open, the end of the caller is not seen
+    if callers is not None:  # a copy of the caller's own end: while it is open, the end of the caller is not seen
+        callers.close()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     faulthandler.disable()  # the caller tells of a crash
