@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from kinematify.config import CONFIG_FOLDER, Config, StageConfig, load_config
+from kinematify.config.nightly import NightlySettings, load_nightly
 from kinematify.config.validation import ValidationSettings, load_settings
 from kinematify.envs.settings import EnvSettings
 from kinematify.errors import ConfigError
-from kinematify.evaluation.nightly.settings import NightlySettings, load_nightly
 from tests.places import ROOT
 
 MODULES = [

@@ -13,9 +13,9 @@ from kinematify import _HOMES
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = (
-    "errors", "versions", "configs", "config", "robot", "assembly", "geometry", "render", "contact", "joints",
-    "topology", "paper", "model", "generate", "pipeline", "simulation", "manipulation", "formats", "validation",
-    "refinement", "batch", "vision", "envs", "view", "evaluation", "cli", "__main__",
+    "errors", "versions", "processes", "configs", "config", "robot", "assembly", "geometry", "render",
+    "contact", "joints", "topology", "paper", "model", "generate", "pipeline", "simulation", "manipulation",
+    "formats", "validation", "refinement", "batch", "vision", "envs", "view", "evaluation", "cli", "__main__",
 )  # fmt: skip
 """Packages and modules of `kinematify`: each imports only from what stands to its left; none imports `benchmarks`."""
 

@@ -1,37 +1,30 @@
 """Stages in processes of their own: a crash, a hang or a memory blow-up ends the stage, not the run.
 
-Their limits count processor time, so that a busy machine changes no verdict.
-
-Workers are forked from a process that has the heavy imports done, so that one costs milliseconds: from the caller's own
-where no library has started threads in it, whose locks a copy might inherit in any state, and else from a server. A
-worker sends each result through a pipe at once; what it sent before it died is kept.
+Their limits count processor time, so that a busy machine changes no verdict. A stage sends each result at once; what it
+sent before it died is kept.
 """
 
 from __future__ import annotations
 
-import faulthandler
-import gc
 import importlib
 import math
-import multiprocessing
 import os
 import resource
 import signal
 import sys
-import threading
 import time
-from contextlib import contextmanager, suppress
+import traceback
+from contextlib import closing
 from dataclasses import dataclass, replace
-from multiprocessing import connection, forkserver, resource_tracker
-from pathlib import Path
-from types import ModuleType
+from functools import partial
 from typing import TYPE_CHECKING
 
+from kinematify.processes.pool import TaskFailure, WorkerProcess, WorkItem, run_tasks, tell, wait_for
+from kinematify.processes.start import ONE_THREAD, environment_variables, use_server, without_main, worker_context
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-    from multiprocessing.connection import Connection
-    from multiprocessing.context import ForkContext, ForkServerContext
-    from multiprocessing.process import BaseProcess
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from pathlib import Path
 
     from kinematify.validation.finding import CheckResult
     from kinematify.validation.stage import Recorder, StageRequest
@@ -43,8 +36,6 @@ _GRACE = 2.0
 """Processor time after which a stage that should have ended by itself at the deadline is stopped [s]."""
 _PATIENCE = 10.0
 """Time on the clock over processor time after which a stage waits for what never comes, however busy the machine is."""
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-"""Variables of workers: one thread per library, as there are as many workers as cores."""
 _VARIABLES = {**ONE_THREAD, "MUJOCO_GL": "disable"}
 """Of the workers: one thread, and no search for a display."""
 _EVERY_STAGE = (
@@ -88,46 +79,30 @@ class StageEnd:
     """Processor time of a stage that ended by itself, with the longest of those that it comes after."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Running:
-    stage: Stage
-    process: BaseProcess
-    before: float
-    """Processor time of those that it comes after [s]."""
-    started: float
-    patience: float
-    """Time on the clock after which it is stopped [s]."""
-    told: list[CheckResult | Summary]
+class _StageProcesses:
+    """The executor of stages: a process for each."""
 
+    def __init__(self, workers: int, ahead: Sequence[Stage]) -> None:
+        self.capacity = workers
+        self._ahead = ahead
 
-class _Server:
-    """The server that workers are forked from where the caller's process cannot be."""
+    def start(self) -> WorkerProcess:
+        """Return a new process."""
+        with without_main():
+            return WorkerProcess(worker_context(), session=False)
 
-    runs = False
-
-    def start(self, stages: Iterable[Stage]) -> None:
-        """Start it, if it does not run; its imports go on beside the caller's work."""
-        wanted = [name for stage in stages for name in (*stage.imports, stage.library) if name]
-        multiprocessing.get_context("forkserver").set_forkserver_preload([*_EVERY_STAGE, *wanted])
-        resource_tracker.ensure_running()  # else it would be started meanwhile, and end the deafness
-        with environment_variables(_VARIABLES), _without_main(), _deaf():
-            forkserver.ensure_running()
-        self.runs = True
-
-
-_SERVER = _Server()
-
-
-def worker_context() -> ForkContext | ForkServerContext:
-    """Return what starts processes: the server once it runs, and this process as long as its threads are Python's."""
-    if _SERVER.runs or not _only_threads_of_python():
-        return multiprocessing.get_context("forkserver")
-    return multiprocessing.get_context("fork")
+    def wait(self, workers: Collection[WorkerProcess]) -> list[WorkerProcess]:
+        """Wait as any executor does; the first time, load what later stages need while these run."""
+        if self._ahead:
+            load_imports(self._ahead)
+            self._ahead = ()
+        return wait_for(workers)
 
 
 def start_server(stages: Iterable[Stage]) -> None:
     """Start a server that workers are forked from, with the imports of stages; returns at once."""
-    _SERVER.start(stages)
+    wanted = [name for stage in stages for name in (*stage.imports, stage.library) if name]
+    use_server([*_EVERY_STAGE, *wanted], _VARIABLES)
 
 
 def load_imports(stages: Sequence[Stage] = (), ahead: Sequence[Stage] = ()) -> None:
@@ -148,13 +123,6 @@ def load_imports(stages: Sequence[Stage] = (), ahead: Sequence[Stage] = ()) -> N
             importlib.import_module(name)
 
 
-def _only_threads_of_python() -> bool:
-    try:
-        return sum(1 for _ in Path("/proc/self/task").iterdir()) == threading.active_count()
-    except OSError:
-        return False  # not Linux: who knows
-
-
 def run_stages(
     stages: list[Stage], request: StageRequest, *, workers: int, ahead: Sequence[Stage] = ()
 ) -> Iterator[StageEnd]:
@@ -168,53 +136,47 @@ def run_stages(
     """
     load_imports(stages, ahead)
     waiting, ended = list(stages), dict[str, StageEnd]()
-    active: dict[Connection, _Running] = {}
-    try:
-        while waiting or active:
-            for stage in [s for s in waiting if all(name in ended for name in s.after)]:
-                if len(active) == workers:
-                    break
-                waiting.remove(stage)
-                before = [ended[name] for name in stage.after]
-                broken = next((end for end in before if end.failure), None)
+    before: dict[str, float] = {}  # processor time of those that a stage comes after [s]
+    told: dict[str, list[CheckResult | Summary]] = {stage.name: [] for stage in stages}
+
+    def tasks() -> Iterator[WorkItem[float] | None]:
+        while waiting:
+            stage = next((stage for stage in waiting if all(name in ended for name in stage.after)), None)
+            if stage is None:
+                yield None
+                continue
+            waiting.remove(stage)
+            before[stage.name] = max((ended[name].seconds for name in stage.after), default=0.0)
+            given = replace(request, deadline=max(0.0, request.deadline - before[stage.name]))
+            timeout = _PATIENCE * given.deadline + _GRACE
+            yield WorkItem(key=stage.name, call=partial(_work, stage, given), timeout=timeout)
+
+    by_name = {stage.name: stage for stage in stages}
+    executor = _StageProcesses(workers, ahead)
+    with closing(run_tasks(tasks(), executor, heard=lambda name, message: told[name].append(message))) as running:
+        for name, answer in running:
+            failure, late, seconds = None, False, 0.0
+            if isinstance(answer, TaskFailure):
+                failure, late = _cause(answer, _log(by_name[name], request))
+            else:
+                seconds = before[name] + answer
+            stage, said = by_name[name], tuple(told[name])
+            ended[name] = StageEnd(stage=stage, told=said, failure=failure, late=late, seconds=seconds)
+            yield ended[name]
+            for stage in list(waiting):
+                if not all(name in ended for name in stage.after):
+                    continue
+                broken = next((ended[name] for name in stage.after if ended[name].failure), None)
                 if broken is not None:
+                    waiting.remove(stage)
                     why = f"did not run, because the stage {broken.stage.name} {broken.failure}"
                     ended[stage.name] = StageEnd(stage=stage, told=(), failure=why, late=broken.late)
                     yield ended[stage.name]
-                else:
-                    receiver, running = _start(stage, request, max((end.seconds for end in before), default=0.0))
-                    active[receiver] = running
-            load_imports(ahead)
-            ahead = ()
-            for end in _listen(active, request):
-                ended[end.stage.name] = end
-                yield end
-    finally:
-        for receiver, running in active.items():
-            _stop(receiver, running.process)
 
 
-def _start(stage: Stage, request: StageRequest, before: float) -> tuple[Connection, _Running]:
-    request = replace(request, deadline=max(0.0, request.deadline - before))
-    context = worker_context()
-    receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(sender, stage, request), daemon=True)
-    with _without_main(), _deaf():  # an interrupt amid the request would make the server print a traceback
-        process.start()
-    sender.close()  # only the worker may hold the sending end: its death is then the end of the stream
-    patience = _PATIENCE * request.deadline + _GRACE
-    return receiver, _Running(
-        stage=stage, process=process, before=before, started=time.monotonic(), patience=patience, told=[]
-    )
-
-
-def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
-    """Body of a worker. Ctrl-C reaches the whole process group; the parent alone answers it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    faulthandler.disable()  # the parent tells of a crash
+def _work(stage: Stage, request: StageRequest) -> float:
+    """Run a stage in its worker, and return the processor time of that [s]."""
     os.environ.update(_VARIABLES)
-    gc.freeze()  # what was imported before is looked through no more, and stays shared with it
     limit = request.settings.budget.stage_bytes
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -224,13 +186,16 @@ def _work(sender: Connection, stage: Stage, request: StageRequest) -> None:
     try:
         _silence(_log(stage, request))
     except FileNotFoundError:
-        return  # the run was stopped meanwhile, and its folder is gone
-    # Imported here, and by a server: the sooner the caller starts that, the sooner everything ends.
-    from kinematify.validation.stage import Recorder  # noqa: PLC0415
+        sys.exit()  # the run was stopped meanwhile, and its folder is gone
+    try:
+        # Imported here, and by a server: the sooner the caller starts that, the sooner everything ends.
+        from kinematify.validation.stage import Recorder  # noqa: PLC0415
 
-    with suppress(BrokenPipeError):  # nobody listens any more where the run itself was stopped
-        stage.run(request, Recorder(sender.send, request.selected))
-        sender.send(time.process_time())
+        stage.run(request, Recorder(tell, request.selected))
+    except Exception:
+        traceback.print_exc()  # its last line becomes the cause
+        sys.exit(1)
+    return time.process_time()
 
 
 def _silence(log: os.PathLike[str]) -> None:
@@ -240,91 +205,23 @@ def _silence(log: os.PathLike[str]) -> None:
     os.dup2(target, 2)
 
 
-def _listen(active: dict[Connection, _Running], request: StageRequest) -> Iterator[StageEnd]:
-    """Take in what the workers tell, and yield those that have ended, died or run out of time."""
-    if not active:
-        return
-    until = min(running.started + running.patience for running in active.values()) - time.monotonic()
-    ready = connection.wait(list(active), max(0.0, until))
-    for receiver, running in list(active.items()):
-        failure: str | None = None
-        late, seconds = False, 0.0
-        if receiver in ready:
-            try:
-                message = receiver.recv()
-            except EOFError:
-                running.process.join()
-                late = running.process.exitcode == -signal.SIGXCPU
-                failure = _cause(running.process.exitcode, _log(running.stage, request))
-            else:
-                if not isinstance(message, float):
-                    running.told.append(message)
-                    continue
-                seconds = running.before + message
-        elif time.monotonic() >= running.started + running.patience:
-            late, failure = True, f"was stopped after {running.patience:.0f} s in which it did not end"
-        else:
-            continue
-        del active[receiver]
-        _stop(receiver, running.process)
-        yield StageEnd(stage=running.stage, told=tuple(running.told), failure=failure, late=late, seconds=seconds)
-
-
-def _cause(exit_code: int | None, log: Path) -> str:
-    if exit_code == -signal.SIGXCPU:
-        return "was stopped when its processor time was used up"
-    if exit_code is not None and exit_code < 0:
-        return f"crashed with {signal.Signals(-exit_code).name}"
+def _cause(failure: TaskFailure, log: Path) -> tuple[str, bool]:
+    """Why a stage did not end by itself, and whether time ran out."""
+    if failure.status == "timeout":
+        return f"was {failure.message} in which it did not end", True
+    code = failure.exit_code
+    if code == -signal.SIGXCPU:
+        return "was stopped when its processor time was used up", True
+    if code is not None and code < 0:
+        return f"crashed with {signal.Signals(-code).name}", False
     try:
         last = log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
     except OSError:
         last = ""
     # The last line of a traceback says what was raised.
-    return f"failed with status {exit_code}" + (f" ({last[:_SHOWN]})" if last else "")
+    return f"failed with status {code}" + (f" ({last[:_SHOWN]})" if last else ""), False
 
 
 def _log(stage: Stage, request: StageRequest) -> Path:
     """Where a stage's output goes."""
     return request.work / f"{stage.name}.log"
-
-
-def _stop(receiver: Connection, process: BaseProcess) -> None:
-    receiver.close()
-    process.kill()
-    process.join()
-
-
-@contextmanager
-def environment_variables(values: Mapping[str, str]) -> Iterator[None]:
-    """Give what is started meanwhile some variables of the environment, and keep them from the caller's."""
-    before = {name: os.environ.get(name) for name in values}
-    os.environ.update(values)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
-@contextmanager
-def _deaf() -> Iterator[None]:
-    """Keep Ctrl-C from what is started meanwhile, its imports included; it is answered here right after."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _without_main() -> Iterator[None]:
-    """Hide the caller's script, which workers would run again although they need nothing of it."""
-    main = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = main

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from kinematify.validation.finding import Severity, Status
 from kinematify.validation.report import SCHEMA, ValidationReport
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,3 +55,10 @@ def status_counts(report: ValidationReport) -> Mapping[Status, int]:
 def counted_words(count: int, noun: str) -> str:
     """``1 error``, ``2 errors``, ``no errors``."""
     return f"{count or 'no'} {noun}{'' if count == 1 else 's'}"
+
+
+def as_json_text(outcomes: Sequence[Outcome]) -> str:
+    """Return the outcomes as text: indented if there is one, else a line each, in the order of the models."""
+    if len(outcomes) == 1:
+        return json.dumps(outcomes[0].as_json(), indent=2, allow_nan=False) + "\n"
+    return "".join(json.dumps(outcome.as_json(), allow_nan=False) + "\n" for outcome in outcomes)

@@ -20,10 +20,9 @@ from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
 from kinematify.validation.formats.html import as_html
-from kinematify.validation.formats.json_lines import as_json_text
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
-from kinematify.validation.outcome import Unusable
+from kinematify.validation.outcome import Unusable, as_json_text
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:

@@ -23,15 +23,13 @@ from benchmarks.fit.modelling import WAYS, remodelled
 from benchmarks.recipes import OBJECTS, drawn_object
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.pool import run_tasks
-from kinematify.batch.processes import Processes
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.truth import ground_truth
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
@@ -155,9 +153,11 @@ def _gathered(
     cache.mkdir(parents=True, exist_ok=True)
     paths = [cache / f"{_key(source, seed)}.npz" for source in sources]
     missing = {path: source for source, path in zip(sources, paths, strict=True) if not path.exists()}
-    tasks = [(str(path), partial(measure, source, path, seed)) for path, source in missing.items()]
-    running = run_tasks(tasks, Processes(workers, preload=(__name__,)), timeout=_TIMEOUT, reuse=_REUSE)
-    with closing(running):
+    tasks = [
+        WorkItem(key=str(path), call=partial(measure, source, path, seed), timeout=_TIMEOUT)
+        for path, source in missing.items()
+    ]
+    with closing(run_tasks(tasks, Processes(workers, preload=(__name__,)), reuse=_REUSE)) as running:
         for done, (path, failure) in enumerate(running, start=len(sources) - len(missing) + 1):
             name = missing[Path(path)].name
             if isinstance(failure, TaskFailure):

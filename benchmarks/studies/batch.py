@@ -27,7 +27,7 @@ from scipy.optimize import nnls
 
 from benchmarks.study import Options, Study, explained
 from kinematify.batch.corpus import write_corpus
-from kinematify.batch.record import RECORD
+from kinematify.batch.manifest import RECORD
 from kinematify.batch.summary import STEP_HEADINGS, step_rows
 from kinematify.evaluation.record import table
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.study import Measured, Record, Work
-    from kinematify.batch.record import ObjectRecord
+    from kinematify.batch.manifest import ObjectRecord
     from kinematify.evaluation.record import Report
 
 _LOOK = 0.1

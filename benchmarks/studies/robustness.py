@@ -20,8 +20,8 @@ from kinematify.validation.checks import CHECKS
 
 if TYPE_CHECKING:
     from benchmarks.study import Measured, Record, Work
-    from kinematify.batch.engine import TaskFailure
     from kinematify.evaluation.record import Report
+    from kinematify.processes.pool import TaskFailure
 
 BAD = ("crash", "timeout", "error")
 _PATIENCE = 12.0

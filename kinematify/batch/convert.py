@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from kinematify.assembly.load import load_assembly
-from kinematify.batch.processes import sentence
-from kinematify.batch.record import ObjectRecord
+from kinematify.batch.manifest import ObjectRecord
 from kinematify.batch.source import content_hash, fetched, publish
 from kinematify.config import Config
 from kinematify.config.validation import ValidationSettings
@@ -23,9 +22,10 @@ from kinematify.model.output import MODEL_FILE
 from kinematify.pipeline.clock import StageClock, peak_mb
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.record import write_inference_files
+from kinematify.processes.pool import sentence
 from kinematify.refinement.loop import refine
 from kinematify.robot.joint_type import JointType
-from kinematify.validation.formats.json_lines import as_json_text
+from kinematify.validation.outcome import as_json_text
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:

@@ -15,9 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify import __version__
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.pool import run_tasks
-from kinematify.batch.processes import Processes
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, OutputError
 from kinematify.generate.composer.compose import compose, draw_composition
@@ -25,6 +22,7 @@ from kinematify.generate.composer.sentence import told
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.pipeline.generate import write_blueprint
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -74,7 +72,7 @@ def write_corpus(
     """
     manifest = out / MANIFEST
     _check_seed(manifest, seed)
-    entries = [_composed_entry(k, seed) if composed else _entry(k, seed) for k in range(count)]
+    entries = [_entry(k, seed, composed=composed) for k in range(count)]
     try:
         out.mkdir(parents=True, exist_ok=True)
         counts = Counter(entry["category"] for entry in entries)
@@ -93,22 +91,15 @@ def write_corpus(
     return manifest
 
 
-def _entry(k: int, seed: int) -> dict[str, Any]:
+def _entry(k: int, seed: int, *, composed: bool) -> dict[str, Any]:
     """Object k of a corpus; what it is like hangs on its name alone, so that new families change no other."""
     names = sorted(FAMILIES)
-    family, number = names[k % len(names)], k // len(names)
-    rng = np.random.default_rng([seed, zlib.crc32(family.encode()), number])
+    family, number = (COMPOSED, k) if composed else (names[k % len(names)], k // len(names))
+    rng = np.random.default_rng([seed, k] if composed else [seed, zlib.crc32(family.encode()), number])
     drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
     share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
-    return {"name": f"{family}_{number:03d}", "category": family, "seed": drawn, "open": share}
-
-
-def _composed_entry(k: int, seed: int) -> dict[str, Any]:
-    """Composed object k of a corpus."""
-    rng = np.random.default_rng([seed, k])
-    drawn, ajar = int(rng.integers(2**31)), rng.random() < _AJAR
-    share = round(float(rng.uniform(*_AJAR_BY)), 2) if ajar else 0.0
-    return {"name": f"{COMPOSED}_{k:04d}", "category": COMPOSED, "seed": drawn, "open": share}
+    name = f"{family}_{number:04d}" if composed else f"{family}_{number:03d}"
+    return {"name": name, "category": family, "seed": drawn, "open": share}
 
 
 def _built(entry: dict[str, Any]) -> Blueprint:
@@ -126,9 +117,11 @@ def _write_objects(out: Path, entries: Sequence[dict[str, Any]], workers: int) -
         for entry in entries:
             yield _write_object(out, entry)
         return
-    tasks = ((entry["name"], partial(_write_object, out, entry)) for entry in entries)
+    tasks = (
+        WorkItem(key=entry["name"], call=partial(_write_object, out, entry), timeout=_LONGEST) for entry in entries
+    )
     engine = Processes(workers, preload=(__name__,))
-    with closing(run_tasks(tasks, engine, timeout=_LONGEST, reuse=len(entries))) as running:
+    with closing(run_tasks(tasks, engine, reuse=len(entries))) as running:
         for name, answer in running:
             if isinstance(answer, TaskFailure):
                 raise EnvironmentFault(

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import os
-from collections import Counter, deque
 from contextlib import closing, suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from kinematify.batch.engine import TaskFailure
 from kinematify.batch.ledger import Ledger
-from kinematify.batch.processes import Processes
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-
-    from kinematify.batch.engine import Engine, Worker
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     Progress = Callable[[str, float], None]
 
@@ -68,66 +64,16 @@ class Pool:
             if self.fresh:
                 file.rewrite(())
             known = {key: result for key, result in _kept(file, adapter) if key in tasks}
-            missing = [(key, task) for key, task in tasks.items() if key not in known]
+            missing = [WorkItem(key=k, call=call, timeout=timeout) for k, call in tasks.items() if k not in known]
             if known:
                 self.progress("taken up from an earlier run", len(known) / len(tasks))
-            running = run_tasks(missing, Processes(self.workers, preload=preload), timeout=timeout, reuse=reuse)
+            running = run_tasks(missing, Processes(self.workers, preload=preload), reuse=reuse)
             with closing(running):  # an interrupt must stop the processes now, not when the generator is collected
                 for key, result in running:
                     file.append(_line(key, result, adapter))
                     known[key] = result
                     self.progress(said(key, result), len(known) / len(tasks))
         return {key: known[key] for key in tasks}
-
-
-def run_tasks(
-    tasks: Iterable[tuple[str, Callable[[], _Result]]],
-    engine: Engine,
-    *,
-    timeout: float,
-    reuse: int = 1,
-    lives: int = 1,
-) -> Generator[tuple[str, _Result | TaskFailure]]:
-    """Yield key and result of every task as it ends; closing the iterator stops all workers.
-
-    Args:
-        tasks: By keys, each once; started in this order, and taken from the iterator as workers come free.
-        engine: Starts the workers.
-        timeout: Wall time after which a task is stopped with all that it has started [s].
-        reuse: Tasks that a worker takes one after the other.
-        lives: A task whose worker dies is begun again until it has cost as many; then that is its failure.
-    """
-    upcoming, deaths = iter(tasks), Counter[str]()
-    again: deque[tuple[str, Callable[[], _Result]]] = deque()
-    active: dict[Worker, tuple[str, Callable[[], _Result], int]] = {}  # its task, and how many it has taken with it
-    try:
-        while True:
-            while len(active) < engine.capacity and (given := again.popleft() if again else next(upcoming, None)):
-                worker = engine.start()
-                active[worker] = (*given, 1)
-                worker.take(given[1], timeout)
-            if not active:
-                return
-            for worker in engine.wait(active):
-                key, task, taken = active.pop(worker)
-                result, alive = worker.answer()
-                died = isinstance(result, TaskFailure) and result.status == "crash"
-                deaths[key] += died
-                if died and deaths[key] < lives:
-                    again.append((key, task))
-                if alive and taken < reuse and (given := again.popleft() if again else next(upcoming, None)):
-                    active[worker] = (*given, taken + 1)
-                    worker.take(given[1], timeout)
-                else:
-                    worker.stop()
-                if not died:
-                    yield key, result
-                elif deaths[key] == lives:
-                    times = f", the last of {lives} that it cost" if lives > 1 else ""
-                    yield key, replace(result, message=result.message + times)
-    finally:
-        for worker in active:
-            worker.stop()
 
 
 def _kept(file: Ledger, adapter: TypeAdapter[_Result]) -> Iterator[tuple[str, _Result | TaskFailure]]:

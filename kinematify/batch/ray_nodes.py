@@ -5,22 +5,21 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.processes import Processes
 from kinematify.errors import EnvironmentFault
+from kinematify.processes.pool import Processes, TaskFailure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
     from types import ModuleType
 
-    from kinematify.batch.processes import WorkerProcess
+    from kinematify.processes.pool import WorkerProcess
 
 _PATIENCE = 120.0
 """Seconds over its time after which a task is not waited for any more: its node, or the way to it, is gone."""
 
 
 class RayNodes:
-    """The engine of a cluster, or of this machine where there is none."""
+    """The executor of a cluster, or of this machine where there is none."""
 
     def __init__(
         self, address: str | None, *, workers: int | None = None, preload: Sequence[str] = (), memory: int | None = None
@@ -100,14 +99,14 @@ class _Keeper:
     """The actor: it hands tasks to a process of its node, which may die, hang or leak."""
 
     def __init__(self, preload: Sequence[str], memory: int | None) -> None:
-        self._engine = Processes(1, preload=preload, memory=memory)
+        self._executor = Processes(1, preload=preload, memory=memory)
         self._worker: WorkerProcess | None = None
 
     def do(self, task: Callable[[], Any], timeout: float) -> tuple[Any, bool]:
         """Return the result of a task, or its failure, and whether the process lives."""
-        worker = self._worker or self._engine.start()
+        worker = self._worker or self._executor.start()
         worker.take(task, timeout)
-        self._engine.wait([worker])
+        self._executor.wait([worker])
         result, alive = worker.answer()
         if not alive:
             worker.stop()

@@ -17,22 +17,20 @@ from typing import TYPE_CHECKING
 
 from kinematify import __version__
 from kinematify.batch.convert import FORMATS, STEPS, Conversion, convert
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.manifest import Manifest
-from kinematify.batch.pool import run_tasks
-from kinematify.batch.record import ObjectRecord
+from kinematify.batch.manifest import Manifest, ObjectRecord
 from kinematify.batch.source import absolute, content_hash, filesystem, find_sources, is_local
 from kinematify.errors import InputError, OutputError
+from kinematify.processes.pool import TaskFailure, WorkItem, run_tasks
 from kinematify.simulation.engines import DEFAULT_ENGINES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kinematify.batch.engine import Engine
     from kinematify.batch.source import Source
     from kinematify.config import Config
     from kinematify.config.validation import ValidationSettings
     from kinematify.pipeline.clock import Progress
+    from kinematify.processes.pool import Executor
 
 OBJECTS = "objects"
 """Folder of the output with a folder for each object."""
@@ -123,7 +121,7 @@ class BatchResult:
     interrupted: bool
 
 
-def run_batch(request: BatchRequest, engine: Engine, progress: Progress | None = None) -> BatchResult:
+def run_batch(request: BatchRequest, engine: Executor, progress: Progress | None = None) -> BatchResult:
     """Convert all objects that have no record yet; what has ended is kept whatever happens.
 
     Args:
@@ -155,12 +153,16 @@ def run_batch(request: BatchRequest, engine: Engine, progress: Progress | None =
             told("taken up from an earlier run", 1.0 - len(missing) / len(sources))
         by_place = {source.place: source for source in missing}
         tasks = (
-            (place, partial(convert, source, conversion, posixpath.join(out, OBJECTS, source.name), staging))
+            WorkItem(
+                key=place,
+                call=partial(convert, source, conversion, posixpath.join(out, OBJECTS, source.name), staging),
+                timeout=request.timeout,
+            )
             for place, source in by_place.items()
         )
         new, interrupted = 0, False
         try:
-            with closing(run_tasks(tasks, engine, timeout=request.timeout, reuse=REUSE, lives=LIVES)) as running:
+            with closing(run_tasks(tasks, engine, reuse=REUSE, lives=LIVES)) as running:
                 for place, answer in running:
                     record = _failed(by_place[place], answer, conversion) if isinstance(answer, TaskFailure) else answer
                     manifest.add(record)

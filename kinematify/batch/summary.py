@@ -18,7 +18,7 @@ from kinematify.validation.formats.html_frame import badge, page, table, text
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kinematify.batch.record import ObjectRecord
+    from kinematify.batch.manifest import ObjectRecord
 
 PAGE_FILE = "index.html"
 STEP_HEADINGS = ("step", "objects", "mean [s]", "95 % within [s]", "most [s]", "share")

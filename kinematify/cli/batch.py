@@ -16,8 +16,8 @@ from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from kinematify.batch.engine import Engine
     from kinematify.batch.run import BatchResult
+    from kinematify.processes.pool import Executor
 
 _SHOWN = 10
 """Objects without a good model that are named on the terminal; the page has all."""
@@ -132,7 +132,7 @@ def command(**values: Any) -> int:
     return ExitStatus.FAILURES if any(record.failed for record in result.records) else ExitStatus.FINE
 
 
-def _engine(values: dict[str, Any]) -> Engine:
+def _engine(values: dict[str, Any]) -> Executor:
     """The engine that was asked for, started."""
     from kinematify.batch.run import PRELOAD
 
@@ -143,7 +143,7 @@ def _engine(values: dict[str, Any]) -> Engine:
         return RayNodes(values["address"], workers=values["workers"], preload=PRELOAD, memory=memory)
     if values["address"]:
         raise click.UsageError("--address belongs to --engine ray. Leave it out.")
-    from kinematify.batch.processes import Processes
+    from kinematify.processes.pool import Processes
 
     return Processes(values["workers"] or os.cpu_count() or 1, preload=PRELOAD, memory=memory)
 
@@ -177,7 +177,7 @@ def _described(result: BatchResult) -> str:
 
 
 def _answer(result: BatchResult) -> dict[str, Any]:
-    from kinematify.batch.record import RECORD
+    from kinematify.batch.manifest import RECORD
 
     return {
         "schema": 1,

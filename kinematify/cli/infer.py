@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,18 +15,21 @@ from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_lo
 from kinematify.cli.options import collision_option, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
+from kinematify.errors import EnvironmentFault, KinematifyError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from concurrent.futures import Executor, Future
 
     from kinematify.config import Config
     from kinematify.pipeline import Inference
+    from kinematify.processes.pool import WorkerProcess
     from kinematify.refinement.hints import Hint
     from kinematify.robot.robot import Joint
 
 _INFERRED, _REFINED = 0.5, 0.55
 """Shares of the whole time after the inference and the refinement."""
+_LONGEST = 86400.0
+"""So long is waited for the engines, whose stages have limits of their own [s]."""
 
 
 @click.command(
@@ -125,10 +129,10 @@ def command(
 
     With --refine it ends with 1 if the model that is kept still has an error about its motion.
     """
-    from concurrent.futures import ProcessPoolExecutor
     from contextlib import ExitStack
 
-    from kinematify.validation.isolation import ONE_THREAD, environment_variables, worker_context
+    from kinematify.processes.pool import WorkerProcess
+    from kinematify.processes.start import ONE_THREAD, environment_variables, worker_context
 
     with environment_variables(ONE_THREAD):
         from kinematify.assembly.load import load_assembly
@@ -142,8 +146,9 @@ def command(
     with ExitStack() as stack:
         beside = None
         if not no_validation:
-            beside = stack.enter_context(ProcessPoolExecutor(1, mp_context=worker_context()))
-            beside.submit(load_as_loaded)  # beside the inference
+            beside = WorkerProcess(worker_context())
+            stack.callback(beside.stop)
+            beside.take(load_as_loaded, _LONGEST)  # beside the inference
         progress = stack.enter_context(progress_reporter())
         use_one_thread(settings)
         progress("reading the parts", 0.0)
@@ -220,25 +225,51 @@ def use_one_thread(config: Config) -> None:
         torch.set_num_threads(1)
 
 
-def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: Executor | None) -> str:
+def _written(inference: Inference, out: Path, *, overwrite: bool, preview: bool, beside: WorkerProcess | None) -> str:
     """Write the model folder, its picture while engines load the model, and return what `as_loaded` says."""
-    from concurrent.futures import wait
-
     from kinematify.model.output import MODEL_FILE, write_model_folder
     from kinematify.pipeline.record import write_inference_files, write_preview
 
-    loading: list[Future[str]] = []
+    loaded: Any = ""
 
     def write(folder: Path) -> None:
+        nonlocal loaded
         write_inference_files(inference, folder, preview=False)
         if beside is not None:
-            loading.append(beside.submit(as_loaded, folder / MODEL_FILE))
+            beside.take(partial(_as_loaded_or_why, folder / MODEL_FILE), _LONGEST)
         if preview:
             write_preview(inference, folder)
-        wait(loading)
+        if beside is not None:
+            loaded = _last_answer(beside)
 
     write_model_folder(out, write, overwrite=overwrite)
-    return loading[0].result() if loading else ""
+    if isinstance(loaded, KinematifyError):
+        raise loaded
+    if not isinstance(loaded, str):
+        raise EnvironmentFault(
+            f"The model was written to {out}, but not loaded into engines: {loaded.message}. `kinematify validate` "
+            "says more of it; --no-validation leaves the engines out."
+        )
+    return loaded
+
+
+def _as_loaded_or_why(urdf: Path) -> str | KinematifyError:
+    try:
+        return as_loaded(urdf)
+    except KinematifyError as error:
+        return error
+
+
+def _last_answer(worker: WorkerProcess) -> Any:
+    """The answer to the second of two tasks; the first one loads what that needs."""
+    from kinematify.processes.pool import wait_for
+
+    alive = True
+    for _ in range(2):
+        if alive:
+            wait_for([worker])
+            answer, alive = worker.answer()
+    return answer
 
 
 def _as_answer(inference: Inference, out: Path) -> dict[str, Any]:

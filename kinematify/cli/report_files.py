@@ -84,10 +84,9 @@ class ReportFiles:
         rules: Sequence[Suppression],
     ) -> dict[str, str]:
         from kinematify.validation.formats.html import as_html
-        from kinematify.validation.formats.json_lines import as_json_text
         from kinematify.validation.formats.junit import as_junit
         from kinematify.validation.formats.sarif import as_sarif
-        from kinematify.validation.outcome import Unusable
+        from kinematify.validation.outcome import Unusable, as_json_text
         from kinematify.validation.suppression_file import suggested_suppressions, suppressions_text
 
         texts = {}

@@ -14,29 +14,28 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.table import format_table
-from kinematify.errors import ExitStatus
 from kinematify.validation.finding import Severity, Status
-from kinematify.validation.formats.text import (
-    FAMILY_HEADINGS,
-    JOINT_HEADINGS,
-    NEXT_BEST_HEADINGS,
-    configuration,
-    family_rows,
-    follow_words,
-    joint_rows,
-    measure,
-    next_best_rows,
+from kinematify.validation.formats.content import (
+    block_of,
+    blocks,
+    family_table,
+    joint_table,
+    next_best_table,
+    places,
     printable,
+    reasons,
+    summary_words,
     title,
     where,
 )
 from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Sequence
+    from collections.abc import Iterable, Sequence
 
     from kinematify.validation.causes import Told
     from kinematify.validation.finding import Finding
+    from kinematify.validation.formats.content import FindingBlock, Table
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.suppression import Suppression
@@ -50,11 +49,8 @@ _SCREEN = 30
 """Lines of a report that nobody has to scroll for."""
 _LONGEST = 120
 """Lines of a report unless everything is asked for."""
-_PLACES = 6
-"""So many places where the same was found are named."""
 _CALL = re.compile(r"(?:mujoco\.MjModel\.from_xml_path|p\.loadURDF)\([^()]*\)")
 """How plain code loads a file."""
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
 def say(text: str) -> None:
@@ -67,18 +63,18 @@ def say(text: str) -> None:
 def describe(outcome: Outcome, *, everything: bool = False) -> str:
     """One model: what is wrong and what to do, on a screen where that is possible, or everything that is known."""
     if isinstance(outcome, Unusable):
-        return f"{_verdict_line(outcome)}\n{_wrapped(printable(outcome.message))}"
+        return f"{_verdict(outcome)}\n{_wrapped(printable(outcome.message))}"
     return "\n\n".join(block for block in (_full if everything else _short)(outcome) if block)
 
 
 def _full(report: ValidationReport) -> list[str]:
     """All findings with their places, numbers, consequences and code; families, joints, and what did not run."""
     return [
-        "\n".join(_first_lines(report)),
-        format_table(FAMILY_HEADINGS, family_rows(report)),
-        "\n".join(_reasons(report, (Status.SKIPPED, Status.BLOCKED))),
-        *(_group_text(group) for group in _groups(report.told)),
-        _joint_table(report),
+        _first_lines(report),
+        _table(family_table(report)),
+        _reasons(report, Status.SKIPPED, Status.BLOCKED),
+        *map(_long_text, blocks(report.told, together=MANY)),
+        _table(joint_table(report)),
         _next_best(report),
     ]
 
@@ -89,20 +85,17 @@ def _short(report: ValidationReport) -> list[str]:
     Where they fill more than a screen, warnings are told without; what is beyond the longest report is counted.
     """
     told = [item for item in report.told if item.finding.suppressed is None]
-    groups = _groups([item for item in told if item.finding.severity is not Severity.NOTE])
-    head = ["\n".join(_first_lines(report)), "\n".join(_reasons(report, (Status.BLOCKED,)))]
+    shown = blocks(item for item in told if item.finding.severity is not Severity.NOTE)
+    head = [_first_lines(report), _reasons(report, Status.BLOCKED)]
     foot = [_next_best(report), _notes(told), _more(report)]
-    texts = [_short_text(group) for group in groups]
+    texts = [_short_text(block) for block in shown]
     if _height([*head, *texts, *foot]) > _SCREEN:
-        texts = [
-            _short_text(group) if group[0].finding.severity is Severity.ERROR else _group_line(group, 0)
-            for group in groups
-        ]
-    shown = len(texts)
-    while shown and _height([*head, *texts[:shown], *foot]) > _LONGEST:
-        shown -= 1
-    left = sum(map(len, groups[shown:]))
-    return [*head, *texts[:shown], f"{counted_words(left, 'more finding')}: --all tells them." if left else "", *foot]
+        texts = [_short_text(block) if block.severity is Severity.ERROR else _line(block, 0) for block in shown]
+    most = len(texts)
+    while most and _height([*head, *texts[:most], *foot]) > _LONGEST:
+        most -= 1
+    left = sum(len(block.findings) for block in shown[most:])
+    return [*head, *texts[:most], f"{counted_words(left, 'more finding')}: --all tells them." if left else "", *foot]
 
 
 def _height(blocks: Sequence[str]) -> int:
@@ -139,13 +132,13 @@ def describe_all(outcomes: Sequence[Outcome]) -> str:
 def describe_briefly(report: ValidationReport) -> str:
     """The verdict of one model, every error in full, and the warnings by what they are about, a line each."""
     told = [item for item in report.told if item.finding.suppressed is None]
-    errors = _groups([item for item in told if item.finding.severity is Severity.ERROR])
-    warnings: dict[tuple[str, str | None], list[Finding]] = {}
+    errors = blocks(item for item in told if item.finding.severity is Severity.ERROR)
+    warnings: dict[tuple[str, str | None], list[Told]] = {}
     for item in told:
         if item.finding.severity is Severity.WARNING:
-            warnings.setdefault((item.finding.check, item.finding.engine), []).append(item.finding)
-    lines = [*_first_lines(report), *map(_group_line, errors)]
-    lines += [f"  {_heading(group[0])}{_times(len(group))}" for group in warnings.values()]
+            warnings.setdefault((item.finding.check, item.finding.engine), []).append(item)
+    lines = [_first_lines(report), *map(_line, errors)]
+    lines += [f"  {_heading(block_of(group))}{_times(len(group))}" for group in warnings.values()]
     return "\n".join(lines)
 
 
@@ -157,109 +150,51 @@ def describe_unused(rules: Iterable[Suppression]) -> str:
     return _wrapped(f"Note: these suppressions cover no finding and can go: {', '.join(names)}.")
 
 
-def _first_lines(report: ValidationReport) -> list[str]:
+def _first_lines(report: ValidationReport) -> str:
     """The verdict, and what the file does as it is loaded."""
-    return [_verdict_line(report), *([report.as_loaded] if report.as_loaded else [])]
+    return "\n".join(
+        [f"{_verdict(report)}: {summary_words(report)}", *([report.as_loaded] if report.as_loaded else [])]
+    )
 
 
-def _verdict_line(outcome: Outcome) -> str:
-    word = click.style(outcome.verdict.upper(), fg=_COLORS[outcome.verdict], bold=True)
-    if isinstance(outcome, Unusable):
-        return f"{word}  {printable(outcome.model)}"
-    severities, statuses = severity_counts(outcome), status_counts(outcome)
-    found = ", ".join(counted_words(severities.get(item, 0), item.value) for item in Severity)
-    ran = statuses.get(Status.PASS, 0) + statuses.get(Status.FAIL, 0)
-    left = [f"{statuses[item]} {item.value}" for item in (Status.SKIPPED, Status.BLOCKED) if statuses.get(item)]
-    suppressed = len(outcome.findings) - len(outcome.counted)
-    parts = [
-        found,
-        *([f"{counted_words(suppressed, 'finding')} suppressed"] if suppressed else []),
-        ", ".join([f"{ran} of {len(outcome.checks)} checks ran", *left]),
-        f"{float(outcome.environment.get('seconds', 0.0)):.1f} s",
-        *([_unfinished(outcome)] if outcome.unfinished else []),
-        *(["interrupted: partial"] if outcome.environment.get("interrupted") else []),
-    ]
-    return f"{word}  {printable(outcome.model)}: {'; '.join(parts)}"
+def _verdict(outcome: Outcome) -> str:
+    return f"{click.style(outcome.verdict.upper(), fg=_COLORS[outcome.verdict], bold=True)}  {printable(outcome.model)}"
 
 
-def _unfinished(report: ValidationReport) -> str:
-    status = ", exit status 3" if report.exit_status == ExitStatus.FAULT else ""
-    return f"{counted_words(len(report.unfinished), 'check')} not finished{status}"
+def _reasons(report: ValidationReport, *statuses: Status) -> str:
+    return "\n".join(_wrapped(printable(reason), 2, 4) for reason in reasons(report, statuses))
 
 
-def _reasons(report: ValidationReport, statuses: Collection[Status]) -> list[str]:
-    """Why checks of some statuses did not run, or were not finished, a line for each reason."""
-    grouped: dict[tuple[Status, str], list[str]] = {}
-    for check in report.checks:
-        if check.status in statuses or check.unfinished:
-            grouped.setdefault((check.status, check.reason or "no reason given"), []).append(check.check)
-    return [
-        _wrapped(printable(f"{status.value} ({', '.join(dict.fromkeys(checks))}): {reason}"), 2, 4)
-        for (status, reason), checks in grouped.items()
-    ]
-
-
-def _groups(told: Sequence[Told]) -> list[list[Told]]:
-    """Findings that say the same of different places, in the order of the first of each."""
-    grouped: dict[tuple[object, ...], list[Told]] = {}
-    for item in told:
-        finding = item.finding
-        key = (finding.check, finding.engine, finding.severity, finding.blame, finding.suppressed)
-        grouped.setdefault((*key, _pattern(finding)), []).append(item)
-    return list(grouped.values())
-
-
-def _pattern(finding: Finding) -> str:
-    """Message and remedy without the names and numbers of this finding."""
-    text = f"{finding.message} {finding.remedy}"
-    names = {finding.joint, finding.link, *(finding.pair or ()), *(finding.q or ())} - {None, ""}
-    for name in sorted(map(str, names), key=len, reverse=True):
-        text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", "@", text)
-    return _NUMBER.sub("#", text)
-
-
-def _short_text(group: Sequence[Told]) -> str:
+def _short_text(block: FindingBlock) -> str:
     """What is wrong, where else, what to do, and what follows from it."""
-    first = group[0].finding
-    follows = follow_words(item for told in group for item in told.consequences)
-    lines = [
-        _heading(first, f", {len(group)} times" if len(group) > 1 else ""),
-        _wrapped(printable(first.message), 2, 2),
-        *([_wrapped(printable(f"Also: {_others(group)}."), 2, 2)] if len(group) > 1 else []),
-        _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
-        *([_wrapped(f"Follows from it: {follows}.", 2, 2)] if follows else []),
-        *_plain_call(group[0]),
-    ]
-    return "\n".join(lines)
+    follows = f"{block.follows}." if block.follows else ""
+    return _paragraphs(block, block.message, block.also, block.remedy, follows, _plain_call(block))
 
 
-def _plain_call(told: Told) -> list[str]:
+def _plain_call(block: FindingBlock) -> str:
     """The call of an engine that shows a finding or what follows from it; its code goes on with `--all`."""
-    codes = [item.reproduction for item in (told.finding, *told.consequences) if item.reproduction is not None]
+    first = [item for item in block.consequences if item.cause is block.findings[0]]
+    codes = [item.reproduction for item in (block.findings[0], *first) if item.reproduction is not None]
     call = _CALL.search(codes[0]) if codes else None
-    return [] if call is None else [_wrapped(f"To see it: {printable(call.group())} and what --all prints.", 2, 2)]
+    return "" if call is None else f"To see it: {call.group()} and what --all prints."
 
 
-def _others(group: Sequence[Told]) -> str:
-    """Where else the same was found."""
-    places = list(dict.fromkeys(where(item.finding) for item in group[1:]))
-    more = len(places) - _PLACES
-    return "; ".join(places[:_PLACES]) + (f" and {more} more" if more > 0 else "")
+def _paragraphs(block: FindingBlock, *words: str) -> str:
+    count = len(block.findings)
+    heading = _heading(block) + (f", {count} times" if count > 1 else "")
+    return "\n".join([heading, *(_wrapped(printable(text), 2, 2) for text in words if text)])
 
 
-def _group_text(group: Sequence[Told]) -> str:
-    if len(group) < MANY:
-        return "\n\n".join(map(_finding_text, group))
-    first = group[0].finding
-    table = format_table(("where", "at", "measured", "line"), [_group_row(item.finding) for item in group])
+def _long_text(block: FindingBlock) -> str:
+    """What is wrong, what to do, what follows from it and the code that shows it; many places as a table."""
+    many = len(block.findings) > 1
+    example = f"For example: {block.message}" if many else block.message
     lines = [
-        _heading(first, f", {len(group)} times"),
-        _wrapped(f"For example: {printable(first.message)}", 2, 2),
-        _wrapped(f"Remedy: {printable(first.remedy)}", 2, 2),
-        *_consequences([item for told in group for item in told.consequences]),
-        *_reproduction(first),
-        *_suppressed(first),
-        textwrap.indent(table, "  "),
+        _paragraphs(block, "" if many else block.facts, example, block.remedy),
+        *_consequences(block.consequences),
+        *_code(block.code),
+        *([_wrapped(printable(block.suppressed), 2, 2)] if block.suppressed else []),
+        *([textwrap.indent(_table(places(block), "-"), "  ")] if many else []),
     ]
     return "\n".join(lines)
 
@@ -269,82 +204,43 @@ def _consequences(findings: Sequence[Finding]) -> list[str]:
     if not findings:
         return []
     lines = [_wrapped(f"{title(item)}: {printable(item.message)}", 4, 6) for item in findings]
-    shown = next((item for item in findings if item.reproduction is not None), None)
-    return ["  Follows from it:", *lines, *([] if shown is None else _reproduction(shown))]
+    shown = next((item.reproduction for item in findings if item.reproduction is not None), "")
+    return ["  Follows from it:", *lines, *_code(shown)]
 
 
-def _group_row(finding: Finding) -> tuple[str, ...]:
-    cells = (where(finding), configuration(finding.q), measure(finding), str(finding.line or ""))
-    return tuple(printable(cell) or "-" for cell in cells)
+def _heading(block: FindingBlock) -> str:
+    severity = click.style(block.severity.value, fg=_SEVERITY_COLORS[block.severity], bold=True)
+    return f"{severity} {block.title} {block.blames}"
 
 
-def _finding_text(told: Told) -> str:
-    finding = told.finding
-    at = configuration(finding.q)
-    facts = [
-        where(finding),
-        f"at {at}" if at else "",
-        measure(finding),
-        f"line {finding.line}" if finding.line is not None else "",
-    ]
-    shown = "; ".join(fact for fact in facts if fact)
-    lines = [
-        _heading(finding),
-        *([_wrapped(printable(shown), 2, 2)] if shown else []),
-        _wrapped(printable(finding.message), 2, 2),
-        _wrapped(f"Remedy: {printable(finding.remedy)}", 2, 2),
-        *_consequences(told.consequences),
-        *_reproduction(finding),
-        *_suppressed(finding),
-    ]
-    return "\n".join(lines)
-
-
-def _heading(finding: Finding, more: str = "") -> str:
-    severity = click.style(finding.severity.value, fg=_SEVERITY_COLORS[finding.severity], bold=True)
-    return f"{severity} {title(finding)} (blames {finding.blame.value}){more}"
-
-
-def _reproduction(finding: Finding) -> list[str]:
+def _code(text: str) -> list[str]:
     """The code that shows it, as it can be copied: no line is broken."""
-    if finding.reproduction is None:
-        return []
-    return ["  To see it:", textwrap.indent(printable(finding.reproduction.rstrip("\n")), "    ")]
+    return ["  To see it:", textwrap.indent(printable(text.rstrip("\n")), "    ")] if text else []
 
 
-def _suppressed(finding: Finding) -> list[str]:
-    if finding.suppressed is None:
-        return []
-    return [_wrapped(f"Suppressed, does not count: {printable(finding.suppressed)}", 2, 2)]
-
-
-def _joint_table(report: ValidationReport) -> str:
-    rows = [tuple(map(printable, row)) for row in joint_rows(report)]
-    return format_table(JOINT_HEADINGS, rows) if rows else ""
+def _table(table: Table, empty: str = "") -> str:
+    rows = [tuple(printable(cell) or empty for cell in row) for row in table.rows]
+    return format_table(table.headings, rows) if rows else ""
 
 
 def _next_best(report: ValidationReport) -> str:
-    """What the inference would have chosen next where a joint failed; nothing if it left no record beside the model."""
-    rows = [tuple(map(printable, row)) for row in next_best_rows(report)]
-    folder = Path(report.model).parent
-    more = f"kinematify refine {folder} simulates them and chooses again."
-    return f"{format_table(NEXT_BEST_HEADINGS, rows)}\n{more}" if rows else ""
+    table = _table(next_best_table(report))
+    more = f"kinematify refine {Path(report.model).parent} simulates them and chooses again."
+    return f"{table}\n{more}" if table else ""
 
 
 def _brief(outcome: Outcome) -> str:
     if isinstance(outcome, Unusable):
         return describe(outcome)
-    lines = _first_lines(outcome)
     told = [item for item in outcome.told if item.finding.suppressed is None]
-    lines += map(_group_line, _groups([item for item in told if item.finding.severity is not Severity.NOTE]))
-    return "\n".join(lines)
+    shown = blocks(item for item in told if item.finding.severity is not Severity.NOTE)
+    return "\n".join([_first_lines(outcome), *map(_line, shown)])
 
 
-def _group_line(group: Sequence[Told], indent: int = 2) -> str:
-    first = group[0].finding
-    about = where(first)
-    message = f"{about}: {first.message}" if about else first.message
-    return _wrapped(f"{_heading(first)}{_times(len(group))}: {printable(message)}", indent, indent + 2)
+def _line(block: FindingBlock, indent: int = 2) -> str:
+    about = where(block.findings[0])
+    message = f"{about}: {block.message}" if about else block.message
+    return _wrapped(f"{_heading(block)}{_times(len(block.findings))}: {printable(message)}", indent, indent + 2)
 
 
 def _times(count: int) -> str:

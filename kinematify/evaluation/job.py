@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
-from kinematify.batch.processes import sentence
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import NOTHING_PREDICTED, ObjectScore, Prediction, prediction_of, score_object
 from kinematify.pipeline.clock import peak_mb
+from kinematify.processes.pool import sentence
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from kinematify.assembly.erase import ErasedModel
-    from kinematify.batch.engine import TaskFailure
     from kinematify.pipeline import Inference
+    from kinematify.processes.pool import TaskFailure
 
 INFER = "kinematify.pipeline:infer"
 """Function under test, as ``module:name``."""

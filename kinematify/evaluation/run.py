@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
-from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import WORK_FOLDER, Pool
 from kinematify.config import Config, load_config
 from kinematify.errors import ConfigError, InputError
@@ -18,6 +17,7 @@ from kinematify.evaluation.datasets import CONDITIONS, Condition, find_objects, 
 from kinematify.evaluation.job import CLEAN, INFER, Job, JobResult, run_job, unscored
 from kinematify.evaluation.record import NOT_INFERRING, Header, Report, code_version, new_header
 from kinematify.evaluation.summary import summaries
+from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

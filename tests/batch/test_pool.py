@@ -15,9 +15,8 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter
 
-from kinematify.batch.engine import TaskFailure
-from kinematify.batch.pool import Pool, run_tasks
-from kinematify.batch.processes import Processes
+from kinematify.batch.pool import Pool
+from kinematify.processes.pool import Processes, TaskFailure, WorkItem, run_tasks
 from tests.places import ROOT
 
 NUMBER = TypeAdapter(int)
@@ -120,8 +119,9 @@ def crash_once(marker: Path) -> int:
 
 
 def test_a_task_whose_worker_died_is_begun_again(tmp_path: Path) -> None:
-    tasks = [("once", partial(crash_once, tmp_path / "marker")), ("always", crash)]
-    found = dict(run_tasks(tasks, Processes(1), timeout=60.0, lives=2))
+    calls = {"once": partial(crash_once, tmp_path / "marker"), "always": crash}
+    tasks = [WorkItem(key=key, call=call, timeout=60.0) for key, call in calls.items()]
+    found = dict(run_tasks(tasks, Processes(1), lives=2))
     assert found["once"] == 7
     assert isinstance(found["always"], TaskFailure)
     assert found["always"].message == "the worker ended with SIGSEGV, the last of 2 that it cost"
@@ -132,8 +132,9 @@ def take_memory() -> int:
 
 
 def test_what_needs_more_memory_than_allowed_fails_alone() -> None:
-    found = dict(run_tasks([("much", take_memory), ("little", fail)], Processes(1, memory=2**32), timeout=60.0))
-    assert isinstance(found["much"], TaskFailure)
-    assert found["much"].message.startswith("MemoryError")
-    assert isinstance(found["little"], TaskFailure)
-    assert found["little"].message.startswith("ValueError")
+    tasks = [WorkItem(key=call.__name__, call=call, timeout=60.0) for call in (take_memory, fail)]
+    found = dict(run_tasks(tasks, Processes(1, memory=2**32)))
+    assert isinstance(found["take_memory"], TaskFailure)
+    assert found["take_memory"].message.startswith("MemoryError")
+    assert isinstance(found["fail"], TaskFailure)
+    assert found["fail"].message.startswith("ValueError")

@@ -13,12 +13,11 @@ from lxml import etree
 
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.content import configuration, joint_range, measure, number, where
 from kinematify.validation.formats.html import as_html
-from kinematify.validation.formats.json_lines import as_json_text
 from kinematify.validation.formats.junit import as_junit
 from kinematify.validation.formats.sarif import as_sarif
-from kinematify.validation.formats.text import configuration, joint_range, measure, number, where
-from kinematify.validation.outcome import Outcome, Unusable
+from kinematify.validation.outcome import Outcome, Unusable, as_json_text
 from tests.reports import EVIL, add_checks, finding, full_report, report, result
 
 UNUSABLE = Unusable(model="models/arm.xacro", message="It is xacro. Expand it first.")

@@ -14,9 +14,10 @@ import pytest
 
 from kinematify.cli.app import run
 from kinematify.config.validation import load_settings
+from kinematify.processes.start import ONE_THREAD
 from kinematify.validation import run as validation
 from kinematify.validation.checks import checks_of
-from kinematify.validation.isolation import ONE_THREAD, Stage, StageEnd, run_stages
+from kinematify.validation.isolation import Stage, StageEnd, run_stages
 from kinematify.validation.plan import keys
 from kinematify.validation.stage import StageRequest
 from tests.validation.engine_models import cabinet
@@ -91,7 +92,7 @@ def test_the_command_needs_no_server_beside_it(tmp_path: Path) -> None:
     script = """
 import sys
 from kinematify.cli.app import run
-from kinematify.validation.isolation import worker_context
+from kinematify.processes.start import worker_context
 assert run(["validate", sys.argv[1], "--engines", "none"]) == 0
 assert worker_context().get_start_method() == "fork", "a library was loaded that keeps threads"
 """

@@ -10,7 +10,7 @@ from kinematify.robot.urdf_numbers import line_of
 from kinematify.validation.check import check
 from kinematify.validation.checks.file_numbers import finite_numbers
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.words import blame_of, shown
+from kinematify.validation.precheck.urdf import blame_of, shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,7 @@ from kinematify.robot.urdf_numbers import line_of
 from kinematify.robot.urdf_text import has_doctype
 from kinematify.validation.check import check
 from kinematify.validation.finding import Blame, Severity
-from kinematify.validation.precheck.words import shown
+from kinematify.validation.precheck.urdf import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

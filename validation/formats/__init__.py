@@ -1,1 +1,1 @@
-"""A report as other programs and people read it: JSON, JUnit, SARIF and HTML."""
+"""A report as other programs and people read it: JUnit, SARIF and HTML."""

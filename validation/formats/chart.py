@@ -132,11 +132,5 @@ def _anchor(x: float, width: int) -> str:
     return "end" if x > width - 2 * _RIGHT else "start" if x < _LEFT + _RIGHT else "middle"
 
 
-def _extent(line: Series) -> str:
-    """The smallest and the largest value, for those who do not see the line."""
-    values = [value for _, value in line.points]
-    return f"{min(values):.3g} to {max(values):.3g}"
-
-
 def _dash(line: Series) -> str:
     return {"second": "- -", "third": ". ."}.get(line.style, "\N{EM DASH}")

@@ -9,37 +9,41 @@ import struct
 from typing import TYPE_CHECKING
 
 from kinematify.validation.checks import CHECKS
-from kinematify.validation.finding import Blame, Severity, Status
+from kinematify.validation.finding import Blame, Severity
+from kinematify.validation.formats.content import (
+    Table,
+    block_of,
+    check_table,
+    family_table,
+    is_pair_note,
+    joint_table,
+    next_best_table,
+    number,
+    pair_note_table,
+    round_table,
+    summary_words,
+    title,
+)
 from kinematify.validation.formats.html_frame import badge, page, table, text
 from kinematify.validation.formats.html_motion import curves, show_button, viewer
-from kinematify.validation.formats.html_pairs import pair_matrix
-from kinematify.validation.formats.text import (
-    FAMILY_HEADINGS,
-    JOINT_HEADINGS,
-    NEXT_BEST_HEADINGS,
-    configuration,
-    family_rows,
-    figures,
-    follow_words,
-    joint_rows,
-    measure,
-    next_best_rows,
-    title,
-    where,
-)
-from kinematify.validation.inferred import ROUND_HEADINGS, round_rows, round_words
-from kinematify.validation.outcome import Unusable, counted_words, severity_counts, status_counts
+from kinematify.validation.inferred import round_words
+from kinematify.validation.outcome import Unusable, severity_counts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kinematify.validation.causes import Told
-    from kinematify.validation.finding import CheckResult, Finding
+    from kinematify.validation.finding import Finding
+    from kinematify.validation.formats.content import FindingBlock
     from kinematify.validation.outcome import Outcome
     from kinematify.validation.report import ValidationReport
+    from kinematify.validation.summary import PairSummary, PairTable
 
 _COUNTS = ("", "", "number", "number", "number", "number", "number")
 """Classes of the columns of the table of families."""
+_MATRIX_AT_MOST = 40
+"""Bodies; a larger matrix is read by nobody."""
+_OPEN_AT_MOST = 10
+_CLEAR = "\N{MIDDLE DOT}"
 
 
 def as_html(outcomes: Sequence[Outcome], pictures: Mapping[str, bytes], scenes: Mapping[str, str] | None = None) -> str:
@@ -77,7 +81,7 @@ def _contents(outcomes: Sequence[Outcome]) -> str:
         (
             f'<a href="#model-{index}">{text(outcome.model)}</a>',
             badge(outcome.verdict),
-            *(("", "", "") if isinstance(outcome, Unusable) else map(str, _severities(outcome))),
+            *(("", "", "") if isinstance(outcome, Unusable) else _counts(outcome)),
         )
         for index, outcome in enumerate(outcomes)
     ]
@@ -89,9 +93,9 @@ def _contents(outcomes: Sequence[Outcome]) -> str:
     )
 
 
-def _severities(report: ValidationReport) -> tuple[int, ...]:
+def _counts(report: ValidationReport) -> tuple[str, ...]:
     counts = severity_counts(report)
-    return tuple(counts.get(severity, 0) for severity in Severity)
+    return tuple(str(counts.get(severity, 0)) for severity in Severity)
 
 
 def _filters(outcomes: Sequence[Outcome]) -> str:
@@ -115,19 +119,24 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
         return f"<section>{heading}<p>{text(outcome.message)}</p></section>"
     parts = [
         heading,
-        *([f"<p>{text(outcome.as_loaded)}</p>"] if outcome.as_loaded else []),
-        f"<p>{text(_summary(outcome))}</p>",
+        f"<p>{text(outcome.as_loaded)}</p>" if outcome.as_loaded else "",
+        f"<p>{text(summary_words(outcome))}</p>",
         _picture(picture),
         viewer(index, scene),
-        "<h3>Families</h3>",
-        table(FAMILY_HEADINGS, _family_cells(outcome), name=f"families-{index}", classes=_COUNTS),
+        _table("Families", family_table(outcome), f"families-{index}", _COUNTS),
         "<h3>Findings</h3>",
         _findings(index, outcome, with_viewer=bool(scene)),
-        _joints(index, outcome),
-        _next_best(index, outcome),
+        *(
+            _table(heading, content, f"{name}-{index}")
+            for heading, name, content in (
+                ("Joints", "joints", joint_table(outcome)),
+                ("Next best joints", "next", next_best_table(outcome)),
+            )
+            if content.rows
+        ),
         _rounds(index, outcome),
         curves(outcome),
-        pair_matrix(index, outcome.pairs),
+        _pair_matrix(index, outcome.pairs),
         _pairs(index, outcome),
         _checks(index, outcome),
         _environment(outcome),
@@ -135,16 +144,20 @@ def _section(index: int, outcome: Outcome, picture: bytes, scene: str) -> str:
     return "<section>" + "\n".join(part for part in parts if part) + "</section>"
 
 
-def _summary(report: ValidationReport) -> str:
-    found = ", ".join(
-        counted_words(count, severity.value) for severity, count in zip(Severity, _severities(report), strict=True)
-    )
-    counts = status_counts(report)
-    checks = ", ".join(f"{counts.get(status, 0)} {status.value}" for status in Status)
-    suppressed = len(report.findings) - len(report.counted)
-    more = f" {counted_words(suppressed, 'finding')} suppressed." if suppressed else ""
-    partial = " The run was interrupted: this report is partial." if report.environment.get("interrupted") else ""
-    return f"{found}. Checks: {checks}.{more}{partial}"
+def _table(heading: str, content: Table, name: str, classes: Sequence[str] = ()) -> str:
+    return f"<h3>{heading}</h3>{_plain_table(content, name, classes)}"
+
+
+def _plain_table(content: Table, name: str, classes: Sequence[str] = ()) -> str:
+    return table(content.headings, [tuple(map(text, row)) for row in content.rows], name=name, classes=classes)
+
+
+def _rounds(index: int, report: ValidationReport) -> str:
+    """How the model was refined."""
+    if report.refinement is None:
+        return ""
+    words = "".join(f"<p>{text(line)}</p>" for line in round_words(report.refinement))
+    return _table("Rounds of refinement", round_table(report.refinement), f"rounds-{index}") + words
 
 
 def _picture(png: bytes) -> str:
@@ -169,14 +182,12 @@ _PNG_SIZES = slice(16, 24)
 """Where the first chunk of a PNG has width and height."""
 
 
-def _family_cells(report: ValidationReport) -> list[tuple[str, ...]]:
-    return [tuple(map(text, row)) for row in family_rows(report)]
-
-
 def _findings(index: int, report: ValidationReport, *, with_viewer: bool) -> str:
-    told = [item for item in report.told if not _is_pair_note(item)]
+    told = [item for item in report.told if not is_pair_note(item)]
     cards = (
-        _finding(item, f"finding-{index}-{k + 1}", _shown(index, report, item.finding) if with_viewer else "")
+        _finding(
+            block_of([item]), f"finding-{index}-{k + 1}", _shown(index, report, item.finding) if with_viewer else ""
+        )
         for k, item in enumerate(told)
     )
     return "".join(cards) or "<p>None.</p>"
@@ -190,96 +201,127 @@ def _shown(index: int, report: ValidationReport, finding: Finding) -> str:
     return f"<p>{show_button(index, q, links, 'Show in 3-D')}</p>" if links or q else ""
 
 
-def _finding(told: Told, anchor: str, button: str) -> str:
-    finding = told.finding
-    facts = [
-        where(finding),
-        finding.engine or "",
-        f"at {configuration(finding.q)}" if configuration(finding.q) else "",
-        measure(finding),
-        f"blames {finding.blame.value}",
-        f"line {finding.line}" if finding.line is not None else "",
-    ]
-    shut = finding.suppressed is not None
+def _finding(block: FindingBlock, anchor: str, button: str) -> str:
+    (finding,) = block.findings
+    severity = block.severity.value
     return (
-        f'<div id="{anchor}" class="finding {finding.severity.value}{" suppressed" if shut else ""}" '
-        f'data-severity="{finding.severity.value}" data-blame="{finding.blame.value}">'
-        f'<p><strong>{finding.severity.value} <a href="#check-{finding.check}">{text(title(finding))}</a></strong> '
+        f'<div id="{anchor}" class="finding {severity}{" suppressed" if block.suppressed else ""}" '
+        f'data-severity="{severity}" data-blame="{finding.blame.value}">'
+        f'<p><strong>{severity} <a href="#check-{finding.check}">{text(block.title)}</a></strong> {block.blames} '
         f'<a class="faint" href="#{anchor}" aria-label="Link to this finding">#</a></p>'
-        f'<p class="faint">{text("; ".join(fact for fact in facts if fact))}</p>'
-        f"<p>{text(finding.message)}</p><p>Remedy: {text(finding.remedy)}</p>"
-        + (f"<pre>{text(finding.reproduction)}</pre>" if finding.reproduction else "")
-        + (f"<p>Suppressed: {text(finding.suppressed or '')}</p>" if shut else "")
-        + _consequences(told.consequences)
+        + (f'<p class="faint">{text(block.facts)}</p>' if block.facts else "")
+        + f"<p>{text(block.message)}</p><p>{text(block.remedy)}</p>"
+        + _code(block.code)
+        + (f"<p>{text(block.suppressed)}</p>" if block.suppressed else "")
+        + _consequences(block)
         + button
         + "</div>"
     )
 
 
-def _consequences(findings: Sequence[Finding]) -> str:
+def _consequences(block: FindingBlock) -> str:
     """What follows from a finding, folded up; nothing if nothing does."""
-    if not findings:
-        return ""
     items = "".join(
         f'<li><a href="#check-{item.check}">{text(title(item))}</a>: {text(item.message)}'
-        + (f"<pre>{text(item.reproduction)}</pre>" if item.reproduction else "")
-        + "</li>"
-        for item in findings
+        f"{_code(item.reproduction or '')}</li>"
+        for item in block.consequences
     )
-    return f"<details><summary>Follows from it: {text(follow_words(findings))}</summary><ul>{items}</ul></details>"
+    return f"<details><summary>{text(block.follows)}</summary><ul>{items}</ul></details>" if items else ""
 
 
-def _joints(index: int, report: ValidationReport) -> str:
-    if not report.joints:
+def _code(code: str) -> str:
+    return f"<pre>{text(code)}</pre>" if code else ""
+
+
+def _pair_matrix(index: int, pairs: PairTable | None) -> str:
+    """Which bodies meet which: a matrix for the eye, and a table with the reason of every pair; empty without any."""
+    if pairs is None or len(pairs.bodies) < 2:
         return ""
-    rows = [tuple(map(text, row)) for row in joint_rows(report)]
-    return "<h3>Joints</h3>" + table(JOINT_HEADINGS, rows, name=f"joints-{index}")
+    rest = len(pairs.bodies) * (len(pairs.bodies) - 1) // 2 - len(pairs.pairs)
+    opened = " open" if len(pairs.bodies) <= _OPEN_AT_MOST else ""
+    inner = (_pair_grid(index, pairs) if len(pairs.bodies) <= _MATRIX_AT_MOST else "") + _pair_table(index, pairs.pairs)
+    words = f"{len(pairs.pairs)} touch at rest or meet, {rest} stay clear in all that was looked at"
+    return f"<details{opened}><summary>Pairs of bodies: {words}</summary>{inner}</details>"
 
 
-def _next_best(index: int, report: ValidationReport) -> str:
-    """What the inference would have chosen next where a joint failed; nothing if it left no record."""
-    rows = [tuple(map(text, row)) for row in next_best_rows(report)]
-    if not rows:
+def _pair_grid(index: int, pairs: PairTable) -> str:
+    known = {frozenset(item.pair): item for item in pairs.pairs}
+    head = "".join(f'<th scope="col" title="{text(body)}">{k + 1}</th>' for k, body in enumerate(pairs.bodies))
+    rows = "".join(
+        f'<tr><th scope="row">{k + 1} {text(body)}</th>'
+        + "".join(_pair_cell(body, other, known.get(frozenset((body, other)))) for other in pairs.bodies)
+        + "</tr>"
+        for k, body in enumerate(pairs.bodies)
+    )
+    body_rows = f"<thead><tr><th></th>{head}</tr></thead><tbody>{rows}</tbody>"
+    return (
+        '<div class="scroll" tabindex="0" role="region" aria-label="Matrix of pairs">'
+        f'<table id="matrix-{index}"><caption>{_PAIR_LETTERS}</caption>{body_rows}</table></div>'
+    )
+
+
+_PAIR_LETTERS = (
+    "J: joined and in contact at rest; R: in contact at rest; A: in contact nearly always; M: meet while a joint "
+    f"moves; {_CLEAR}: stay clear."
+)
+
+
+def _pair_cell(body: str, other: str, item: PairSummary | None) -> str:
+    if body == other:
+        return "<td></td>"
+    if item is None:
+        return f'<td class="faint">{_CLEAR}</td>'
+    letter = _pair_letter(item)
+    state = ' class="fail"' if item.meets else ""
+    return f'<td{state} title="{text(f"{body} - {other}: {_pair_reason(item)}")}">{letter}</td>'
+
+
+def _pair_letter(item: PairSummary) -> str:
+    first = "" if item.reason is None else {"joined": "J", "in contact at": "R"}.get(_reason_kind(item.reason), "A")
+    return first + ("M" if item.meets else "")
+
+
+def _reason_kind(reason: str) -> str:
+    return next((start for start in ("joined", "in contact at") if reason.startswith(start)), "")
+
+
+def _pair_reason(item: PairSummary) -> str:
+    met = [f"meet while {joint} moves, from {number(value)}" for joint, value, _ in item.meets]
+    return "; ".join([*([item.reason] if item.reason else []), *met])
+
+
+def _pair_table(index: int, pairs: Sequence[PairSummary]) -> str:
+    if not pairs:
         return ""
-    return "<h3>Next best joints</h3>" + table(NEXT_BEST_HEADINGS, rows, name=f"next-{index}")
-
-
-def _rounds(index: int, report: ValidationReport) -> str:
-    """How the model was refined."""
-    if report.refinement is None:
-        return ""
-    rows = [tuple(map(text, row)) for row in round_rows(report.refinement)]
-    words = "".join(f"<p>{text(line)}</p>" for line in round_words(report.refinement))
-    return "<h3>Rounds of refinement</h3>" + table(ROUND_HEADINGS, rows, name=f"rounds-{index}") + words
+    rows = [
+        (
+            text(" - ".join(item.pair)),
+            text(_pair_reason(item)),
+            number(1e3 * item.at_rest),
+            number(1e3 * item.tolerated),
+            number(1e3 * max((depth for _, _, depth in item.meets), default=0.0)),
+            show_button(index, {joint: value for joint, value, _ in item.meets[:1]}, item.pair, "Show"),
+        )
+        for item in pairs
+    ]
+    headings = ("pair", "reason", "at rest [mm]", "tolerated [mm]", "deeper on the way [mm]", "in 3-D")
+    return table(headings, rows, name=f"pair-reasons-{index}", classes=("", "", "number", "number", "number", ""))
 
 
 def _pairs(index: int, report: ValidationReport) -> str:
-    """Notes about pairs, such as why they may touch: often hundreds, so a table and not a card each."""
-    notes = [item.finding for item in report.told if _is_pair_note(item)]
-    if not notes:
+    """Notes about pairs, folded up; nothing if there are none."""
+    content = pair_note_table(report)
+    if not content.rows:
         return ""
-    rows = [tuple(map(text, (where(f), title(f), measure(f), f.message))) for f in notes]
-    inner = table(("pair", "check", "measured", "reason"), rows, name=f"pairs-{index}")
-    return f"<details><summary>{len(rows)} notes on pairs, such as why they may touch</summary>{inner}</details>"
-
-
-def _is_pair_note(told: Told) -> bool:
-    return told.finding.severity is Severity.NOTE and told.finding.pair is not None and not told.consequences
+    inner = _plain_table(content, f"pairs-{index}")
+    return (
+        f"<details><summary>{len(content.rows)} notes on pairs, such as why they may touch</summary>{inner}</details>"
+    )
 
 
 def _checks(index: int, report: ValidationReport) -> str:
-    rows = [
-        (text(title(check)), check.status.value, f"{check.seconds:.3f}", text(_remark(check)))
-        for check in report.checks
-    ]
-    inner = table(
-        ("check", "status", "seconds", "remark"), rows, name=f"checks-{index}", classes=("", "state", "number", "")
-    )
-    return f"<details><summary>All {len(rows)} checks</summary>{inner}</details>"
-
-
-def _remark(check: CheckResult) -> str:
-    return "; ".join(part for part in (check.reason or "", figures(check)) if part)
+    inner = _plain_table(check_table(report), f"checks-{index}", ("", "state", "number", ""))
+    return f"<details><summary>All {len(report.checks)} checks</summary>{inner}</details>"
 
 
 def _explained(outcomes: Sequence[Outcome]) -> str:

@@ -1,4 +1,4 @@
-"""What all probes are given: the document, and what a run says of it."""
+"""What all checks of the text are given: the document, and how they name its values and who answers for them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kinematify.robot.urdf_document import UrdfDocument
+from kinematify.validation.finding import Blame
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,3 +37,20 @@ class Urdf(UrdfDocument):
             package_dirs=tuple(folder.resolve() for folder in request.package_dirs),
             settings=request.settings.file,
         )
+
+
+def blame_of(element: _Element) -> Blame:
+    """Who answers for a number, by the nearest ancestor that tells."""
+    for item in (element, *element.iterancestors()):
+        if item.tag in ("inertial", "collision", "dynamics", "limit"):
+            return Blame.KINEMATICS if item.tag == "limit" else Blame.PHYSICS
+        if item.tag in ("visual", "joint"):
+            return Blame.ASSET if item.tag == "visual" else Blame.KINEMATICS
+    return Blame.ASSET
+
+
+def shown(text: str | None, most: int = 60) -> str:
+    """A value as it stands in the file, cut where it is very long."""
+    if text is None:
+        return "nothing"
+    return repr(text) if len(text) <= most else f"{text[:most]!r}... ({len(text)} characters)"

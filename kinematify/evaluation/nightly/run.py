@@ -11,7 +11,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import Pool
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
@@ -50,6 +49,7 @@ from kinematify.evaluation.record import code_version, replace_text
 from kinematify.evaluation.run import BenchmarkRequest, Variant, run_benchmark
 from kinematify.generate.procedural.request import from_text
 from kinematify.pipeline.generate import write_blueprint
+from kinematify.processes.pool import TaskFailure
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

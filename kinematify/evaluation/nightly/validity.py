@@ -21,9 +21,9 @@ from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status
+from kinematify.validation.formats.content import where
 from kinematify.validation.formats.html import as_html
 from kinematify.validation.formats.picture import scene_of
-from kinematify.validation.formats.text import where
 from kinematify.validation.outcome import severity_counts, status_counts
 from kinematify.validation.run import validate
 
