@@ -23,7 +23,7 @@ from kinematify.envs.mujoco_object import (
     poses_of,
 )
 from kinematify.envs.settings import load_settings
-from kinematify.simulation.mujoco_world import (
+from kinematify.simulation.mujoco_model import (
     add_latch,
     add_servos,
     attach,

@@ -11,8 +11,7 @@ import numpy as np
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
 from kinematify.envs.reading import Reading
 from kinematify.geometry.rest import overlapping_links
-from kinematify.simulation.mujoco_model import parse
-from kinematify.simulation.mujoco_world import world_spec
+from kinematify.simulation.mujoco_model import parse, world_spec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

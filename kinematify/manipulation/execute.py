@@ -17,7 +17,7 @@ from kinematify.manipulation.motion import timed
 from kinematify.manipulation.outcome import Hold
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import rigid_groups
-from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import prepare
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -15,8 +15,7 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.mujoco_model import parse
-from kinematify.simulation.mujoco_world import (
+from kinematify.simulation.mujoco_model import (
     add_latch,
     add_servos,
     attach,
@@ -24,6 +23,7 @@ from kinematify.simulation.mujoco_world import (
     joint_ids,
     largest_inertia,
     make_rubber,
+    parse,
     set_robot_servos,
     world_spec,
 )
