@@ -29,7 +29,7 @@ from kinematify.evaluation.perturb import CLEAN, PERTURBATIONS, perturbed
 from kinematify.evaluation.record import grouped, table
 from kinematify.pipeline import infer
 from kinematify.refinement import refine
-from kinematify.refinement.tiers import TIERS
+from kinematify.refinement.simulate import TIERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -114,7 +114,7 @@ class TierResult:
     """The answer of one tier."""
 
     tier: str
-    """`OFF`, or one of `kinematify.refinement.tiers.TIERS`."""
+    """`OFF`, or one of `kinematify.refinement.simulate.TIERS`."""
     score: ObjectScore
     seconds: float
     """Of the inference and the refinement together [s]."""

@@ -194,8 +194,7 @@ def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float],
     oracle = oracle_of(vlm, inference.config.vision)
     if oracle is None:
         return inference, ""
-    from kinematify.vision.votes import with_votes
-    from kinematify.vision.words import describe_votes
+    from kinematify.vision.votes import describe_votes, with_votes
 
     progress("asking a vision model about the joints", _INFERRED)
     inference, heard = with_votes(inference, oracle)
