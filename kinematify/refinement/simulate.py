@@ -21,7 +21,6 @@ from kinematify.geometry.solid import Solid
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
 from kinematify.validation.check import FeedbackRow, OpenCheck
@@ -141,14 +140,8 @@ def _in_world_frame(model: KinematicModel, visuals: Mapping[str, Part]) -> Robot
 
 def _motions_about(joint: Joint, point: FloatArray, values: FloatArray) -> FloatArray:
     """Motion of a joint about its line in the world frame at many values [rad or m], shape (n, 4, 4)."""
-    motions = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
-    if joint.kind is JointType.PRISMATIC:
-        motions[:, :3, 3] = values[:, None] * joint.axis
-    elif joint.kind.turns:
-        x, y, z = joint.axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
-        motions[:, :3, :3] += sine * cross + versine * (cross @ cross)
+    motions = joint.motions(values)
+    if joint.kind.turns:
         motions[:, :3, 3] = point - motions[:, :3, :3] @ point
     return motions
 
