@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
+from kinematify.cli.options import examples, words_of
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.study import print_studies, study_command
 from kinematify.cli.table import format_table
-from kinematify.cli.words import words_of
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
+from kinematify.cli.options import examples
 from kinematify.cli.progress import progress_reporter
 
 

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
 from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded
-from kinematify.cli.options import collision_option, with_collision
+from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 

@@ -15,7 +15,7 @@ from benchmarks.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
 from benchmarks.tables import benchmark_blocks
 from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
-from kinematify.cli.words import words_of
+from kinematify.cli.options import words_of
 from kinematify.config import load_config
 from kinematify.evaluation.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
 from kinematify.evaluation.run import run_benchmark
