@@ -66,7 +66,7 @@ class HandSettings(StageConfig):
     """Full speed of the hand in position control [ways/s]."""
 
 
-class TaskSettings(StageConfig):
+class SuccessSettings(StageConfig):
     """Success."""
 
     open_fraction: float
@@ -185,7 +185,7 @@ class EnvSettings(StageConfig):
     time: TimeSettings
     object: ObjectSettings
     hand: HandSettings
-    task: TaskSettings
+    task: SuccessSettings
     reward: RewardSettings
     reset: ResetSettings
     randomize: RandomizeSettings
