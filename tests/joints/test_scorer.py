@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from benchmarks.fit.trees import recipe_key
 from kinematify.errors import EnvironmentFault
+from benchmarks.fit.trees import recipe_key
 from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of
