@@ -7,7 +7,7 @@ import shutil
 import tempfile
 import weakref
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ import numpy as np
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.envs.bundled import DEFAULT, FAMILY_PREFIX, PREFIX, find_bundled, write_bundled
+from kinematify.envs.settings import load_settings as load_env_settings
 from kinematify.errors import InputError
 from kinematify.formats.fix import fix_urdf
 from kinematify.geometry.scene import read_scene, transformed
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
     from kinematify.robot.robot import Robot
 
 AUTO = "auto"
+ENGINES = ("mujoco", "pybullet")
+"""In which environments run."""
 _PLINTH = 0.4  # objects whose parts swing below them stand so much higher [m]
 _WAY_SAMPLES = 33
 _LEAST_SHARE = 0.4  # of the longest way of the part: nobody pulls a lid next to its hinge
@@ -349,3 +352,23 @@ def _standing(scene: Scene) -> FloatArray:
     T_world_root = np.eye(4)
     T_world_root[:3, 3] = [*(-0.5 * (low + high)[:2]), -min(lowest) + (_PLINTH if sinks else 0.0)]
     return T_world_root
+
+
+def shared_articulated_object(model: str | Path | None) -> ArticulatedObject:
+    """Return the object of a `model` keyword, read once per process as long as its file stays the same."""
+    path = Path(model) if isinstance(model, Path) or (isinstance(model, str) and Path(model).exists()) else None
+    file = path / "model.urdf" if path is not None and path.is_dir() else path
+    stamp = (file.stat().st_mtime_ns, file.stat().st_size) if file is not None and file.is_file() else None
+    return _loaded(None if model is None else str(model), stamp)
+
+
+@lru_cache(maxsize=8)
+def _loaded(model: str | None, stamp: tuple[int, int] | None) -> ArticulatedObject:
+    del stamp
+    return load_articulated_object(model)
+
+
+@lru_cache(maxsize=32)
+def shared_target(articulated_object: ArticulatedObject, joint: str) -> Target:
+    """Return the joint of a `joint` keyword, its hold searched once per process."""
+    return find_target(articulated_object, joint, load_env_settings().hand)

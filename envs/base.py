@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import gymnasium
 import numpy as np
+from gymnasium import spaces
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.articulated_object import AUTO, held_links
+from kinematify.envs.articulated_object import AUTO, ENGINES, held_links, shared_articulated_object, shared_target
 from kinematify.envs.dynamics import draw, drawing, no_draw
 from kinematify.envs.goal import Goal
-from kinematify.envs.picture import Painter, Piece, View, Window, has_screen, require_screen
+from kinematify.envs.picture import Painter, Piece, View, ViewerWindow, has_screen, require_screen
 from kinematify.envs.settings import load_settings
 from kinematify.envs.verdict import require_valid
-from kinematify.envs.worlds import ENGINES, shared_articulated_object, shared_target
 from kinematify.errors import InputError
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.goal import Progress
-    from kinematify.envs.reading import Reading
+    from kinematify.envs.goal import ObjectState, Progress
+    from kinematify.envs.mujoco_object import MujocoWorld
+    from kinematify.envs.pybullet_worlds import PybulletWorld
     from kinematify.envs.settings import PictureSettings
     from kinematify.envs.tiny_picture import TinyPainter
-    from kinematify.envs.worlds import World
     from kinematify.robot.arrays import FloatArray
 
 _HELD, _OTHERS, _BODY = (0.16, 0.62, 0.56), (0.62, 0.72, 0.80), (0.86, 0.80, 0.71)
@@ -47,7 +47,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         "render_fps": 20,
     }
     _with_robot: ClassVar[bool] = False
-    _world: World
+    _world: MujocoWorld | PybulletWorld
     articulated_object: ArticulatedObject
     target: Target
 
@@ -81,7 +81,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
         self._start_noise = np.array(self.settings.reset.start_open)
         self._draw = no_draw(*self._counts)
         self._painter: Painter | None = None
-        self._window: Window | None = None
+        self._window: ViewerWindow | None = None
         self._tiny: TinyPainter | None = None
         self._progress: Progress | None = None
         self._aim(self._choose(joint))
@@ -178,13 +178,58 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             leaders[self.target.leader] = self.target.value(fraction)
         return leaders
 
-    def reading(self) -> Reading:
+    def reading(self) -> ObjectState:
         """State of the object now."""
         return self._world.reading()
 
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin an episode.
+
+        Raises:
+            InputError: An option does not exist or is out of range.
+        """
+        self.begin_episode(seed, options)
+        reading = self._world.reading()
+        self._progress = self.goal.begin(reading)
+        self._last = self._observe(reading)
+        if self.render_mode == "human":
+            self.render()
+        return self._last, self._info(is_success=False, escaped=False)
+
+    def begin_episode(self, seed: int | None, options: dict[str, Any] | None) -> None:
+        """Draw and place the object; what is left of `reset` is to look at it."""
+        super().reset(seed=seed)
+        self._start(options)
+
+    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Act for 0.05 s; actions beyond -1 and 1 are clipped."""
+        self._act(action)
+        if not self._world.stable():
+            return self._failed(self._last)
+        reading = self._world.reading()
+        self._last = self._observe(reading)
+        reward, ended, info = self._outcome(reading, self._helped())
+        if self.render_mode == "human":
+            self.render()
+        return self._last, reward, ended, False, info
+
+    @abstractmethod
+    def _act(self, action: NDArray[np.float32]) -> None:
+        """Simulate until the next action."""
+
+    @abstractmethod
+    def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
+        """What is seen."""
+
+    def _helped(self) -> float:
+        """What is rewarded beside opening, already weighted."""
+        return 0.0
+
     # After a step.
 
-    def _outcome(self, reading: Reading, extra: float) -> tuple[float, bool, dict[str, Any]]:
+    def _outcome(self, reading: ObjectState, extra: float) -> tuple[float, bool, dict[str, Any]]:
         """Reward, whether the episode ends, and info.
 
         Args:
@@ -245,7 +290,7 @@ class OpeningEnv(gymnasium.Env["NDArray[np.float32]", "NDArray[np.float32]"], Ez
             return None
         poses, tint = self._world.link_poses(), self._tint
         if self.render_mode == "human":
-            self._window = self._window or Window(self._pieces(), self._view(), self.settings.picture)
+            self._window = self._window or ViewerWindow(self._pieces(), self._view(), self.settings.picture)
             self._window.draw(poses, tint)
             return None
         self._painter = self._painter or Painter(self._pieces(), self._view(), self.settings.picture)
@@ -336,3 +381,66 @@ def _tiny_painter(pieces: Sequence[Piece], view: View, settings: PictureSettings
     from kinematify.envs.tiny_picture import TinyPainter  # noqa: PLC0415  # loads PyBullet
 
     return TinyPainter(pieces, view, settings)
+
+
+STATE, PIXELS, BOTH = "state", "pixels", "pixels+state"
+PIXEL_SIZE = (84, 84)
+"""Height and width where none are asked for."""
+
+
+class PixelObservation(gymnasium.ObservationWrapper[Any, Any, Any]):
+    """Shows a picture of the object in place of its state, or both under the keys ``pixels`` and ``state``.
+
+    Pictures are `Box(0, 255, (height, width, 3), uint8)`, the object at rest and open in sight, from the side to which
+    it opens, the part that is opened in green. They are drawn by software, so that a seed gives the same picture on
+    every machine and in both engines.
+    """
+
+    def __init__(self, env: OpeningEnv, *, with_state: bool, size: tuple[int, int]) -> None:
+        """Wrap an environment.
+
+        Args:
+            env: What is seen.
+            with_state: Return the state too.
+            size: Height and width [pixels].
+        """
+        super().__init__(env)
+        env.camera()  # now, so that the first reset is as quick as the others
+        self._bare, self._with_state, self._size = env, with_state, size
+        picture = spaces.Box(0, 255, (*size, 3), np.uint8)
+        self.observation_space = spaces.Dict({PIXELS: picture, STATE: env.observation_space}) if with_state else picture
+
+    def observation(self, observation: Any) -> Any:
+        """Add the picture to a state, or put it in its place."""
+        picture = self._bare.pixels(self._size)
+        return {PIXELS: picture, STATE: observation} if self._with_state else picture
+
+
+def observed(env: OpeningEnv, observation: str, size: tuple[int, int]) -> gymnasium.Env[Any, Any]:
+    """Return an environment with the observations of an `observation` keyword.
+
+    Raises:
+        InputError: There is no such keyword, or the size is none.
+    """
+    one_of("observation", observation, (STATE, PIXELS, BOTH))
+    if len(size) != 2 or min(size) < 1:
+        raise InputError(f"pixel_size is {size}, but must be a height and a width in pixels, such as (84, 84).")
+    return env if observation == STATE else PixelObservation(env, with_state=observation == BOTH, size=size)
+
+
+def made(
+    kind: type[OpeningEnv], *, observation: str = STATE, pixel_size: tuple[int, int] = PIXEL_SIZE, **keywords: Any
+) -> gymnasium.Env[Any, Any]:
+    """Make an environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself.
+
+    Args:
+        kind: Its class.
+        observation: ``state``, ``pixels`` or ``pixels+state``; see `PixelObservation`.
+        pixel_size: Height and width of pictures.
+        keywords: Of the class.
+
+    Raises:
+        InputError: A keyword is impossible.
+        EnvironmentFault: As for the class.
+    """
+    return observed(kind(**keywords), observation, pixel_size)

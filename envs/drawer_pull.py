@@ -3,34 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.articulated_object import AUTO
-from kinematify.envs.base import OpeningEnv, one_of
+from kinematify.envs.articulated_object import AUTO, shared_target
+from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.mujoco_arm import ROBOT, MujocoArm
+from kinematify.envs.mujoco_worlds import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
-from kinematify.envs.pixels import PIXEL_SIZE, STATE, observed
 from kinematify.envs.robot_plan import env_robot, robot_plan
-from kinematify.envs.worlds import shared_target
 from kinematify.geometry.hull import convex_hull
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
-    import gymnasium
     from gymnasium import spaces
     from numpy.typing import NDArray
 
     from kinematify.envs.articulated_object import Target
-    from kinematify.envs.reading import Reading
+    from kinematify.envs.goal import ObjectState
+    from kinematify.envs.pybullet_worlds import PybulletArm
     from kinematify.envs.robot_plan import EnvRobot, RobotPlan
-    from kinematify.envs.worlds import ArmWorld
     from kinematify.robot.arrays import FloatArray
 
     Space = spaces.Space[NDArray[np.float32]]
@@ -102,7 +100,7 @@ class DrawerPullEnv(OpeningEnv):
     """
 
     _with_robot = True
-    _world: ArmWorld
+    _world: MujocoArm | PybulletArm
 
     def __init__(
         self,
@@ -171,7 +169,11 @@ class DrawerPullEnv(OpeningEnv):
         return _held_at(found, self.plan)
 
     def _make_world(self) -> None:
-        kind = MujocoArm if self.engine == "mujoco" else _pybullet_arm()
+        kind: type[MujocoArm | PybulletArm] = MujocoArm
+        if self.engine == "pybullet":
+            from kinematify.envs.pybullet_worlds import PybulletArm  # noqa: PLC0415 - it takes a second to load
+
+            kind = PybulletArm
         self._world = kind(self.articulated_object, self.target, self.robot, self.plan, self.settings)
 
     def _place(self, leaders: FloatArray) -> float:
@@ -184,35 +186,9 @@ class DrawerPullEnv(OpeningEnv):
         self._gap = 1.0
         return self._world.place(leaders, self.wanted)
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode.
-
-        Raises:
-            InputError: An option does not exist or is out of range.
-        """
-        super().reset(seed=seed)
-        self._start(options)
-        reading = self._world.reading()
-        self._progress = self.goal.begin(reading)
-        self._last = self._observe(reading)
-        if self.render_mode == "human":
-            self.render()
-        return self._last, self._info(is_success=False, escaped=False)
-
-    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Move with an action for 0.05 s; actions beyond -1 and 1 are clipped."""
+    def _act(self, action: NDArray[np.float32]) -> None:
         self._command(np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0))
         self._world.act(self.wanted, self.robot.finger_values(self._gap))
-        if not self._world.stable():
-            return self._failed(self._last)
-        reading = self._world.reading()
-        self._last = self._observe(reading)
-        reward, ended, info = self._outcome(reading, self._helped())
-        if self.render_mode == "human":
-            self.render()
-        return self._last, reward, ended, False, info
 
     def _command(self, action: FloatArray) -> None:
         """Move what the servos are told: never far from where the joints are, so that nothing winds up."""
@@ -241,7 +217,7 @@ class DrawerPullEnv(OpeningEnv):
     def _info(self, *, is_success: bool, escaped: bool) -> dict[str, Any]:
         return {**super()._info(is_success=is_success, escaped=escaped), "grip": self._grips}
 
-    def _observe(self, reading: Reading) -> NDArray[np.float32]:
+    def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         found = np.zeros(self.observation_space.shape or ())
         self.goal.fill_joints(reading, found)
         tool, (values, speeds), touch = self._world.tool(), self._world.joints(), self._world.touch()
@@ -332,24 +308,5 @@ def _held_at(target: Target, plan: RobotPlan) -> Target:
     return replace(target, point=plan.T_link_tool[:3, 3])
 
 
-def _pybullet_arm() -> type:
-    from kinematify.envs.pybullet_arm import PybulletArm  # noqa: PLC0415 - it takes a second to load
-
-    return PybulletArm
-
-
-def make_drawer_pull(
-    *, observation: str = STATE, pixel_size: tuple[int, int] = PIXEL_SIZE, **keywords: Any
-) -> gymnasium.Env[Any, Any]:
-    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself.
-
-    Args:
-        observation: ``state``, ``pixels`` or ``pixels+state``; see `kinematify.envs.pixels.PixelObservation`.
-        pixel_size: Height and width of pictures.
-        keywords: Of `DrawerPullEnv`.
-
-    Raises:
-        InputError: A keyword is impossible.
-        EnvironmentFault: As for `DrawerPullEnv`.
-    """
-    return observed(DrawerPullEnv(**keywords), observation, pixel_size)
+make_drawer_pull = partial(made, DrawerPullEnv)
+"""What `gymnasium.make` calls; keywords are those of `DrawerPullEnv`, `observation` and `pixel_size` (`made`)."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.envs.drawer_pull import JOINT, damped_step
-from kinematify.envs.mujoco_hand import POSITION
+from kinematify.envs.mujoco_worlds import POSITION
 from kinematify.robot.robot import forward_kinematics
 
 if TYPE_CHECKING:

@@ -12,9 +12,25 @@ import numpy as np
 
 if TYPE_CHECKING:
     from kinematify.envs.articulated_object import ArticulatedObject, Target
-    from kinematify.envs.reading import Reading
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
+
+
+@dataclass(slots=True, eq=False)
+class ObjectState:
+    """State of the object, world frame."""
+
+    values: FloatArray
+    """Joints that lead [rad or m], shape (..., J)."""
+    speeds: FloatArray
+    """Their speeds [rad/s or m/s], shape (..., J)."""
+    hold: FloatArray
+    """Point at which the part is held [m], shape (..., 3)."""
+    anchor: FloatArray
+    """Origin of the joint that is opened [m], shape (..., 3)."""
+    axis: FloatArray
+    """Its axis, unit, shape (..., 3)."""
+
 
 OPEN_BOUND, SPEED_BOUND, PLACE_BOUND = 2.0, 20.0, 10.0
 """Ends of observed shares [1], speeds [1/s] and places [m]; what goes beyond is clipped."""
@@ -60,15 +76,15 @@ class Goal:
         self._step = settings.time.control_step
         self._count = len(travels)
 
-    def fraction(self, reading: Reading) -> Any:
+    def fraction(self, reading: ObjectState) -> Any:
         """Share of the way that is open: a float for one environment, else shape (n,)."""
         return (_component(reading.values, self.target.leader) - self.target.closed) / self.target.range
 
-    def speed(self, reading: Reading) -> Any:
+    def speed(self, reading: ObjectState) -> Any:
         """[ways/s], positive opens: a float for one environment, else shape (n,)."""
         return _component(reading.speeds, self.target.leader) / self.target.range
 
-    def direction(self, reading: Reading) -> FloatArray:
+    def direction(self, reading: ObjectState) -> FloatArray:
         """Unit direction in which the hold moves when the part opens, zero where it does not, shape (..., 3)."""
         if not self.target.turns:
             return np.asarray(self._sign * reading.axis)
@@ -80,20 +96,20 @@ class Goal:
         scale = self._sign / (max(length, _SHORT) if one else np.maximum(length, _SHORT))
         return np.array([x * scale, y * scale, z * scale]).T
 
-    def fill_joints(self, reading: Reading, out: FloatArray) -> None:
+    def fill_joints(self, reading: ObjectState, out: FloatArray) -> None:
         """Write the share, speed and mask of every joint, the opened one first, to (..., 3 * slots); not clipped."""
         slots, count = self.slots, self._count
         out[..., :count] = (reading.values[..., self._order] - self._lower) * self._per_range
         out[..., slots : slots + count] = reading.speeds[..., self._order] * self._per_range
         out[..., 2 * slots : 2 * slots + count] = 1.0
 
-    def begin(self, reading: Reading) -> Progress:
+    def begin(self, reading: ObjectState) -> Progress:
         """Start of an episode."""
         fraction, speed = self.fraction(reading), self.speed(reading)
         thrown = np.zeros(np.shape(fraction), dtype=bool) if np.ndim(fraction) else False
         return Progress(fraction=fraction, speed=speed, thrown=thrown)
 
-    def judge(self, reading: Reading, progress: Progress) -> tuple[Any, Any, Any]:
+    def judge(self, reading: ObjectState, progress: Progress) -> tuple[Any, Any, Any]:
         """Update `progress`.
 
         Returns:

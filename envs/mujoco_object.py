@@ -9,10 +9,9 @@ import mujoco
 import numpy as np
 
 from kinematify.envs.dynamics import Loads, full_force, joint_dynamics
-from kinematify.envs.reading import Reading
+from kinematify.envs.goal import ObjectState
 from kinematify.geometry.rest import overlapping_links
-from kinematify.simulation.mujoco_model import parse
-from kinematify.simulation.mujoco_world import world_spec
+from kinematify.simulation.mujoco_model import parse, world_spec
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -183,13 +182,13 @@ class MujocoObject:
         data.qpos[self.qpos] = self.articulated_object.scene.mechanism.all_values(leaders[None])[0]
         data.qvel[self.dof] = 0.0
 
-    def reading(self, data: mujoco.MjData) -> Reading:
+    def reading(self, data: mujoco.MjData) -> ObjectState:
         """Return the state after the last step."""
         return self.split(data.qpos, data.qvel, data.sensordata)
 
-    def split(self, qpos: FloatArray, qvel: FloatArray, sensors: FloatArray) -> Reading:
+    def split(self, qpos: FloatArray, qvel: FloatArray, sensors: FloatArray) -> ObjectState:
         """The same for states in rows, shapes (..., nq), (..., nv), (..., sensors)."""
-        return Reading(
+        return ObjectState(
             values=qpos[..., self.leader_qpos],
             speeds=qvel[..., self.leader_dof],
             hold=sensors[..., 0:3],
@@ -215,7 +214,7 @@ def reported_warnings(data: mujoco.MjData) -> dict[str, int]:
 
 
 class MujocoWorld:
-    """What every world of an object tells; see `kinematify.envs.worlds.World`."""
+    """What every world of an object tells; the other engine tells the same."""
 
     model: mujoco.MjModel
     data: mujoco.MjData
@@ -225,7 +224,7 @@ class MujocoWorld:
         """Redraw the object."""
         self.object.apply(drawn, self.data)
 
-    def reading(self) -> Reading:
+    def reading(self) -> ObjectState:
         """Return the state of the object."""
         return self.object.reading(self.data)
 

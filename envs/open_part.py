@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.utils import EzPickle
 
-from kinematify.envs.base import OpeningEnv, one_of
+from kinematify.envs.base import OpeningEnv, made, one_of
 from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
-from kinematify.envs.mujoco_hand import FORCE, POSITION, MujocoHand
-from kinematify.envs.pixels import PIXEL_SIZE, STATE, observed
+from kinematify.envs.mujoco_worlds import FORCE, POSITION, MujocoHand
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-    import gymnasium
     from gymnasium import spaces
     from numpy.typing import NDArray
 
-    from kinematify.envs.goal import Goal
-    from kinematify.envs.mujoco_hand import HandFacts
-    from kinematify.envs.reading import Reading
-    from kinematify.envs.worlds import HandWorld
+    from kinematify.envs.goal import Goal, ObjectState
+    from kinematify.envs.mujoco_worlds import HandFacts
+    from kinematify.envs.pybullet_worlds import PybulletHand
     from kinematify.robot.arrays import FloatArray
 
     Space = spaces.Space[NDArray[np.float32]]
@@ -97,7 +95,7 @@ class OpenPartEnv(OpeningEnv):
     move, those without friction 0.3 m/s^2 or rad/s^2 times it, or 1.3 times what their own weight would move them with.
     """
 
-    _world: HandWorld
+    _world: MujocoHand | PybulletHand
 
     def __init__(
         self,
@@ -159,7 +157,11 @@ class OpenPartEnv(OpeningEnv):
         self.bounds = hand_bounds(self.goal)
 
     def _make_world(self) -> None:
-        kind = MujocoHand if self.engine == "mujoco" else _pybullet_hand()
+        kind: type[MujocoHand | PybulletHand] = MujocoHand
+        if self.engine == "pybullet":
+            from kinematify.envs.pybullet_worlds import PybulletHand  # noqa: PLC0415 - it takes a second to load
+
+            kind = PybulletHand
         self._world = kind(self.articulated_object, self.target, self.control, self.settings)
 
     def _place(self, leaders: FloatArray) -> float:
@@ -169,27 +171,6 @@ class OpenPartEnv(OpeningEnv):
     def full_force(self) -> float:
         """Force of a full action, or of the spring at most [N]."""
         return self.hand_facts.force
-
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode.
-
-        Raises:
-            InputError: An option does not exist or is out of range.
-        """
-        self.begin_episode(seed, options)
-        reading = self._world.reading()
-        self._progress = self.goal.begin(reading)
-        self._last = self._observe(reading)
-        if self.render_mode == "human":
-            self.render()
-        return self._last, self._info(is_success=False, escaped=False)
-
-    def begin_episode(self, seed: int | None, options: dict[str, Any] | None) -> None:
-        """Draw and place the object; what is left of `reset` is to look at it."""
-        super().reset(seed=seed)
-        self._start(options)
 
     @property
     def hand_facts(self) -> HandFacts:
@@ -202,19 +183,10 @@ class OpenPartEnv(OpeningEnv):
         assert isinstance(self._world, MujocoHand)
         return self._world
 
-    def step(self, action: NDArray[np.float32]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Push with an action for 0.05 s; actions beyond -1 and 1 are clipped."""
+    def _act(self, action: NDArray[np.float32]) -> None:
         self._world.act(np.minimum(np.maximum(action, -1.0), 1.0))
-        if not self._world.stable():
-            return self._failed(self._last)
-        reading = self._world.reading()
-        reward, ended, info = self._outcome(reading, 0.0)
-        self._last = self._observe(reading)
-        if self.render_mode == "human":
-            self.render()
-        return self._last, reward, ended, False, info
 
-    def _observe(self, reading: Reading) -> NDArray[np.float32]:
+    def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         return observe_hand(self.goal, reading, self.middle, self._world.command(), self.bounds)
 
 
@@ -234,7 +206,7 @@ def hand_bounds(goal: Goal) -> tuple[FloatArray, FloatArray]:
 
 
 def observe_hand(
-    goal: Goal, reading: Reading, middle: FloatArray, command: FloatArray, bounds: tuple[FloatArray, FloatArray]
+    goal: Goal, reading: ObjectState, middle: FloatArray, command: FloatArray, bounds: tuple[FloatArray, FloatArray]
 ) -> NDArray[np.float32]:
     """Return what is seen of an object and a hand, shape (..., 3 * slots + 9), within `bounds` (`hand_space`)."""
     found = np.zeros((*reading.hold.shape[:-1], len(bounds[0])))
@@ -246,24 +218,5 @@ def observe_hand(
     return np.minimum(np.maximum(found, bounds[0], out=found), bounds[1], out=found).astype(np.float32)
 
 
-def _pybullet_hand() -> type:
-    from kinematify.envs.pybullet_hand import PybulletHand  # noqa: PLC0415 - it takes a second to load
-
-    return PybulletHand
-
-
-def make_open_part(
-    *, observation: str = STATE, pixel_size: tuple[int, int] = PIXEL_SIZE, **keywords: Any
-) -> gymnasium.Env[Any, Any]:
-    """Make the environment; what `gymnasium.make` calls, so that it does not judge `render_mode` itself.
-
-    Args:
-        observation: ``state``, ``pixels`` or ``pixels+state``; see `kinematify.envs.pixels.PixelObservation`.
-        pixel_size: Height and width of pictures.
-        keywords: Of `OpenPartEnv`.
-
-    Raises:
-        InputError: A keyword is impossible.
-        EnvironmentFault: As for `OpenPartEnv`.
-    """
-    return observed(OpenPartEnv(**keywords), observation, pixel_size)
+make_open_part = partial(made, OpenPartEnv)
+"""What `gymnasium.make` calls; keywords are those of `OpenPartEnv`, `observation` and `pixel_size` (`made`)."""

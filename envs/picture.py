@@ -138,7 +138,7 @@ class Painter:
         )
 
 
-class Window:
+class ViewerWindow:
     """MuJoCo's viewer, for ``render_mode="human"``."""
 
     def __init__(self, pieces: Sequence[Piece], view: View, settings: PictureSettings) -> None:

@@ -68,7 +68,7 @@ class HandSettings(StageConfig):
     """Full speed of the hand in position control [ways/s]."""
 
 
-class TaskSettings(StageConfig):
+class SuccessSettings(StageConfig):
     """Success."""
 
     open_fraction: float = 0.9  # the share that RoboCasa and the docstring of ManiSkill ask for
@@ -192,7 +192,7 @@ class EnvSettings(StageConfig):
     time: TimeSettings = section()
     object: ObjectSettings = section()
     hand: HandSettings = section()
-    task: TaskSettings = section()
+    task: SuccessSettings = section()
     reward: RewardSettings = section()
     reset: ResetSettings = section()
     randomize: RandomizeSettings = section()

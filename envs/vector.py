@@ -11,17 +11,16 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from mujoco.rollout import Rollout
 
-from kinematify.envs.mujoco_hand import POSITION
+from kinematify.envs.base import STATE
+from kinematify.envs.mujoco_worlds import POSITION
 from kinematify.envs.open_part import OpenPartEnv, hand_space, observe_hand
-from kinematify.envs.pixels import STATE
 from kinematify.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.envs.goal import Progress
-    from kinematify.envs.mujoco_hand import MujocoHand
-    from kinematify.envs.reading import Reading
+    from kinematify.envs.goal import ObjectState, Progress
+    from kinematify.envs.mujoco_worlds import MujocoHand
     from kinematify.robot.arrays import FloatArray
 
     BoolArray = NDArray[np.bool_]
@@ -158,19 +157,19 @@ class OpenPartVectorEnv(VectorEnv["NDArray[np.float32]", "NDArray[np.float32]", 
         )  # fmt: skip
         self._state[:], self._sensors[:] = self._states[:, -1], self._outputs[:, -1]
 
-    def _reading(self) -> Reading:
+    def _reading(self) -> ObjectState:
         start = 1  # time
         qpos = self._state[:, start : start + self._nq]
         qvel = self._state[:, start + self._nq : start + self._nq + self._nv]
         return self._envs[0].hand.object.split(qpos, qvel, self._sensors)
 
-    def _forget(self, over: Any, reading: Reading) -> None:
+    def _forget(self, over: Any, reading: ObjectState) -> None:
         """Episodes that began have no past."""
         fresh: Progress = self.goal.begin(reading)
         for name in ("fraction", "speed", "thrown"):
             getattr(self._progress, name)[over] = getattr(fresh, name)[over]
 
-    def _observe(self, reading: Reading) -> NDArray[np.float32]:
+    def _observe(self, reading: ObjectState) -> NDArray[np.float32]:
         command = self._control[:, 0] - self._sensors[:, :3] if self._envs[0].control == POSITION else 0.0
         return observe_hand(self.goal, reading, self._middle, np.asarray(command), self._envs[0].bounds)
 

@@ -35,7 +35,7 @@ def asset_stage() -> Stage:
 def later_stages(chosen: Sequence[str]) -> list[Stage]:
     """Everything that moves the model, the longest first; engines that were not chosen are left out."""
     stages = [
-        Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepare",)),
+        Stage(name="prepare", run=prepare.run, checks=(), imports=("kinematify.simulation.prepared",)),
         Stage(
             name="geometry",
             run=geometry.run,

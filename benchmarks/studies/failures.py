@@ -40,8 +40,7 @@ from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
 from kinematify.evaluation.job import erased_item
 from kinematify.evaluation.record import table
 from kinematify.refinement.plan import Plan
-from kinematify.refinement.simulate import Simulator
-from kinematify.refinement.tiers import TIERS, DearTiers
+from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 from kinematify.validation import failure_rates
 from kinematify.validation.failure_rates import CLASSES, GEOMETRY, RIGHT, FailureRates, tier_of
 from kinematify.validation.feedback import only_collision_meets

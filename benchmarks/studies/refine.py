@@ -38,8 +38,7 @@ from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import Chooser
 from kinematify.refinement.plan import Plan
-from kinematify.refinement.simulate import Simulator
-from kinematify.refinement.tiers import TIERS, DearTiers
+from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

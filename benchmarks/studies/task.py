@@ -22,15 +22,13 @@ from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import BenchObject, find_objects
 from kinematify.evaluation.record import table
 from kinematify.geometry.scene import read_scene
-from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.execute import execute, load
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.outcome import Failure, Hold
 from kinematify.manipulation.place import object_box
 from kinematify.manipulation.planning import PullPlan, depend, motion_of, plan_pull
-from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.manipulation.request import PULL, Failure, Hold, TaskRequest
 from kinematify.manipulation.robot import builtin_robot
-from kinematify.manipulation.sizes import sizing
+from kinematify.manipulation.sizes import sizing, write_scaled
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 from kinematify.robot.transforms import rotation_about

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
-from kinematify.cli.options import listed
+from kinematify.cli.options import examples, listed
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus

@@ -10,10 +10,9 @@ import click
 
 from kinematify.cli.answer import json_option, write_answer
 from kinematify.cli.checkout import benchmark_module, has_benchmarks
-from kinematify.cli.help import examples
+from kinematify.cli.options import examples, words_of
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
-from kinematify.cli.words import words_of
 from kinematify.errors import ExitStatus
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import click
 
 from kinematify import __version__
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
+from kinematify.cli.options import examples
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus
 
@@ -65,7 +65,7 @@ IMPORT_SECONDS = 60.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class PackageState:
     """State of one package."""
 
     package: str
@@ -109,7 +109,7 @@ def command(json_to: str | None) -> int:
     return ExitStatus.FAULT if failed else 0
 
 
-def examine_packages() -> tuple[Finding, ...]:
+def examine_packages() -> tuple[PackageState, ...]:
     """Compare what is installed with what this version of Kinematify declares, and try every import."""
     from concurrent.futures import ThreadPoolExecutor
 
@@ -127,11 +127,11 @@ def _declared_requirements() -> list[Requirement]:
     return [requirement for requirement in declared if requirement.name in MODULES]
 
 
-def _examine(requirement: Requirement) -> Finding:
+def _examine(requirement: Requirement) -> PackageState:
     module, purpose = MODULES[requirement.name]
     installed = _installed_version(requirement.name)
     problem = _import_problem(module) if installed and module else None
-    return Finding(
+    return PackageState(
         package=requirement.name,
         purpose=purpose,
         wanted=",".join(sorted(map(str, requirement.specifier), reverse=True)),
@@ -195,12 +195,12 @@ def _cuda() -> str:
     return f"{device}, seen by torch {version}" if device else f"torch {version} sees no GPU; nothing needs one"
 
 
-def _as_answer(findings: tuple[Finding, ...]) -> dict[str, Any]:
+def _as_answer(findings: tuple[PackageState, ...]) -> dict[str, Any]:
     packages = [{**asdict(finding), "remedy": finding.remedy} for finding in findings]
     return {"schema": 1, "system": _system(), "packages": packages}
 
 
-def _describe(findings: tuple[Finding, ...]) -> str:
+def _describe(findings: tuple[PackageState, ...]) -> str:
     rows = [
         (finding.package, finding.installed or "-", finding.wanted, _describe_state(finding), finding.purpose)
         for finding in findings
@@ -210,11 +210,11 @@ def _describe(findings: tuple[Finding, ...]) -> str:
     return f"{system}\n\n{table}\n\n{_describe_remedies(findings)}"
 
 
-def _describe_state(finding: Finding) -> str:
+def _describe_state(finding: PackageState) -> str:
     return "missing (optional)" if finding.optional and finding.state == "missing" else finding.state
 
 
-def _describe_remedies(findings: tuple[Finding, ...]) -> str:
+def _describe_remedies(findings: tuple[PackageState, ...]) -> str:
     lines = []
     for finding in findings:
         if finding.remedy:

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import click
 
-from kinematify.cli.help import examples
-from kinematify.cli.options import package_dirs_option
+from kinematify.cli.options import examples, package_dirs_option
 
 
 @click.command(

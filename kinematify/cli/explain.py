@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kinematify.cli import completion
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
+from kinematify.cli.options import complete_checks, examples
 from kinematify.cli.table import format_table
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ _WIDTH = 100
         "kinematify explain --markdown > docs/checks.md",
     ),
 )
-@click.argument("checks", nargs=-1, metavar="[CHECK]...", shell_complete=completion.checks)
+@click.argument("checks", nargs=-1, metavar="[CHECK]...", shell_complete=complete_checks)
 @click.option("--list", "as_list", is_flag=True, help="Table of all checks.")
 @click.option("--markdown", is_flag=True, help="All checks as a page of documentation.")
 @json_option

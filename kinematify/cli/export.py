@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from kinematify.cli.help import examples
-from kinematify.cli.options import listed, package_dirs_option, sampling_seed_option
+from kinematify.cli.options import examples, listed, package_dirs_option, sampling_seed_option
 
 
 @click.command(

@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli import completion
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
-from kinematify.cli.options import collision_option
+from kinematify.cli.options import collision_option, complete_categories, examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 
@@ -45,7 +43,7 @@ if TYPE_CHECKING:
 @click.option(
     "--category",
     metavar="NAME",
-    shell_complete=completion.categories,
+    shell_complete=complete_categories,
     help="What to build, by category; see --list.",
 )
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="A parameter of the category, repeatable.")
@@ -157,8 +155,7 @@ def command(
     kept beside OUT (OUT.job): a call that was stopped goes on there, and pays for nothing twice.
     """
     from kinematify.cli.generation import Generation
-    from kinematify.cli.language import LanguageGeneration, written_request
-    from kinematify.cli.provided import ProvidedGeneration, ProvidedOptions
+    from kinematify.cli.provided import LanguageGeneration, ProvidedGeneration, ProvidedOptions, written_request
 
     if listing:
         _list(category, json_to)

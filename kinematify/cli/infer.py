@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
 from kinematify.cli.inferred import as_loaded, confidences, describe, load_as_loaded
-from kinematify.cli.options import collision_option, with_collision
+from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.refine import TIERS, describe_refinement, exit_status
 from kinematify.errors import EnvironmentFault, KinematifyError
@@ -199,8 +198,7 @@ def _with_votes(inference: Inference, vlm: str, progress: Callable[[str, float],
     oracle = oracle_of(vlm, inference.config.vision)
     if oracle is None:
         return inference, ""
-    from kinematify.vision.votes import with_votes
-    from kinematify.vision.words import describe_votes
+    from kinematify.vision.votes import describe_votes, with_votes
 
     progress("asking a vision model about the joints", _INFERRED)
     inference, heard = with_votes(inference, oracle)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
+from kinematify.cli.options import examples
 from kinematify.cli.progress import progress_reporter
 from kinematify.errors import ExitStatus
 

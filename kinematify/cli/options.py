@@ -1,4 +1,4 @@
-"""Options that several commands share."""
+"""Options that several commands share, what a shell completes behind them, and examples under the help of a command."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kinematify.config import Config
 
 package_dirs_option = click.option(
@@ -41,3 +43,53 @@ def with_collision(config: Config, mode: str | None) -> Config:
 def listed(words: str | None) -> tuple[str, ...]:
     """The words of an option that takes several, separated by commas; none if it was not given."""
     return tuple(word.strip() for word in (words or "").split(",") if word.strip())
+
+
+def examples(*lines: str) -> str:
+    """Return an epilog that shows `lines` as they are, one below the other."""
+    return "\n".join(("\b", "Examples:", *(f"  {line}" for line in lines)))  # \b keeps click from re-flowing
+
+
+def words_of(given: str, known: Sequence[str], option: str) -> tuple[str, ...]:
+    """The words of a list, in the order in which they are known; all of them for ``all``.
+
+    Raises:
+        click.UsageError: A word is unknown.
+    """
+    if given == "all":
+        return tuple(known)
+    words = [word.strip() for word in given.split(",")]
+    unknown = [word for word in words if word not in known]
+    if unknown:
+        raise click.UsageError(f"{option} names {unknown[0]!r}. Known are all, {', '.join(known)}.")
+    return tuple(word for word in known if word in words)
+
+
+def complete_categories(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
+    """Categories of objects that begin so."""
+    from kinematify.generate.described import known_families
+
+    return [name for name in known_families() if name.startswith(begun)]
+
+
+def complete_checks(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
+    """Ids of checks that begin so, in either case."""
+    from kinematify.validation.checks import CHECKS
+
+    return [name for name in CHECKS if name.startswith(begun.upper())]
+
+
+def complete_joints(context: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
+    """Joints that move of the model that was named; none where it cannot be read."""
+    from kinematify.errors import InputError
+    from kinematify.robot.read import read_robot
+
+    # A line that ends with an option is not parsed to its end: the model is then among the words that are left.
+    for word in (context.params.get("model"), *context.args):
+        path = Path(word or "")
+        try:
+            robot = read_robot(path / "model.urdf" if path.is_dir() else path, geometry="none")
+        except InputError:
+            continue
+        return [joint.name for joint in robot.leaders if joint.name.startswith(begun)]
+    return []

@@ -1,32 +1,41 @@
-"""One call of `kinematify generate` with parts of another generator: image or sentence -> parts -> model -> verdict."""
+"""One call of `kinematify generate` with another generator: parts of an image or a sentence, or a written blueprint."""
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from kinematify.assembly.load import load_assembly
-from kinematify.cli.generation import status_of, summary_of, validated, verdict_on, warn_if_interrupted
+from kinematify.cli.generation import Generation, status_of, summary_of, validated, verdict_on, warn_if_interrupted
 from kinematify.cli.inferred import describe
 from kinematify.cli.options import with_collision
 from kinematify.cli.verdict import say
 from kinematify.config import load_config
+from kinematify.generate.blueprint_file import WrittenBlueprint
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
-from kinematify.generate.providers.language_model import LanguageModel, language_model
+from kinematify.generate.providers.language_model import BLUEPRINT_FILE, LanguageModel, language_model
 from kinematify.generate.providers.prompt import check_prompt
 from kinematify.generate.providers.recorded import RecordingSource, ReplayedSource
 from kinematify.generate.providers.rodin.source import RodinSource
-from kinematify.model.output import check_output, write_model_folder
+from kinematify.model.output import MODEL_FILE, check_output, write_model_folder
 from kinematify.pipeline import infer
+from kinematify.pipeline.generate import write_blueprint
 from kinematify.pipeline.record import write_inference_files
+from kinematify.validation.finding import Severity
+from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Sequence
 
     from kinematify.cli.progress import Reporter
+    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.providers.language_model import Written
     from kinematify.generate.providers.source import Generated, PartSource
     from kinematify.pipeline import Inference
     from kinematify.validation.report import ValidationReport
@@ -191,3 +200,66 @@ class ProvidedGeneration:
         kept = f"{self.job_folder}: everything that the generator made; the same request is not sent again"
         say("\n\n".join([f"{made}\n{kept}", describe(self.inference, self.out), verdict_on(self.report, self.out)]))
         warn_if_interrupted(self.report)
+
+
+_MOST_FINDINGS = 10  # that are told in one round
+
+
+@dataclass
+class LanguageGeneration(Generation):
+    """As for what a file describes, once the model has written the file."""
+
+    options: ProvidedOptions = field(kw_only=True)
+    model_asked: LanguageModel = field(init=False)
+    written: Written = field(init=False)
+
+    def build(self, progress: Reporter) -> Blueprint:
+        """Let the model write, and mend what the validation finds.
+
+        Raises:
+            InputError: See `LanguageModel.write`.
+            EnvironmentFault: The service failed.
+        """
+        self.model_asked = self.options.language_model()
+        prompt = check_prompt(self.options.text, self.options.images, seed=0)
+        with open_job(job_folder(self.out), "llm", prompt.digest(self.model_asked.options())) as job:
+            if self.options.resend:
+                job.resend()
+            self.written = self.model_asked.write(prompt, job, self._findings, progress)
+        facts = {
+            "source": "llm",
+            "model": self.model_asked.model,
+            "text": self.options.text,
+            "rounds": self.written.rounds,
+        }
+        return replace(super().build(progress), parameters=facts)
+
+    def _findings(self, blueprint: Blueprint) -> Sequence[str]:
+        """What the validation holds against the model of a blueprint; nothing where it is left out."""
+        if not self.validated:
+            return ()
+        with TemporaryDirectory() as folder:
+            write_blueprint(blueprint, Path(folder), load_config())
+            report = validate(Path(folder, MODEL_FILE), workers=os.cpu_count() or 1)
+        errors = [item for item in report.counted if item.severity is Severity.ERROR]
+        return [f"{item.message} {item.remedy}" for item in errors[:_MOST_FINDINGS]]
+
+    @property
+    def answer(self) -> dict[str, Any]:
+        """Everything as JSON values."""
+        facts = {"rounds": self.written.rounds, "tokens": self.written.tokens, "blueprint": str(self.written.path)}
+        return {**super().answer, "language_model": facts}
+
+    def say(self, *, quiet: bool) -> None:
+        """Tell the user; nothing if a machine reads stdout."""
+        if not quiet:
+            say(
+                f"Written by {self.model_asked.model} in {self.written.rounds} rounds, {self.written.tokens} tokens: "
+                f"{self.written.path}\n"
+            )
+        super().say(quiet=quiet)
+
+
+def written_request(out: Path) -> WrittenBlueprint:
+    """What the model is going to write."""
+    return WrittenBlueprint(job_folder(out) / BLUEPRINT_FILE)

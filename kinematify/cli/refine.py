@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kinematify.cli.answer import json_option, write_answer
-from kinematify.cli.help import examples
 from kinematify.cli.inferred import as_loaded, describe
-from kinematify.cli.options import collision_option, with_collision
+from kinematify.cli.options import collision_option, examples, with_collision
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.table import format_table
 from kinematify.errors import ExitStatus

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kinematify.cli.help import examples
-from kinematify.cli.options import package_dirs_option, sampling_seed_option
+from kinematify.cli.options import examples, package_dirs_option, sampling_seed_option
 from kinematify.cli.progress import progress_reporter
 from kinematify.cli.report_files import ReportFiles
 

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kinematify.cli import completion
-from kinematify.cli.help import examples
-from kinematify.cli.options import package_dirs_option
+from kinematify.cli.options import complete_joints, examples, package_dirs_option
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -36,7 +34,7 @@ _SHOWN_TITLE = 60
     "joints",
     multiple=True,
     metavar="NAME",
-    shell_complete=completion.joints,
+    shell_complete=complete_joints,
     help="Joint that stands at the --q behind it.",
 )
 @click.option("--q", "values", multiple=True, type=float, metavar="VALUE", help="Its value [rad or m].")

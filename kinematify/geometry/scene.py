@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.solid import Solid
-from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import rigid_groups
 
@@ -147,7 +146,7 @@ class Scene:
         column = {name: k for k, name in enumerate(self.mechanism.joints)}
         poses = np.broadcast_to(np.eye(4), (len(leaders), len(self._groups), 4, 4)).copy()
         for group, joint, above, T_above_joint in self._steps:
-            motion = _motions(joint, values[:, column[joint.name]])
+            motion = joint.motions(values[:, column[joint.name]])
             poses[:, group] = poses[:, above] @ T_above_joint @ motion
         return np.ascontiguousarray(poses[:, [body.group for body in self.bodies]])
 
@@ -318,16 +317,3 @@ def inverse(T: FloatArray) -> FloatArray:
     result[:, :3, 3] = -np.einsum("nij,nj->ni", result[:, :3, :3], T[:, :3, 3])
     result[:, 3, 3] = 1.0
     return result
-
-
-def _motions(joint: Joint, values: FloatArray) -> FloatArray:
-    """Motion of a joint at many values [rad or m], shape (n, 4, 4)."""
-    motion = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
-    if joint.kind.turns:
-        x, y, z = joint.axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
-        motion[:, :3, :3] += sine * cross + versine * (cross @ cross)
-    elif joint.kind is JointType.PRISMATIC:
-        motion[:, :3, 3] = values[:, None] * joint.axis
-    return motion

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.task import ExecutionSettings
     from kinematify.manipulation.execute import Loaded
-    from kinematify.manipulation.outcome import Hold
+    from kinematify.manipulation.request import Hold
     from kinematify.robot.arrays import FloatArray
 
 _MARGIN = 1e-3  # Bullet inflates convex hulls by it [m]

@@ -65,7 +65,7 @@ def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path, se
     Raises:
         OSError: A file cannot be written.
     """
-    stage = _Stage(loaded, settings)
+    stage = _FilmStage(loaded, settings)
     moments = stage.moments(execution)
     azimuth = stage.azimuth(moments)
     frames = _thinned(execution.frames, settings.frames)
@@ -77,7 +77,7 @@ def write_film(loaded: Loaded, execution: Execution, film: Path, still: Path, se
 
 
 @dataclass(frozen=True, eq=False)
-class _Stage:
+class _FilmStage:
     """Both models as meshes."""
 
     loaded: Loaded

@@ -51,7 +51,7 @@ class ObjectMotion:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Place:
+class Placement:
     """A place of the robot with a grasp."""
 
     T_world_base: FloatArray
@@ -141,14 +141,14 @@ class Places:
         self._arm, self._motion, self._settings = arm, motion, settings
         self._box = box + motion.T_world_object[:3, 3]
 
-    def ranked(self, grasps: Sequence[Grasp], given: FloatArray | None = None) -> list[Place]:
+    def ranked(self, grasps: Sequence[Grasp], given: FloatArray | None = None) -> list[Placement]:
         """Return the most promising pairs of place and grasp, the best first.
 
         Args:
             grasps: The best first.
             given: The robot stands there, shape (4, 4); anywhere if None.
         """
-        found: list[tuple[float, int, int, Place]] = []
+        found: list[tuple[float, int, int, Placement]] = []
         for number, grasp in enumerate(self._diverse(grasps)):
             for T_link_tool in (grasp.T_link_grasp, grasp.T_link_grasp @ _FLIP):
                 tools = self._motion.link_poses[self._looked_at] @ T_link_tool
@@ -156,7 +156,7 @@ class Places:
                 if not len(bases):
                     continue
                 found += [
-                    (far + _QUALITY * (1.0 - grasp.score), number, spot, Place(
+                    (far + _QUALITY * (1.0 - grasp.score), number, spot, Placement(
                         T_world_base=bases[spot], grasp=grasp, T_link_tool=T_link_tool))
                     for spot, far in enumerate(self._far(bases, tools))
                 ]  # fmt: skip
@@ -174,7 +174,7 @@ class Places:
                 chosen.append(grasp)
         return chosen[: settings.grasps]
 
-    def _spread(self, found: list[tuple[float, int, int, Place]]) -> list[tuple[float, Place]]:
+    def _spread(self, found: list[tuple[float, int, int, Placement]]) -> list[tuple[float, Placement]]:
         """Make further tries of the same grasp, or of the same place, dearer."""
         grasps: dict[int, int] = {}
         spots: dict[tuple[int, int], int] = {}

@@ -1,34 +1,213 @@
-"""Pouring: an arm takes a cup, carries it upright over a container, and tilts it there."""
+"""Pouring: an arm takes a cup, carries it upright over a container, and tilts it there.
+
+Cup and container are one object: the cup hangs on three joints that lift it, carry it over and tilt it. The planner of
+pulls then does the rest: what the hand holds moves along these joints, upright until it tilts about its lip, and the
+lip stays above the middle of the container.
+"""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.errors import InputError
 from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.scene import read_scene, relative
+from kinematify.geometry.scene import read_scene, relative, visible_shapes
 from kinematify.manipulation.collision import CollisionWorld
+from kinematify.manipulation.execute import Motion
 from kinematify.manipulation.grasp import moved_bodies, search_grasps
-from kinematify.manipulation.motion import Motion
-from kinematify.manipulation.outcome import Failure
-from kinematify.manipulation.place import Places, object_box
-from kinematify.manipulation.pour_scene import CARRY, LIFT, TILT, pour_motion, write_pour
+from kinematify.manipulation.place import ObjectMotion, Places, object_box
 from kinematify.manipulation.pull import Pull, Puller
-from kinematify.manipulation.reach import plan_reach
+from kinematify.manipulation.request import Failure
+from kinematify.manipulation.sampling_planner import plan_reach
+from kinematify.manipulation.sizes import sizing, write_scaled
+from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
+from kinematify.robot.robot import Joint, Link, Robot, forward_kinematics, rest_configuration
+from kinematify.robot.transforms import rotation_about
+from kinematify.robot.write import write_robot
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from kinematify.config.task import PourSettings
     from kinematify.config.validation import ValidationSettings
+    from kinematify.geometry.scene import Scene
     from kinematify.manipulation.kinematics import Arm
-    from kinematify.manipulation.place import Place
-    from kinematify.manipulation.pour_scene import Pour, Vessel
+    from kinematify.manipulation.place import Placement
     from kinematify.robot.arrays import FloatArray
+
+LIFT, CARRY, TILT = "pour_lift", "pour_carry", "pour_tilt"
+_ROOT, _LIFTED, _CARRIED, _PIVOT = "pour_table", "pour_lifted", "pour_carried", "pour_pivot"
+_CUP, _INTO = "cup_", "into_"
+_LIP = 0.1  # of the cup's height: its uppermost part, where it is widest towards the container
+_EXTRA = 0.1  # of range beyond what is needed [m or rad]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Vessel:
+    """A cup or a container at its real size."""
+
+    urdf: Path
+    box: FloatArray
+    """Lowest and highest corner at rest, frame of the root link [m], shape (2, 3)."""
+    points: FloatArray
+    """Corners of all shapes at rest, frame of the root link [m], shape (n, 3)."""
+
+    @property
+    def middle(self) -> FloatArray:
+        """Middle of the underside, frame of the root link [m], shape (3,)."""
+        return np.append(self.box.mean(axis=0)[:2], self.box[0, 2])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pour:
+    """The object that was made, and how far each joint moves."""
+
+    urdf: Path
+    lift: float
+    """[m]."""
+    carry: float
+    """[m]."""
+    tilt: float
+    """[rad]."""
+
+
+def read_vessel(urdf: Path, path: Path, settings: ValidationSettings, scale: float | None = None) -> Vessel:
+    """Write a cup or container at its real size to `path` and measure it.
+
+    Raises:
+        InputError: It cannot be read, has no geometry, or its size makes no sense.
+        OSError: The file cannot be written.
+    """
+    model = read_robot(urdf)
+    scene = read_scene(model, settings.geometry, visible_shapes)
+    if not scene.bodies:
+        raise InputError(f"{urdf} has no geometry, so nothing can be poured from it or into it. Give another model.")
+    write_scaled(urdf, sizing(urdf, model.name, object_box(scene), scale=scale).factor, path)
+    scene = read_scene(read_robot(path), settings.geometry, visible_shapes)
+    points = [corners @ T[:3, :3].T + T[:3, 3] for body, T in zip(scene.bodies, scene.at_rest, strict=True)
+              for corners in body.shapes]  # fmt: skip
+    return Vessel(urdf=path, box=object_box(scene), points=np.concatenate(points))
+
+
+def write_pour(cup: Vessel, into: Vessel, yaw: float, path: Path, settings: PourSettings) -> Pour:
+    """Write both as one object; the container stands in direction x from the cup.
+
+    Args:
+        cup: What is poured from.
+        into: What is poured into.
+        yaw: Turn of the cup about the upright [rad].
+        path: File to write.
+        settings: Distances and the tilt.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    turn = rotation_about(np.array([0.0, 0.0, 1.0]), yaw)
+    standing = (cup.points - cup.middle) @ turn.T
+    height = float(standing[:, 2].max())
+    upper = standing[standing[:, 2] > (1.0 - _LIP) * height]
+    lip = np.array([float(upper[:, 0].max()), 0.0, height])
+    half = 0.5 * float(np.ptp(into.box[:, 0]))
+    apart = float(standing[:, 0].max()) + half + settings.apart
+    rim = float(into.box[1, 2] - into.box[0, 2])
+    pour = Pour(
+        urdf=path,
+        lift=max(settings.least_lift, rim + settings.above - height),
+        carry=apart - float(lip[0]),
+        tilt=float(np.radians(settings.tilt_deg)),
+    )
+    hung, stood = _at_rest(cup, _CUP), _at_rest(into, _INTO)
+    stand = np.eye(4)
+    stand[:3, 3] = np.array([apart, 0.0, 0.0]) - into.middle
+    at_lip = np.eye(4)
+    at_lip[:3, 3] = lip
+    hang = np.eye(4)
+    hang[:3, :3] = turn
+    hang[:3, 3] = -turn @ cup.middle - lip
+    joints = (
+        *stood.joints,
+        _fixed(f"{_INTO}stands", _ROOT, stood.root, stand),
+        _moving(LIFT, (_ROOT, _LIFTED), np.eye(4), JointType.PRISMATIC, axis=2, reach=pour.lift),
+        _moving(CARRY, (_LIFTED, _CARRIED), np.eye(4), JointType.PRISMATIC, axis=0, reach=pour.carry),
+        _moving(TILT, (_CARRIED, _PIVOT), at_lip, JointType.REVOLUTE, axis=1, reach=pour.tilt),
+        *hung.joints,
+        _fixed(f"{_CUP}hangs", _PIVOT, hung.root, hang),
+    )
+    frames = tuple(Link(name=name) for name in (_ROOT, _LIFTED, _CARRIED, _PIVOT))
+    write_robot(Robot(name="pour", links=(*frames, *hung.links, *stood.links), joints=joints), path)
+    return pour
+
+
+def pour_motion(scene: Scene, pour: Pour, settings: PourSettings) -> ObjectMotion:
+    """Lift, carry and tilt one after the other, in equal steps; the shares of the way stand for values."""
+    counts = [
+        max(2, round(pour.lift / settings.step)),
+        max(2, round(pour.carry / settings.step)),
+        max(2, round(pour.tilt / np.radians(settings.step_deg))),
+    ]
+    names = [travel.joint for travel in scene.travels]
+    rows = [np.zeros(len(names))]
+    for name, end, count in zip((LIFT, CARRY, TILT), (pour.lift, pour.carry, pour.tilt), counts, strict=True):
+        for value in np.linspace(0.0, end, count + 1)[1:]:
+            row = rows[-1].copy()
+            row[names.index(name)] = value
+            rows.append(row)
+    table = np.array(rows)
+    links = [forward_kinematics(scene.model, dict(zip(names, row.tolist(), strict=True))) for row in table]
+    return ObjectMotion(
+        joint=TILT,
+        T_world_object=np.eye(4),
+        values=np.linspace(0.0, 1.0, len(table)),
+        rows=table,
+        link_poses=np.stack([poses[_PIVOT] for poses in links]),
+        body_poses=scene.poses(table),
+    )
+
+
+def _at_rest(vessel: Vessel, prefix: str) -> Robot:
+    """A vessel with its joints fixed where they rest, and a prefix before all names."""
+    robot = read_robot(vessel.urdf)
+    values = rest_configuration(robot)
+    return Robot(
+        name=robot.name,
+        links=tuple(replace(link, name=prefix + link.name) for link in robot.links),
+        joints=tuple(
+            _fixed(
+                prefix + joint.name,
+                prefix + joint.parent,
+                prefix + joint.child,
+                joint.T_parent_child @ joint.motion(values[joint.name]),
+            )
+            for joint in robot.joints
+        ),
+    )
+
+
+def _fixed(name: str, parent: str, child: str, T_parent_child: FloatArray) -> Joint:
+    return Joint(name=name, kind=JointType.FIXED, parent=parent, child=child, T_parent_child=T_parent_child)
+
+
+def _moving(
+    name: str, links: tuple[str, str], T_parent_child: FloatArray, kind: JointType, *, axis: int, reach: float
+) -> Joint:
+    return Joint(
+        name=name,
+        kind=kind,
+        parent=links[0],
+        child=links[1],
+        T_parent_child=T_parent_child,
+        axis=np.eye(3)[axis],
+        lower=-_EXTRA,
+        upper=reach + _EXTRA,
+        effort=100.0,
+        velocity=10.0,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,7 +245,7 @@ def plan_pour(
     turns = settings.task.pour.turns
     for number in range(turns):
         pour = write_pour(cup, into, 2.0 * np.pi * number / turns, folder / f"pour_{number}.urdf", settings.task.pour)
-        plan = _Planning(arm, pour, settings, seed, start).run()
+        plan = _PourPlanning(arm, pour, settings, seed, start).run()
         if best is None or plan.fraction > best.fraction:
             best = plan
         if best.failure is None or time.process_time() - start > turns * settings.task.plan.seconds:
@@ -75,7 +254,7 @@ def plan_pour(
     return best
 
 
-class _Planning:
+class _PourPlanning:
     """One way round of the cup."""
 
     def __init__(self, arm: Arm, pour: Pour, settings: ValidationSettings, seed: int, started: float) -> None:
@@ -131,7 +310,7 @@ class _Planning:
                 return f"{first} meets {second} on the way"
         return None
 
-    def _pulls(self, puller: Puller, places: list[Place]) -> Iterator[Pull | str]:
+    def _pulls(self, puller: Puller, places: list[Placement]) -> Iterator[Pull | str]:
         for from_start in (False, True):
             for place in places:
                 if time.process_time() - self._begun > self._plan.seconds:

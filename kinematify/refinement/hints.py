@@ -15,8 +15,7 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate
-from kinematify.refinement.candidates import CandidateJoints
-from kinematify.refinement.words import described
+from kinematify.refinement.candidates import CandidateJoints, described
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

@@ -17,15 +17,18 @@ from kinematify.config.validation import load_settings
 from kinematify.contact.seams import find_seams
 from kinematify.geometry.surface import part_surfaces
 from kinematify.refinement.candidates import CandidateJoints
-from kinematify.refinement.choose import Chooser
-from kinematify.refinement.contacts import audit_contacts, rebuilt
-from kinematify.refinement.history import History, PlanChange, Round
-from kinematify.refinement.plan import Plan
-from kinematify.refinement.simulate import Simulator
-from kinematify.refinement.split import infer_joined
-from kinematify.refinement.tiers import TIERS, DearTiers
-from kinematify.refinement.topology import EdgeMemory, SearchedContacts, replanned, search_again
-from kinematify.refinement.twins import TWINS, vote
+from kinematify.refinement.choose import TWINS, Chooser, vote
+from kinematify.refinement.plan import History, Plan, PlanChange, Round
+from kinematify.refinement.simulate import TIERS, DearTiers, Simulator
+from kinematify.refinement.topology import (
+    EdgeMemory,
+    SearchedContacts,
+    audit_contacts,
+    infer_joined,
+    rebuilt,
+    replanned,
+    search_again,
+)
 from kinematify.simulation.engines import DEFAULT_ENGINES, require_engine
 from kinematify.validation.check import FeedbackRow
 from kinematify.validation.checks import CHECKS

@@ -1,29 +1,149 @@
-"""The cheap tier: what the exact geometry says of a plan, in this process and without a file.
+"""The tiers in which a plan is simulated: exact geometry in this process, engines, and an arm that pulls.
 
-The checks are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here passes there. Sweeps
-of joints that did not change since an earlier plan are not repeated.
+The checks of the cheap tier are those of `kinematify validate` (KV301 to KV321), so that a plan that passes here
+passes there. All bodies of its scene stand in the world frame at rest: the checks then run on any tree with any joints,
+and what is costly about the parts (FCL trees, signed distances) is built once. Sweeps of joints that did not change
+since an earlier plan are not repeated, so that a candidate costs only the sweep of its own joint. For the dear tiers a
+plan is written as a model folder has it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import tempfile
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kinematify.refinement.world import PartsWorld
-from kinematify.validation.check import OpenCheck
+import numpy as np
+
+from kinematify.geometry.scene import Body, Scene
+from kinematify.geometry.solid import Solid
+from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.model.simulable import simulable_model
+from kinematify.model.urdf import write_model
+from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
+from kinematify.validation.check import FeedbackRow, OpenCheck
 from kinematify.validation.checks import checks_of
+from kinematify.validation.failure_rates import ENGINES, GEOMETRY, TASK
+from kinematify.validation.finding import Severity
 from kinematify.validation.geometry.look import GeometryLook, JointMotion
+from kinematify.validation.run import validate
 from kinematify.validation.summary import JointSummary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from kinematify.config.validation import GeometrySettings
+    from kinematify.assembly.part import Part
+    from kinematify.config.validation import GeometrySettings, ValidationSettings
     from kinematify.geometry.sweep import JointSweep
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.robot.robot import Joint
+    from kinematify.refinement.plan import Plan
+    from kinematify.robot.arrays import FloatArray
     from kinematify.validation.check import Check
     from kinematify.validation.finding import Finding
+    from kinematify.validation.report import ValidationReport
+
+_UNIT_SHARE = 1e-3  # of the largest part: a good unit for FCL, which takes short lengths for none
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WorldScene(Scene):
+    """A scene whose bodies stand in the world frame; joints move them about lines given there."""
+
+    lines: Mapping[str, FloatArray]
+    """A point on the axis of every joint, world frame at rest [m], shape (3,)."""
+
+    def poses(self, leaders: FloatArray) -> FloatArray:
+        """Motion of every body from where it stands at rest, rows of leaders (n, leaders) -> (n, B, 4, 4)."""
+        values = self.mechanism.all_values(leaders)
+        column = {name: k for k, name in enumerate(self.mechanism.joints)}
+        poses = np.broadcast_to(np.eye(4), (len(leaders), len(self._groups), 4, 4)).copy()
+        for group, joint, above, _ in self._steps:
+            motions = _motions_about(joint, self.lines[joint.name], values[:, column[joint.name]])
+            poses[:, group] = poses[:, above] @ motions
+        return np.ascontiguousarray(poses[:, [body.group for body in self.bodies]])
+
+
+class PartsWorld:
+    """The parts of one assembly, from which scenes are made; solids are built when first asked for."""
+
+    def __init__(self, model: KinematicModel, settings: GeometrySettings) -> None:
+        """Keep the collision geometry of a model; all plans of the same assembly share it.
+
+        Args:
+            model: Any plan of the assembly.
+            settings: Of the checks by geometry.
+        """
+        self.settings = settings
+        self._parts = {link.name: link.collision_parts or (link.visual,) for link in model.links}
+        self._visuals = {link.name: link.visual for link in model.links}
+        self._unit = _UNIT_SHARE * max(part.diagonal for parts in self._parts.values() for part in parts)
+        self._solids: dict[tuple[str, ...], Solid] = {}
+
+    def scene(self, model: KinematicModel) -> WorldScene:
+        """A plan as the checks see it."""
+        robot = _in_world_frame(model, self._visuals)
+        groups = rigid_groups(robot)
+        origins = {link.name: link.T_world_link[:3, 3] for link in model.links}
+        return WorldScene(
+            model=robot,
+            mechanism=Mechanism(robot=robot),
+            bodies=tuple(
+                Body(name=group.links[0], links=group.links, group=index, solid=self._solid(group.links), shapes=())
+                for index, group in enumerate(groups)
+            ),
+            settings=self.settings,
+            unit=self._unit,
+            stand_ins=(),
+            lines={joint.name: origins[joint.child] for joint in model.joints},
+        )
+
+    def _solid(self, links: tuple[str, ...]) -> Solid:
+        key = tuple(sorted(links))
+        if key not in self._solids:
+            parts = [part for link in key for part in self._parts[link]]
+            starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+            self._solids[key] = Solid(
+                np.concatenate([part.vertices for part in parts]),
+                np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
+                unit=self._unit,
+                hole=self.settings.hole,
+                points=self.settings.points,
+            )
+        return self._solids[key]
+
+
+def _in_world_frame(model: KinematicModel, visuals: Mapping[str, Part]) -> Robot:
+    """The same tree with all link frames in the world frame; the lines of the joints are told apart from it."""
+    return Robot(
+        name=model.name,
+        links=tuple(
+            Link(name=name, visuals=(Shape(mesh=LinkMesh(vertices=part.vertices, faces=part.faces)),))
+            for name, part in visuals.items()
+        ),
+        joints=tuple(
+            Joint(
+                name=joint.name,
+                kind=joint.kind,
+                parent=joint.parent,
+                child=joint.child,
+                T_parent_child=np.eye(4),
+                axis=joint.axis,
+                lower=joint.lower,
+                upper=joint.upper,
+            )
+            for joint in model.joints
+        ),
+    )
+
+
+def _motions_about(joint: Joint, point: FloatArray, values: FloatArray) -> FloatArray:
+    """Motion of a joint about its line in the world frame at many values [rad or m], shape (n, 4, 4)."""
+    motions = joint.motions(values)
+    if joint.kind.turns:
+        motions[:, :3, 3] = point - motions[:, :3, :3] @ point
+    return motions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,3 +228,63 @@ def _line(model: KinematicModel, joint: Joint) -> tuple[object, ...]:
     return (
         joint.child, joint.kind.value, joint.lower, joint.upper, joint.axis.tobytes(), origin.tobytes()
     )  # fmt: skip
+
+
+TIERS = (GEOMETRY, ENGINES, TASK)
+"""From cheap to dear; each includes those before it."""
+
+_TRIED = " tried"
+"""After the name of a joint, in what KV705 measures."""
+_RUN = {
+    ENGINES: [
+        check.id for check in checks_of("KV4", "KV5", "KV8") if check.feedback not in (None, FeedbackRow.EXPORTER)
+    ],
+    TASK: [check.id for check in checks_of("KV7") if check.severity is not Severity.NOTE],
+}
+"""Checks that a dear tier runs beside those of the tiers before it: whose findings change what is chosen.
+
+What geometry holds of the shapes at rest (KV34x) is left out: the scores of the inference have said that.
+"""
+
+
+@dataclass(kw_only=True, eq=False)
+class DearTiers:
+    """Runs plans of one assembly in engines and tasks, each once."""
+
+    settings: ValidationSettings
+    _reports: dict[tuple[object, ...], ValidationReport] = field(default_factory=dict)
+
+    def deepened(self, verdict: MotionVerdict, plan: Plan, tier: str) -> MotionVerdict:
+        """What all tiers up to a dear one say of a plan.
+
+        Args:
+            verdict: What the exact geometry says of it.
+            plan: The finalist.
+            tier: ``engines`` or ``task``.
+        """
+        for dear in TIERS[1 : TIERS.index(tier) + 1]:
+            report = self._report(plan, dear)
+            told = tuple(finding for finding in report.counted if finding.check in _RUN[dear])
+            verdict = replace(
+                verdict, findings=(*verdict.findings, *told), placements={**verdict.placements, **_placements(report)}
+            )
+        return verdict
+
+    def _report(self, plan: Plan, tier: str) -> ValidationReport:
+        """What one dear tier says of a plan."""
+        key = (tier, *plan.signature)
+        if key not in self._reports:
+            with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+                urdf = write_model(simulable_model(plan.model, plan.config).robot, Path(folder))
+                task = TaskRequest(kind=PULL) if tier == TASK else None
+                report = validate(urdf, settings=self.settings, selected=_RUN[tier], task=task)
+            if report.environment.get("interrupted"):
+                raise KeyboardInterrupt
+            self._reports[key] = report
+        return self._reports[key]
+
+
+def _placements(report: ValidationReport) -> dict[str, float]:
+    """How many places of the robot were tried for each joint."""
+    measured = next((check.measured for check in report.checks if check.check == "KV705"), {})
+    return {name.removesuffix(_TRIED): value for name, value in measured.items() if name.endswith(_TRIED)}

@@ -195,6 +195,18 @@ class Joint:
         """Return the transform of the child in the joint frame, shape (4, 4), at `value` [rad or m]."""
         return joint_motion(self.kind, self.axis, np.zeros(3), value)
 
+    def motions(self, values: FloatArray) -> FloatArray:
+        """Return `motion` at many values [rad or m], shape (n, 4, 4)."""
+        motions = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
+        if self.kind.turns:
+            x, y, z = self.axis
+            cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+            sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
+            motions[:, :3, :3] += sine * cross + versine * (cross @ cross)
+        elif self.kind is JointType.PRISMATIC:
+            motions[:, :3, 3] = values[:, None] * self.axis
+        return motions
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoopJoint:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.arrays import read_only
-from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import joint_ends, joint_values, rest_configuration
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import AgreementSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.robot import Joint, Robot
+    from kinematify.robot.robot import Robot
 
 GRAVITY = 9.81
 """Along -z of the root link's frame [m/s^2]; every engine is set to it."""
@@ -145,21 +144,8 @@ def link_poses(robot: Robot, rows: Configurations) -> FloatArray:
     poses = np.tile(np.eye(4), (len(rows.q), len(rows.links), 1, 1))
     for joint in robot.joints_downward:
         values = rows.q[:, column[joint.name]] if joint.name in column else np.zeros(len(rows.q))
-        poses[:, index[joint.child]] = poses[:, index[joint.parent]] @ joint.T_parent_child @ _motions(joint, values)
+        poses[:, index[joint.child]] = poses[:, index[joint.parent]] @ joint.T_parent_child @ joint.motions(values)
     return poses
-
-
-def _motions(joint: Joint, values: FloatArray) -> FloatArray:
-    """Transform of the child in the joint frame for every value [rad or m], shape (n, 4, 4)."""
-    motions = np.tile(np.eye(4), (len(values), 1, 1))
-    if joint.kind is JointType.PRISMATIC:
-        motions[:, :3, 3] = values[:, None] * joint.axis
-    elif joint.kind.turns:
-        x, y, z = joint.axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        sine, versine = np.sin(values)[:, None, None], 1.0 - np.cos(values)[:, None, None]
-        motions[:, :3, :3] += sine * cross + versine * (cross @ cross)
-    return motions
 
 
 def write_poses(work: Path, engine: str, poses: EnginePoses) -> None:

@@ -15,10 +15,12 @@ from pydrake.systems.framework import DiagramBuilder
 
 from kinematify.simulation.loaded_file import (
     MovesFreely,
-    Progress,
     Pushed,
+    PushProgress,
     ReleaseRun,
+    Reproductions,
     RestRun,
+    RunningFile,
     Unloadable,
     deepest_first,
 )
@@ -91,8 +93,17 @@ _LOOK_STEPS = 10
 """Between two looks at the energy."""
 
 
-class DrakeFile:
-    """See `kinematify.simulation.loaded_file.RunningFile`."""
+class DrakeFile(RunningFile):
+    """See `RunningFile`."""
+
+    code = Reproductions(
+        joints=_JOINTS,
+        overlap=_OVERLAP,
+        rest=_REST,
+        push=_PUSH.replace("{gravity}", f"{_NOWHERE}").replace("{off}", ""),
+        push_alone=_PUSH.replace("{gravity}", f"{_NOWHERE}").replace("{off}", _NO_CONTACTS),
+        release=_RELEASE.replace("{looks}", f"{_LOOK_STEPS}"),
+    )
 
     def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
         """Load it.
@@ -103,19 +114,22 @@ class DrakeFile:
         """
         self._path, self._root, self._folders = urdf, root, [str(folder) for folder in package_dirs]
         self.time_step = float(MultibodyPlantConfig().time_step)
-        self._worlds: dict[tuple[bool, bool], _World] = {}
+        self._file = {
+            "path": str(urdf), "root": root, "folders": self._folders, "gravity": _EARTH, "step": self.time_step,
+        }  # fmt: skip
+        self._worlds: dict[tuple[bool, bool], _RawWorld] = {}
         plant = self._world(contacts=True).plant
         moving = [plant.get_joint(index) for index in plant.GetJointIndices()]
         moving = sorted((joint for joint in moving if joint.num_velocities()), key=lambda joint: joint.position_start())
-        self.joints: Sequence[str] = tuple(joint.name() for joint in moving)
+        self.joints = tuple(joint.name() for joint in moving)
         if not all(isinstance(joint, RevoluteJoint | PrismaticJoint) for joint in moving):
             raise MovesFreely(self.lines_of_joints())
-        self.limits: Mapping[str, tuple[float, float]] = {
+        self.limits = {
             joint.name(): (float(joint.position_lower_limits()[0]), float(joint.position_upper_limits()[0]))
             for joint in moving
         }
 
-    def _world(self, *, contacts: bool, gravity: bool = True) -> _World:
+    def _world(self, *, contacts: bool, gravity: bool = True) -> _RawWorld:
         known = self._worlds.get((contacts, gravity))
         if known is None:
             known = _loaded(self._path, self._root, self._folders, contacts=contacts, gravity=gravity)
@@ -152,29 +166,16 @@ class DrakeFile:
         world.place(self._row(values))
         return np.asarray(1.0 / np.diagonal(np.linalg.inv(world.plant.CalcMassMatrix(world.state))))
 
-    def bearable(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`."""
-        return np.full(len(values), np.inf)
-
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `RunningFile`."""
         world, rest = self._world(contacts=contacts, gravity=False), self._row(values)
         world.place(rest)
         moved = [self.joints.index(name) for name in push.moved]
         ratios, weights = np.array(push.ratios), np.array(push.weights)
-        progress = Progress(start=values[push.joint], push=push, time_step=self.time_step)
+        progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
         port, force = world.plant.get_applied_generalized_force_input_port(), np.zeros(len(rest))
-        speed = grown = 0.0
-        done = 0
-
-        def pull() -> None:
-            nonlocal grown
-            slow = push.speed - speed
-            grown = min(max(grown + push.integral * slow, -push.force), push.force)
-            force[moved[0]] = min(max(push.proportional * slow + grown, -push.force), push.force)
-            port.FixValue(world.state, force)
-
-        pull()
+        done, force[moved[0]] = 0, progress.force(0.0)
+        port.FixValue(world.state, force)
         for done in world.steps(push.steps, self.time_step):
             q, v = rest.copy(), np.zeros_like(rest)
             speed = float(weights @ world.plant.GetVelocities(world.state)[moved])
@@ -183,55 +184,17 @@ class DrakeFile:
             world.plant.SetPositionsAndVelocities(world.state, np.concatenate([q, v]))
             if not progress.goes_on(float(q[moved[0]]), done):
                 break
-            pull()
+            force[moved[0]] = progress.force(speed)
+            port.FixValue(world.state, force)
         port.FixValue(world.state, np.zeros(len(rest)))
         return Pushed(farthest=progress.value, steps=done, overlaps=world.overlaps())
 
-    def lines_of_joints(self) -> str:
-        """See `LoadedFile`."""
-        return _JOINTS.format(**self._facts(None, dict.fromkeys(self.joints, 0.0)))
-
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """See `LoadedFile`."""
-        return _OVERLAP.format(**self._facts(None, values), links=set(links))
-
-    def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
-        """See `RunningFile`."""
-        return _REST.format(**self._facts(joint, values), steps=round(seconds / self.time_step))
-
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """See `RunningFile`."""
-        facts = {
-            **vars(push),
-            **self._facts(push.joint, values),
-            "farthest": push.farthest,
-            "steps": steps,
-            "gravity": _NOWHERE,
-        }
-        moved = [self.joints.index(name) for name in push.moved]
-        return _PUSH.format(**facts | {"moved": moved, "off": "" if contacts else _NO_CONTACTS})
-
-    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """See `RunningFile`."""
-        facts = self._facts(None, values)
-        return _RELEASE.format(
-            **facts, speeds=self._row(speeds).tolist(), steps=round(seconds / self.time_step), looks=_LOOK_STEPS
-        )
-
-    def _facts(self, joint: str | None, values: Mapping[str, float]) -> dict[str, object]:
-        return {
-            "path": str(self._path),
-            "root": self._root,
-            "folders": self._folders,
-            "gravity": _EARTH,
-            "values": self._row(values).tolist(),
-            "joint": None if joint is None else self.joints.index(joint),
-            "step": self.time_step,
-        }
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        return set(links)
 
 
 @dataclass(kw_only=True, eq=False)
-class _World:
+class _RawWorld:
     """A diagram with one file in it, and a context."""
 
     diagram: Any
@@ -290,7 +253,7 @@ class _World:
             self.complaint = " ".join(str(error).split())[:200]
 
 
-def _loaded(urdf: Path, root: str, folders: Sequence[str], *, contacts: bool, gravity: bool) -> _World:
+def _loaded(urdf: Path, root: str, folders: Sequence[str], *, contacts: bool, gravity: bool) -> _RawWorld:
     builder = DiagramBuilder()
     plant, scene = AddMultibodyPlant(MultibodyPlantConfig(), builder)
     parser = Parser(plant)
@@ -311,4 +274,4 @@ def _loaded(urdf: Path, root: str, folders: Sequence[str], *, contacts: bool, gr
     if not contacts:
         off = CollisionFilterDeclaration().ExcludeWithin(GeometrySet(list(link_of)))
         scene.collision_filter_manager(scene.GetMyContextFromRoot(context)).Apply(off)
-    return _World(diagram=diagram, plant=plant, scene=scene, context=context, link_of=link_of)
+    return _RawWorld(diagram=diagram, plant=plant, scene=scene, context=context, link_of=link_of)

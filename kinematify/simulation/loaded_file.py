@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -114,22 +115,42 @@ class Pushed:
     """Where it ended, the deepest first."""
 
 
-class LoadedFile(Protocol):
+@dataclass(frozen=True, kw_only=True)
+class Reproductions:
+    """Templates of plain code of an engine, which repeats what was found; `LoadedFile` fills them in."""
+
+    joints: str
+    """Prints a joint in each line: its name, lower and upper limit."""
+    overlap: str
+    """Prints how deep two links are in each other."""
+    rest: str = ""
+    """Repeats `RunningFile.rest`, and prints the least and the largest value of a joint."""
+    push: str = ""
+    """Repeats `RunningFile.push`, and prints how far the joint gets [rad or m]."""
+    push_alone: str = ""
+    """The same without contacts."""
+    release: str = ""
+    """Repeats `RunningFile.release`, and prints by how much the energy grows [J]."""
+
+
+class LoadedFile(ABC):
     """A file in an engine. Every joint that the engine moves is known by its name."""
 
-    @property
-    def joints(self) -> Sequence[str]:
-        """Names of the joints that move."""
+    code: ClassVar[Reproductions]
+    joints: Sequence[str]
+    """Names of the joints that move."""
+    limits: Mapping[str, tuple[float, float]]
+    """Lower and upper limit of each joint as the engine has read them [rad or m], infinite where there are none."""
+    _file: Mapping[str, object]
+    """What the code says of the file, by the names in the templates."""
 
-    @property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        """Lower and upper limit of each joint as the engine has read them [rad or m], infinite where there are none."""
-
+    @abstractmethod
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """Pairs of links that overlap with the joints at `values` [rad or m], the deepest first."""
 
     def lines_of_joints(self) -> str:
         """Return plain code of the engine that prints a joint in each line: its name, lower and upper limit."""
+        return self.code.joints.format(**self._file, values=self._in_code(dict.fromkeys(self.joints, 0.0)))
 
     def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
         """Return plain code of the engine that prints how deep two links are in each other with the joints at `values`.
@@ -138,38 +159,70 @@ class LoadedFile(Protocol):
             links: Of an `Overlap`.
             values: Of all joints [rad or m].
         """
+        return self.code.overlap.format(**self._file, values=self._in_code(values), links=self._links_in_code(links))
+
+    def _in_code(self, values: Mapping[str, float]) -> object:
+        """Values of all joints as the code has them."""
+        return [float(values[name]) for name in self.joints]
+
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        """Two links as the code has them."""
+        return links
 
 
-class RunningFile(LoadedFile, Protocol):
+class RunningFile(LoadedFile):
     """A file in an engine that simulates."""
 
-    @property
-    def time_step(self) -> float:
-        """Of the engine [s]."""
+    time_step: float
+    """Of the engine [s]."""
 
+    @abstractmethod
     def rest(self, values: Mapping[str, float], seconds: float, *, contacts: bool) -> RestRun:
         """Let go at `values`, with or without contacts among the links."""
 
+    @abstractmethod
     def inertias(self, values: Mapping[str, float]) -> FloatArray:
         """What a force at each joint moves in a step of a push [kg or kg m^2], shape (joints,)."""
 
     def bearable(self, values: Mapping[str, float]) -> FloatArray:
         """Largest force at each joint that the engine answers rightly [N or N m], shape (joints,)."""
+        return np.full(len(values), np.inf)
 
+    @abstractmethod
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """Push a joint from `values`, the others held there."""
 
+    @abstractmethod
     def release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> ReleaseRun:
         """Let go at `values` with `speeds` [rad/s or m/s], without motors and without contacts among the links."""
 
     def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `rest` and prints the least and the largest value of a joint."""
+        return self._filled(self.code.rest, values, joint=self._index_of(joint), steps=self._steps(seconds))
 
     def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
         """Return plain code of the engine that repeats `push` and prints how far the joint gets [rad or m]."""
+        facts = vars(push) | {"joint": self._index_of(push.joint), "moved": self._moved_in_code(push)}
+        code = self.code.push if contacts else self.code.push_alone
+        return self._filled(code, values, **facts | {"farthest": push.farthest, "steps": steps})
 
     def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
         """Return plain code of the engine that repeats `release` and prints by how much the energy grows [J]."""
+        return self._filled(self.code.release, values, speeds=self._in_code(speeds), steps=self._steps(seconds))
+
+    def _filled(self, code: str, values: Mapping[str, float], **facts: object) -> str:
+        return code.format(**self._file, values=self._in_code(values), **facts)
+
+    def _steps(self, seconds: float) -> int:
+        return round(seconds / self.time_step)
+
+    def _index_of(self, joint: str) -> int:
+        """The engine's index of a joint."""
+        return self.joints.index(joint)
+
+    def _moved_in_code(self, push: Push) -> object:
+        """What a push moves as the code has it."""
+        return [self._index_of(name) for name in push.moved]
 
 
 def hand(
@@ -220,8 +273,8 @@ def hand(
 
 
 @dataclass(kw_only=True)
-class Progress:
-    """How far a push has got, and whether it goes on."""
+class PushProgress:
+    """The hand of a push: its force, how far it has got, and whether it goes on."""
 
     start: float
     push: Push
@@ -229,6 +282,13 @@ class Progress:
     farthest: float = 0.0
     _marked: float = 0.0
     _since: int = 0
+    _grown: float = 0.0
+
+    def force(self, speed: float) -> float:
+        """Force at the joint in the next step [N or N m], which goes at a speed [rad/s or m/s]."""
+        push, slow = self.push, self.push.speed - speed
+        self._grown = min(max(self._grown + push.integral * slow, -push.force), push.force)
+        return min(max(push.proportional * slow + self._grown, -push.force), push.force)
 
     def goes_on(self, value: float, step: int) -> bool:
         """Take in the joint's value [rad or m] after a step; False once it has arrived or is stuck."""

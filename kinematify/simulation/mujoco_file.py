@@ -10,10 +10,12 @@ import numpy as np
 
 from kinematify.simulation.loaded_file import (
     MovesFreely,
-    Progress,
     Pushed,
+    PushProgress,
     ReleaseRun,
+    Reproductions,
     RestRun,
+    RunningFile,
     Unloadable,
     deepest_first,
 )
@@ -75,8 +77,17 @@ print(max(seen) - seen[0])
 )
 
 
-class MujocoFile:
-    """See `kinematify.simulation.loaded_file.RunningFile`."""
+class MujocoFile(RunningFile):
+    """See `RunningFile`."""
+
+    code = Reproductions(
+        joints=_JOINTS,
+        overlap=_OVERLAP,
+        rest=_REST,
+        push=_PUSH.replace("{off}", ""),
+        push_alone=_PUSH.replace("{off}", _NO_CONTACTS),
+        release=_RELEASE,
+    )
 
     def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
         """Load it; MuJoCo knows no packages.
@@ -86,7 +97,7 @@ class MujocoFile:
             MovesFreely: It moves a link in other ways than by turning or sliding.
         """
         del package_dirs
-        self._path, self._root = urdf, root
+        self._file, self._root = {"path": str(urdf)}, root
         try:
             self._model = mujoco.MjModel.from_xml_path(str(urdf))
         except ValueError as error:
@@ -94,14 +105,10 @@ class MujocoFile:
         if self._model.nq != self._model.nv or self._model.nv != self._model.njnt:
             raise MovesFreely(_OPEN.format(path=str(urdf)) + "print(model.jnt_type)\n")
         self._data = mujoco.MjData(self._model)
-        self.joints: Sequence[str] = tuple(self._model.joint(k).name for k in range(self._model.njnt))
-        self.time_step = float(self._model.opt.timestep)
-
-    @property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        """See `RunningFile`."""
+        self.joints = tuple(self._model.joint(k).name for k in range(self._model.njnt))
         ranges = zip(self.joints, self._model.jnt_limited, self._model.jnt_range.tolist(), strict=True)
-        return {name: (ends[0], ends[1]) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
+        self.limits = {name: tuple(ends) if limited else (-np.inf, np.inf) for name, limited, ends in ranges}
+        self.time_step = float(self._model.opt.timestep)
 
     def _place(self, values: Mapping[str, float]) -> FloatArray:
         mujoco.mj_resetData(self._model, self._data)
@@ -171,22 +178,16 @@ class MujocoFile:
         mujoco.mj_solveM(self._model, self._data, inverse, np.eye(self._model.nv))
         return np.asarray(1.0 / np.diagonal(inverse))
 
-    def bearable(self, values: Mapping[str, float]) -> FloatArray:
-        """See `RunningFile`."""
-        return np.full(len(values), np.inf)
-
     def push(self, push: Push, values: Mapping[str, float], *, contacts: bool) -> Pushed:
         """See `RunningFile`."""
         rest, joint, data = self._place(values), self.joints.index(push.joint), self._data
         moved = [self.joints.index(name) for name in push.moved]
         ratios, weights = np.array(push.ratios), np.array(push.weights)
-        progress = Progress(start=values[push.joint], push=push, time_step=self.time_step)
-        step, grown = 0, 0.0
+        progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
+        step = 0
         with self._without(contacts=not contacts, gravity=True):
             for step in range(1, push.steps + 1):
-                slow = push.speed - float(data.qvel[joint])
-                grown = min(max(grown + push.integral * slow, -push.force), push.force)
-                data.qfrc_applied[joint] = min(max(push.proportional * slow + grown, -push.force), push.force)
+                data.qfrc_applied[joint] = progress.force(float(data.qvel[joint]))
                 mujoco.mj_step(self._model, data)
                 way, speed = weights @ (data.qpos - rest)[moved], weights @ data.qvel[moved]
                 data.qpos[:], data.qvel[:] = rest, 0.0
@@ -197,34 +198,5 @@ class MujocoFile:
             found = self._overlaps()
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
-    def lines_of_joints(self) -> str:
-        """See `LoadedFile`."""
-        return _JOINTS.format(path=str(self._path))
-
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """See `LoadedFile`."""
-        names = sorted({"world" if name == self._root else name for name in links})
-        return _OVERLAP.format(**self._facts(None, values), links=names)
-
-    def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
-        """See `RunningFile`."""
-        steps = round(seconds / self.time_step)
-        return _REST.format(**self._facts(joint, values), steps=steps)
-
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """See `RunningFile`."""
-        facts = {**vars(push), **self._facts(push.joint, values), "farthest": push.farthest, "steps": steps}
-        off = "" if contacts else _NO_CONTACTS
-        return _PUSH.format(**facts | {"moved": [self.joints.index(name) for name in push.moved], "off": off})
-
-    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """See `RunningFile`."""
-        facts = self._facts(None, values) | {"speeds": [float(speeds[name]) for name in self.joints]}
-        return _RELEASE.format(**facts, steps=round(seconds / self.time_step))
-
-    def _facts(self, joint: str | None, values: Mapping[str, float]) -> dict[str, object]:
-        return {
-            "path": str(self._path),
-            "values": [float(values[name]) for name in self.joints],
-            "joint": None if joint is None else self.joints.index(joint),
-        }
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        return sorted({"world" if name == self._root else name for name in links})

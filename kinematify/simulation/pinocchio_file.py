@@ -9,7 +9,7 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from kinematify.simulation.loaded_file import MovesFreely, Unloadable, deepest_first
+from kinematify.simulation.loaded_file import LoadedFile, MovesFreely, Reproductions, Unloadable, deepest_first
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ print(name, *ends)
 _OVERLAP = (
     _OPEN
     + """seen = shapes.createData(); pin.updateGeometryPlacements(model, model.createData(), shapes, seen, \
-np.array({configuration})); place = lambda k: coal.Transform3s(seen.oMg[k].rotation, seen.oMg[k].translation)
+np.array({values})); place = lambda k: coal.Transform3s(seen.oMg[k].rotation, seen.oMg[k].translation)
 solid = [(getattr(g.geometry, "buildConvexRepresentation", lambda _: 0)(False), \
 getattr(g.geometry, "convex", g.geometry))[1] for g in shapes.geometryObjects]
 pairs = [(i, k) for i, a in enumerate(shapes.geometryObjects) for k, b in enumerate(shapes.geometryObjects) \
@@ -45,8 +45,10 @@ _CONVEX = 0.99
 """Volume of a mesh that counts as convex, fraction of its hull's."""
 
 
-class PinocchioFile:
-    """See `kinematify.simulation.loaded_file.LoadedFile`; what a joint connects is not looked at for overlaps."""
+class PinocchioFile(LoadedFile):
+    """See `LoadedFile`; what a joint connects is not looked at for overlaps."""
+
+    code = Reproductions(joints=_JOINTS, overlap=_OVERLAP)
 
     def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path]) -> None:
         """Load it; paths of meshes are relative to its folder.
@@ -57,27 +59,22 @@ class PinocchioFile:
         """
         del root
         folders = [str(folder) for folder in (urdf.parent, *package_dirs)]
-        self._facts = {"path": str(urdf), "folders": folders}
+        self._file = {"path": str(urdf), "folders": folders}
         try:
             self._model = pin.buildModelFromUrdf(str(urdf))
             self._geometry = pin.buildGeomFromUrdf(
                 self._model, str(urdf), pin.GeometryType.COLLISION, package_dirs=folders
             )
         except ValueError as error:
-            raise Unloadable(str(error), _OPEN.format(**self._facts)) from error
+            raise Unloadable(str(error), _OPEN.format(**self._file)) from error
         if any(joint.nv != 1 for joint in list(self._model.joints)[1:]):
-            raise MovesFreely(self.lines_of_joints())
+            raise MovesFreely(_JOINTS.format(**self._file))
         self._geometry.addAllCollisionPairs()
-        self.joints: Sequence[str] = tuple(self._model.names)[1:]  # the first is the world
-
-    @cached_property
-    def limits(self) -> Mapping[str, tuple[float, float]]:
-        """See `LoadedFile`."""
-        model, found = self._model, {}
+        self.joints = tuple(self._model.names)[1:]  # the first is the world
+        model, self.limits = self._model, {}
         for name, joint in zip(self.joints, list(model.joints)[1:], strict=True):
             ends = (float(model.lowerPositionLimit[joint.idx_q]), float(model.upperPositionLimit[joint.idx_q]))
-            found[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
-        return found
+            self.limits[name] = ends if joint.nq == 1 else (-np.inf, np.inf)
 
     def overlaps(self, values: Mapping[str, float]) -> tuple[Overlap, ...]:
         """See `LoadedFile`; depths are told of convex shapes, by distances: `computeCollisions` misses boxes."""
@@ -98,6 +95,9 @@ class PinocchioFile:
             depths[first, second] = max(depths.get((first, second), 0.0), -distance)
         return deepest_first(depths)
 
+    def _in_code(self, values: Mapping[str, float]) -> object:
+        return self._configuration(values).tolist()
+
     def _configuration(self, values: Mapping[str, float]) -> FloatArray:
         """Joints that turn without end are points on a circle."""
         q = np.array(pin.neutral(self._model))
@@ -105,14 +105,6 @@ class PinocchioFile:
             value = values[name]
             q[joint.idx_q : joint.idx_q + joint.nq] = (np.cos(value), np.sin(value)) if joint.nq == 2 else value
         return q
-
-    def lines_of_joints(self) -> str:
-        """See `LoadedFile`."""
-        return _JOINTS.format(**self._facts)
-
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """See `LoadedFile`."""
-        return _OVERLAP.format(**self._facts, links=links, configuration=self._configuration(values).tolist())
 
     @cached_property
     def _solids(self) -> list[Any]:

@@ -9,7 +9,16 @@ import numpy as np
 import pybullet as bullet
 
 from kinematify.simulation.configurations import GRAVITY
-from kinematify.simulation.loaded_file import Progress, Pushed, ReleaseRun, RestRun, Unloadable, deepest_first
+from kinematify.simulation.loaded_file import (
+    Pushed,
+    PushProgress,
+    ReleaseRun,
+    Reproductions,
+    RestRun,
+    RunningFile,
+    Unloadable,
+    deepest_first,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -87,8 +96,17 @@ _MOTOR = 240.0
 """Of a joint that was pushed, afterwards [N or N m]: about what motors have when a file is loaded."""
 
 
-class PybulletFile:
-    """See `kinematify.simulation.loaded_file.RunningFile`; contacts of links are those of `URDF_USE_SELF_COLLISION`."""
+class PybulletFile(RunningFile):
+    """See `RunningFile`; contacts of links are those of `URDF_USE_SELF_COLLISION`."""
+
+    code = Reproductions(
+        joints=_JOINTS,
+        overlap=_OVERLAP,
+        rest=_REST,
+        push=_PUSH,
+        push_alone=_without_contacts(_PUSH),
+        release=_RELEASE.replace("{looks}", f"{_LOOK_STEPS}"),
+    )
 
     def __init__(self, urdf: Path, root: str, package_dirs: Sequence[Path] = ()) -> None:
         """Load it; PyBullet looks for packages by itself.
@@ -97,14 +115,14 @@ class PybulletFile:
             Unloadable: PyBullet does not open it.
         """
         del package_dirs
-        self._path, self._root, self.time_step = urdf, root, _TIME_STEP
-        world = _World(urdf, contacts=True)
+        self._path, self._file, self._root, self.time_step = urdf, {"path": str(urdf)}, root, _TIME_STEP
+        world = _LoadedWorld(urdf, contacts=True)
         self._worlds = {True: world}
         infos = [world.do(bullet.getJointInfo, k) for k in range(world.do(bullet.getNumJoints))]
         self._links = {-1: root, **{k: info[12].decode() for k, info in enumerate(infos)}}
         self._index = {info[1].decode(): k for k, info in enumerate(infos) if info[2] != bullet.JOINT_FIXED}
-        self.joints: Sequence[str] = tuple(self._index)
-        self.limits: Mapping[str, tuple[float, float]] = {
+        self.joints = tuple(self._index)
+        self.limits = {
             info[1].decode(): (info[8], info[9]) if info[8] <= info[9] else (-np.inf, np.inf)
             for info in infos
             if info[2] != bullet.JOINT_FIXED
@@ -112,11 +130,11 @@ class PybulletFile:
         above = {k: info[16] for k, info in enumerate(infos)}
         self._below = {k: [link for link in above if k in _chain(above, link)] for k in self._index.values()}
 
-    def _world(self, values: Mapping[str, float], *, contacts: bool, as_loaded: bool = False) -> _World:
+    def _world(self, values: Mapping[str, float], *, contacts: bool, as_loaded: bool = False) -> _LoadedWorld:
         """A world as it was after loading, with the joints at `values`; its motors too where that is asked for."""
         world = self._worlds.get(contacts)
         if world is None or (as_loaded and world.pushed):
-            world = self._worlds[contacts] = _World(self._path, contacts=contacts, seen=False)
+            world = self._worlds[contacts] = _LoadedWorld(self._path, contacts=contacts, seen=False)
         bullet.restoreState(world.state, physicsClientId=world.client)
         for name, k in self._index.items():
             world.do(bullet.resetJointState, k, values[name])
@@ -127,7 +145,7 @@ class PybulletFile:
         world = self._world(values, contacts=True)
         return self._overlaps(world)
 
-    def _overlaps(self, world: _World) -> tuple[Overlap, ...]:
+    def _overlaps(self, world: _LoadedWorld) -> tuple[Overlap, ...]:
         bullet.performCollisionDetection(physicsClientId=world.client)
         depths: dict[tuple[str, str], float] = {}
         for contact in world.do(bullet.getContactPoints, world.body):
@@ -162,7 +180,7 @@ class PybulletFile:
                     return ReleaseRun(energy=np.array(seen[:-1]), complaint="the energy is no number any more")
         return ReleaseRun(energy=np.array(seen), complaint=None)
 
-    def _energy(self, world: _World) -> tuple[float, float]:
+    def _energy(self, world: _LoadedWorld) -> tuple[float, float]:
         """Potential and kinetic [J] of all links but the base."""
         links = [link for link in self._links if link != -1]
         states = world.do(bullet.getLinkStates, links, computeLinkVelocity=True, computeForwardKinematics=True)
@@ -179,7 +197,7 @@ class PybulletFile:
         world = self._world(values, contacts=True)
         return np.array([self._inertia(world, k) for k in self._index.values()])
 
-    def _inertia(self, world: _World, joint: int) -> float:
+    def _inertia(self, world: _LoadedWorld, joint: int) -> float:
         """Of what hangs on a joint; PyBullet's own mass matrix fails where a tensor is unsymmetric by 1e-13."""
         info = world.do(bullet.getJointInfo, joint)
         frame = world.do(bullet.getLinkState, joint, computeForwardKinematics=True)
@@ -230,14 +248,11 @@ class PybulletFile:
         bullet.setGravity(0.0, 0.0, 0.0, physicsClientId=world.client)
         for k in moved:
             world.do(bullet.setJointMotorControl2, places[k], bullet.VELOCITY_CONTROL, force=0)
-        progress = Progress(start=values[push.joint], push=push, time_step=self.time_step)
-        step, grown, speed = 0, 0.0, 0.0
+        progress = PushProgress(start=values[push.joint], push=push, time_step=self.time_step)
+        step, speed = 0, 0.0
         q, v = rest.copy(), np.zeros_like(rest)
         for step in range(1, push.steps + 1):
-            slow = push.speed - speed
-            grown = min(max(grown + push.integral * slow, -push.force), push.force)
-            force = min(max(push.proportional * slow + grown, -push.force), push.force)
-            world.do(bullet.setJointMotorControl2, joint, bullet.TORQUE_CONTROL, force=force)
+            world.do(bullet.setJointMotorControl2, joint, bullet.TORQUE_CONTROL, force=progress.force(speed))
             bullet.stepSimulation(physicsClientId=world.client)
             states = world.do(bullet.getJointStates, places)
             way = sum(w * (states[k][0] - rest[k]) for k, w in zip(moved, weights, strict=True))
@@ -252,41 +267,17 @@ class PybulletFile:
         bullet.setGravity(0.0, 0.0, -GRAVITY, physicsClientId=world.client)
         return Pushed(farthest=progress.value, steps=step, overlaps=found)
 
-    def lines_of_joints(self) -> str:
-        """See `LoadedFile`."""
-        return _JOINTS.format(path=str(self._path))
+    def _in_code(self, values: Mapping[str, float]) -> object:
+        return {k: float(values[name]) for name, k in self._index.items()}
 
-    def lines_of_overlap(self, links: tuple[str, str], values: Mapping[str, float]) -> str:
-        """See `LoadedFile`."""
-        places = {k for k, name in self._links.items() if name in links}
-        return _OVERLAP.format(**self._facts(None, values), links=places)
+    def _links_in_code(self, links: tuple[str, str]) -> object:
+        return {k for k, name in self._links.items() if name in links}
 
-    def lines_of_rest(self, joint: str, values: Mapping[str, float], seconds: float) -> str:
-        """See `RunningFile`."""
-        return _REST.format(**self._facts(joint, values), steps=round(seconds / self.time_step))
+    def _index_of(self, joint: str) -> int:
+        return self._index[joint]
 
-    def lines_of_push(self, push: Push, values: Mapping[str, float], steps: int, *, contacts: bool) -> str:
-        """See `RunningFile`."""
-        moved = zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True)
-        facts = (
-            vars(push)
-            | self._facts(push.joint, values)
-            | {"farthest": push.farthest, "steps": steps, "moved": list(moved)}
-        )
-        return (_PUSH if contacts else _without_contacts(_PUSH)).format(**facts)
-
-    def lines_of_release(self, values: Mapping[str, float], speeds: Mapping[str, float], seconds: float) -> str:
-        """See `RunningFile`."""
-        facts = self._facts(None, values)
-        given = {k: float(speeds[name]) for name, k in self._index.items()}
-        return _RELEASE.format(**facts, speeds=given, steps=round(seconds / self.time_step), looks=_LOOK_STEPS)
-
-    def _facts(self, joint: str | None, values: Mapping[str, float]) -> dict[str, Any]:
-        return {
-            "path": str(self._path),
-            "values": {k: float(values[name]) for name, k in self._index.items()},
-            "joint": None if joint is None else self._index[joint],
-        }
+    def _moved_in_code(self, push: Push) -> object:
+        return list(zip([self._index[name] for name in push.moved], push.ratios, push.weights, strict=True))
 
 
 def _chain(above: Mapping[int, int], link: int) -> list[int]:
@@ -294,7 +285,7 @@ def _chain(above: Mapping[int, int], link: int) -> list[int]:
     return [] if link == -1 else [link, *_chain(above, above[link])]
 
 
-class _World:
+class _LoadedWorld:
     """A world with one file in it."""
 
     def __init__(self, urdf: Path, *, contacts: bool, seen: bool = True) -> None:

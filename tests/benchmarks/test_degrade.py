@@ -14,7 +14,7 @@ from benchmarks.degrade import DEGRADED, OPEN_REACH, OVER_SEGMENTED, VERTEX_NOIS
 from benchmarks.tables import benchmark_blocks
 from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
-from kinematify.cli.words import words_of
+from kinematify.cli.options import words_of
 from kinematify.config import load_config
 from kinematify.evaluation.job import CLEAN
 from kinematify.evaluation.run import run_benchmark

@@ -29,7 +29,7 @@ def failing(monkeypatch: pytest.MonkeyPatch) -> object:
     """Return a function that makes `kinematify doctor` raise what it is given."""
 
     def install(error: BaseException) -> None:
-        def examine() -> tuple[doctor.Finding, ...]:
+        def examine() -> tuple[doctor.PackageState, ...]:
             raise error
 
         monkeypatch.setattr(doctor, "examine_packages", examine)
@@ -129,13 +129,13 @@ def test_doctor_reports_this_environment(capsys: pytest.CaptureFixture[str]) -> 
     assert set(states) == set(doctor.MODULES)
 
 
-def finding(**changes: object) -> doctor.Finding:
+def finding(**changes: object) -> doctor.PackageState:
     """A healthy package, with some fields changed."""
     fields = {
         "package": "mujoco", "purpose": "engine", "wanted": ">=4.0,<5", "installed": "4.0.0", "state": "ok",
         "optional": False,
     }  # fmt: skip
-    return doctor.Finding(**{**fields, **changes})  # type: ignore[arg-type]
+    return doctor.PackageState(**{**fields, **changes})  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

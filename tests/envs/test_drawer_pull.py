@@ -14,7 +14,7 @@ from gymnasium.utils.env_checker import check_env
 
 from kinematify.envs.drawer_pull import DrawerPullEnv
 from kinematify.envs.expert import ArmExpert
-from kinematify.envs.mujoco_arm import ROBOT
+from kinematify.envs.mujoco_worlds import ROBOT
 from kinematify.envs.settings import load_settings
 from kinematify.errors import EnvironmentFault, InputError
 from kinematify.manipulation.arm import write_arm

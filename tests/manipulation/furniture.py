@@ -9,8 +9,8 @@ import pinocchio as pin
 
 from kinematify.config.validation import load_settings
 from kinematify.geometry.scene import read_scene
+from kinematify.manipulation.execute import Motion
 from kinematify.manipulation.grasp import Grasp, search_grasps
-from kinematify.manipulation.motion import Motion
 from kinematify.manipulation.robot import TaskRobot, builtin_robot
 from kinematify.robot.read import read_robot
 

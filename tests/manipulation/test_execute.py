@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kinematify.manipulation.execute import Execution, Loaded, execute, load
+from kinematify.manipulation.execute import Execution, Loaded, Motion, execute, load, timed
+from kinematify.manipulation.execute_mujoco import grip_piece
 from kinematify.manipulation.film import write_film
-from kinematify.manipulation.grip import grip_piece
-from kinematify.manipulation.motion import Motion, timed
-from kinematify.manipulation.outcome import Hold
+from kinematify.manipulation.request import Hold
 from tests.manipulation import furniture
 
 SETTINGS = furniture.SETTINGS

@@ -15,13 +15,12 @@ from kinematify.errors import InputError
 from kinematify.geometry.scene import Scene, read_scene
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.manifold import search_manifold
-from kinematify.manipulation.outcome import Failure
 from kinematify.manipulation.place import object_motion
 from kinematify.manipulation.planning import PullPlan, depend, plan_pull
 from kinematify.manipulation.pull import Puller
-from kinematify.manipulation.request import PULL, TaskRequest
+from kinematify.manipulation.request import PULL, Failure, TaskRequest
 from kinematify.manipulation.robot import builtin_robot
+from kinematify.manipulation.sampling_planner import search_manifold
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
 from kinematify.validation.finding import Blame, Severity, Status

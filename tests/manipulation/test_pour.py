@@ -12,9 +12,8 @@ from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.execute import execute, load
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.outcome import Failure, Hold
-from kinematify.manipulation.pour import PourPlan, plan_pour
-from kinematify.manipulation.pour_scene import Vessel, pour_motion, read_vessel, write_pour
+from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, pour_motion, read_vessel, write_pour
+from kinematify.manipulation.request import Failure, Hold
 from kinematify.manipulation.robot import builtin_robot
 from kinematify.robot.read import read_robot
 from tests.manipulation.furniture import SETTINGS, box

@@ -13,7 +13,7 @@ from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses
 from kinematify.simulation.engines import ENGINES, EngineEntry, open_engine, require_engine
-from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import prepare
 from kinematify.versions import package_versions
 from tests.validation.engine_models import Box, Model, Part
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from kinematify.config.validation import load_settings
 from kinematify.robot.read import read_robot
-from kinematify.simulation.prepare import prepare
+from kinematify.simulation.prepared import prepare
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult
 from kinematify.validation.stage import Recorder, StageRequest

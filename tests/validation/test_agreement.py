@@ -23,8 +23,7 @@ from kinematify.simulation.configurations import (
     write_poses,
 )
 from kinematify.simulation.engine import LoadedJoint, LoadedModel
-from kinematify.simulation.prepare import prepare
-from kinematify.simulation.prepared import URDF_FILE, load_prepared
+from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks.engine_loading import compare_with_file
 from kinematify.validation.finding import CheckResult, Finding, Severity, Status

@@ -14,8 +14,7 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import Mechanism, sweep_rows
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
-from kinematify.simulation.prepare import prepare
-from kinematify.simulation.prepared import URDF_FILE, load_prepared
+from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.validation.check import OpenCheck
 from kinematify.validation.checks import checks_of
 from kinematify.validation.checks.engine_rest import find_drop, find_growth

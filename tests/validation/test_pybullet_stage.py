@@ -13,8 +13,7 @@ from kinematify.config.validation import load_settings
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
-from kinematify.simulation.prepare import prepare
-from kinematify.simulation.prepared import URDF_FILE, load_prepared
+from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
 from kinematify.simulation.pybullet_engine import PybulletEngine
 from kinematify.validation.checks import checks_of
 from kinematify.validation.finding import Blame, Finding, Severity, Status

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 def run(request: StageRequest, recorder: Recorder) -> None:
     """Write `prepared.urdf` and `prepared.json` (`kinematify.simulation.prepared`)."""
-    from kinematify.simulation.prepare import prepare
+    from kinematify.simulation.prepared import prepare
     from kinematify.validation.left_model import model_of
 
     del recorder  # what was changed is told by the checks that look at it

@@ -9,9 +9,8 @@ from kinematify.errors import InputError
 from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.outcome import Failure, Hold
-from kinematify.manipulation.pour import PourPlan, plan_pour
-from kinematify.manipulation.pour_scene import Vessel, read_vessel
+from kinematify.manipulation.pour import PourPlan, Vessel, plan_pour, read_vessel
+from kinematify.manipulation.request import Failure, Hold
 from kinematify.manipulation.robot import robot_of
 from kinematify.validation.finding import Severity
 

@@ -14,16 +14,15 @@ import numpy as np
 
 from kinematify.errors import InputError
 from kinematify.geometry.scene import read_scene, visible_shapes
-from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.execute import Execution, Loaded, execute, load
 from kinematify.manipulation.film import write_film
 from kinematify.manipulation.grasp import joint_at
 from kinematify.manipulation.kinematics import Arm
-from kinematify.manipulation.outcome import Failure, Hold
 from kinematify.manipulation.place import object_box, standing_at
 from kinematify.manipulation.planning import PullPlan, depend, motion_of, plan_pull
+from kinematify.manipulation.request import Failure, Hold
 from kinematify.manipulation.robot import robot_of
-from kinematify.manipulation.sizes import sizing
+from kinematify.manipulation.sizes import sizing, write_scaled
 from kinematify.robot.read import read_robot
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Blame, Severity

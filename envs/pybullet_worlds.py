@@ -1,4 +1,4 @@
-"""The object in PyBullet: contacts that count, dynamics that can be redrawn, and its state.
+"""OpenPart and DrawerPull in PyBullet: the object with dynamics that can be redrawn, the hand of MuJoCo, and a robot.
 
 Bullet keeps contacts from step to step. An episode therefore begins from a state that was saved before any step, so
 that it does not depend on the episodes before.
@@ -11,17 +11,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
-from kinematify.envs.reading import Reading
+from kinematify.envs.articulated_object import held_links
+from kinematify.envs.goal import ObjectState
+from kinematify.envs.mujoco_worlds import POSITION, ROBOT, arm_facts, hand_facts
 from kinematify.geometry.rest import overlapping_links
-from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.robot.transforms import quaternion_of
-from kinematify.simulation.pybullet_world import load, pose_of
+from kinematify.simulation.pybullet_world import load, load_at, pose_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.envs.articulated_object import ArticulatedObject, Target
     from kinematify.envs.dynamics import Draw, JointDynamics
+    from kinematify.envs.robot_plan import EnvRobot, RobotPlan
     from kinematify.envs.settings import EnvSettings
     from kinematify.robot.arrays import FloatArray
 
@@ -165,7 +168,7 @@ class PybulletObject:
         states = bullet.getJointStates(self.body, self._leader_indices, physicsClientId=self.client)
         state = self._link_state()
         T = pose_of(state[4], state[5])
-        self._reading = Reading(
+        self._reading = ObjectState(
             values=np.array([s[0] for s in states]),
             speeds=np.array([s[1] for s in states]),
             hold=self._at_hold(state),
@@ -173,7 +176,7 @@ class PybulletObject:
             axis=T[:3, :3] @ self._axis,
         )
 
-    def reading(self) -> Reading:
+    def reading(self) -> ObjectState:
         """Return the state of the object."""
         return self._reading
 
@@ -196,7 +199,7 @@ class PybulletObject:
 
 
 class PybulletWorld:
-    """What every world of an object tells; see `kinematify.envs.worlds.World`."""
+    """What every world of an object tells; the other engine tells the same."""
 
     object: PybulletObject
 
@@ -204,7 +207,7 @@ class PybulletWorld:
         """Redraw the object."""
         self.object.apply(drawn)
 
-    def reading(self) -> Reading:
+    def reading(self) -> ObjectState:
         """Return the state of the object."""
         return self.object.reading()
 
@@ -228,3 +231,170 @@ class PybulletWorld:
     def close(self) -> None:
         """Free the world."""
         self.object.close()
+
+
+class PybulletHand(PybulletWorld):
+    """One object and a hand without a robot."""
+
+    def __init__(
+        self, articulated_object: ArticulatedObject, target: Target, control: str, settings: EnvSettings
+    ) -> None:
+        """Connect to a world of its own; `close` frees it."""
+        self.facts = hand_facts(articulated_object, target, control)
+        self.object = PybulletObject(
+            articulated_object, target, self.facts.dynamics, articulated_object.T_world_root, settings
+        )
+        self.client = self.object.client
+        self._control, self._substeps = control, settings.time.substeps
+        self._stride = self.facts.speed * settings.time.control_step
+        self._lead = self.facts.force / self.facts.stiffness
+        self._wanted = np.zeros(3)
+
+    def place(self, leaders: FloatArray) -> float:
+        """Set the object's joints and stop them; the hand's spring is slack."""
+        self.object.place(leaders)
+        self._wanted = self.object.hold()
+        return self.object.depth()
+
+    def act(self, action: FloatArray) -> None:
+        """Simulate until the next action."""
+        action = np.asarray(action, dtype=np.float64)
+        if self._control == POSITION:
+            hold = self.object.hold()
+            lead = self._wanted - hold + self._stride * action
+            self._wanted = hold + np.clip(lead, -self._lead, self._lead)
+        for _ in range(self._substeps):
+            hold, velocity = self.object.hold_motion()
+            self.object.push(self._force(action, hold, velocity), hold)
+            self.object.follow()
+            bullet.stepSimulation(physicsClientId=self.client)
+        self.object.look()
+
+    def _force(self, action: FloatArray, hold: FloatArray, velocity: FloatArray) -> FloatArray:
+        """Of the hand, world axes [N], shape (3,)."""
+        facts = self.facts
+        if self._control != POSITION:
+            return facts.force * action
+        spring = facts.stiffness * (self._wanted - hold) - facts.spring_damping * velocity
+        return np.asarray(np.clip(spring, -facts.force, facts.force))
+
+    def command(self) -> FloatArray:
+        """From the hold to where the hand wants it [m], zero in force control, shape (3,)."""
+        return self._wanted - self.object.hold() if self._control == POSITION else np.zeros(3)
+
+
+_MARGIN = 1e-3  # Bullet inflates convex hulls by it [m]
+_STRONG = 1e4  # holds joints that are neither of the arm nor of the fingers [N m or N]
+_GAIN = 0.3  # share of an error of position that a motor makes good in a step
+
+
+class PybulletArm(PybulletWorld):
+    """One object and a robot."""
+
+    def __init__(
+        self,
+        articulated_object: ArticulatedObject,
+        target: Target,
+        robot: EnvRobot,
+        plan: RobotPlan,
+        settings: EnvSettings,
+    ) -> None:
+        """Connect to a world of its own; `close` frees it."""
+        facts = arm_facts(articulated_object, target, robot, plan)
+        self.object = PybulletObject(articulated_object, target, facts.dynamics, plan.T_world_object, settings)
+        self.client = self.object.client
+        self._articulated_object, self._robot, self._substeps = articulated_object, robot, settings.time.substeps
+        self._load(plan, settings)
+        self._held = [self.object.link_index(name) for name in held_links(articulated_object, target)]
+        forces = np.full(len(robot.robot.finger_joints), settings.robot.grip_force)
+        self._forces = np.concatenate([robot.strongest, forces]).tolist()
+        self._wanted = np.zeros(len(self._forces))
+
+    def _load(self, plan: RobotPlan, settings: EnvSettings) -> None:
+        client, names = self.client, self._robot.robot
+        loaded = load_at(client, self._robot.mechanism, self._robot.loaded, plan.T_world_base, itself=True)
+        self._loaded, self.body = loaded, loaded.body
+        joints = dict(zip(loaded.mechanism.joints, loaded.indices, strict=True))
+        driven = (*names.arm_joints, *names.finger_joints)
+        self._joints = [joints[name] for name in driven]
+        for index in loaded.link.tolist():
+            bullet.changeDynamics(self.body, index, lateralFriction=settings.robot.friction, physicsClientId=client)
+        rest = rest_configuration(self._robot.mechanism.robot)
+        for name, index in joints.items():
+            if name not in driven:
+                bullet.resetJointState(self.body, index, rest.get(name, 0.0), physicsClientId=client)
+                bullet.setJointMotorControl2(
+                    self.body, index, bullet.POSITION_CONTROL, targetPosition=rest.get(name, 0.0), force=_STRONG,
+                    physicsClientId=client,
+                )  # fmt: skip
+        self._lay_floor()
+
+    def _lay_floor(self) -> None:
+        """The robot meets the floor, the object stands on it."""
+        shape = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=self.client)
+        floor = bullet.createMultiBody(0.0, shape, physicsClientId=self.client)
+        for name in self._articulated_object.scene.mechanism.links:
+            bullet.setCollisionFilterPair(
+                floor, self.object.body, _BASE, self.object.link_index(name), 0, physicsClientId=self.client
+            )
+
+    def place(self, leaders: FloatArray, arm: FloatArray) -> float:
+        """Set the object's joints and those of the arm, fingers apart, and stop all."""
+        self.object.place(leaders)
+        self._wanted = np.concatenate([arm, self._robot.finger_values(1.0)])
+        for index, value in zip(self._joints, self._wanted.tolist(), strict=True):
+            bullet.resetJointState(self.body, index, value, physicsClientId=self.client)
+        self._drive(self._wanted)
+        bullet.performCollisionDetection(physicsClientId=self.client)
+        return self.depth()
+
+    def act(self, arm: FloatArray, fingers: FloatArray) -> None:
+        """Simulate until the next action, motors led smoothly to these values."""
+        before, wanted = self._wanted, np.concatenate([arm, fingers])
+        for step in range(1, self._substeps + 1):
+            self._drive(before + step / self._substeps * (wanted - before))
+            self.object.follow()
+            bullet.stepSimulation(physicsClientId=self.client)
+        self._wanted = wanted
+        self.object.look()
+
+    def _drive(self, values: FloatArray) -> None:
+        count = len(self._joints)
+        bullet.setJointMotorControlArray(
+            self.body, self._joints, bullet.POSITION_CONTROL, targetPositions=values.tolist(), forces=self._forces,
+            positionGains=[_GAIN] * count, velocityGains=[1.0] * count, physicsClientId=self.client,
+        )  # fmt: skip
+
+    def joints(self) -> tuple[FloatArray, FloatArray]:
+        """Values and speeds of the arm's joints and then of the fingers'."""
+        states = bullet.getJointStates(self.body, self._joints, physicsClientId=self.client)
+        return np.array([state[0] for state in states]), np.array([state[1] for state in states])
+
+    def tool(self) -> FloatArray:
+        """Pose of the tool, shape (4, 4)."""
+        return self._loaded.frame(self._robot.robot.tool)
+
+    def touch(self) -> FloatArray:
+        """Force of each finger on the part [N], shape (fingers,)."""
+        forces = np.zeros((len(self._robot.finger_links), 3))
+        rows = {self._loaded.index_of(link): row for row, link in enumerate(self._robot.finger_links)}
+        for point in bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client) or ():
+            if point[3] in rows and point[4] in self._held:
+                forces[rows[point[3]]] += point[9] * np.array(point[7])
+        return np.asarray(np.linalg.norm(forces, axis=1))
+
+    def depth(self) -> float:
+        """Deepest contact of the object with itself or the robot [m]."""
+        points = bullet.getContactPoints(self.body, self.object.body, physicsClientId=self.client)
+        return max([super().depth(), *(float(-point[8]) - _MARGIN for point in points or ())])
+
+    def stable(self) -> bool:
+        """True if all numbers are finite."""
+        return super().stable() and bool(np.isfinite(self.joints()).all())
+
+    def link_poses(self) -> Mapping[str, FloatArray]:
+        """World poses of the links of object and robot."""
+        return {
+            **super().link_poses(),
+            **{ROBOT + name: self._loaded.frame(name) for name in self._loaded.mechanism.links},
+        }
