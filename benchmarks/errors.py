@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.error_pictures import ShownJoint, draw_error
 from kinematify.errors import OutputError
 from kinematify.evaluation.axis_metrics import axis_angle
-from benchmarks.error_pictures import ShownJoint, draw_error
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.perturb import CLEAN, perturbed
 from kinematify.evaluation.record import document, replace_text

@@ -27,12 +27,12 @@ from kinematify.robot.joint_type import JointType
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from benchmarks.study import Record
     from kinematify.assembly.erase import ErasedModel
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.metrics import ObjectScore
-    from benchmarks.study import Record
     from kinematify.joints.candidate import JointEstimate
     from kinematify.paper.joints import PaperJoints
 

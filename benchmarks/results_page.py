@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kinematify.errors import InputError
 from benchmarks.paper import ABLATION, TABLE_I, PaperRow, mean_over_robots
-from kinematify.evaluation.record import load_report, number, replace_text, table
-from kinematify.evaluation.run import RESULTS
 from benchmarks.studies.refine import sentence
 from benchmarks.study import load_study_report
+from kinematify.errors import InputError
+from kinematify.evaluation.record import load_report, number, replace_text, table
+from kinematify.evaluation.run import RESULTS
 from kinematify.evaluation.summary import CLOSE_ANGLE, condition_group, median_seconds, summarise
 
 if TYPE_CHECKING:

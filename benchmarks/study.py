@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter
 
+from benchmarks import studies
 from kinematify.batch.engine import TaskFailure
 from kinematify.batch.pool import Pool
 from kinematify.errors import InputError, OutputError
-from benchmarks import studies
 from kinematify.evaluation.record import Report, load_report, new_header, write_report
 from kinematify.evaluation.sources import code_version
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kinematify.errors import EnvironmentFault
 from benchmarks.browser import open_browser
+from kinematify.errors import EnvironmentFault
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import trimesh
 from lxml import etree
 
+from benchmarks.faults.base import write_base
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
-from benchmarks.faults.base import write_base
 
 if TYPE_CHECKING:
     from pathlib import Path

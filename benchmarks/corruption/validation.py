@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmarks.corruption.cases import write_case
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from benchmarks.corruption.cases import write_case
 from kinematify.simulation.engines import DEFAULT_ENGINES
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity, Status

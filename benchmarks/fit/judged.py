@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from kinematify.config import load_config
 from benchmarks.fit.categories import category_of
 from benchmarks.fit.corpora import COMPOSED, DESCRIBED, FAMILY, GENERATED, PROGRAMMED
 from benchmarks.fit.edges import edges_row, fit_edges
@@ -24,18 +23,18 @@ from benchmarks.fit.trees import (
     turns_known,
     turns_of,
 )
-from kinematify.joints.choice.judge import Judgement, lead_of
+from kinematify.config import load_config
+from kinematify.joints.choice.judge import Judgement, agreed, lead_of
 from kinematify.joints.choice.opening import opening_odds
-from kinematify.joints.choice.twins import agreed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
-    from kinematify.config import ConfidenceConfig
     from benchmarks.fit.edges import EdgesRow, TreeExample
     from benchmarks.fit.examples import Example
+    from kinematify.config import ConfidenceConfig
     from kinematify.joints.choice.scorer import Scorer
     from kinematify.robot.arrays import FloatArray
 

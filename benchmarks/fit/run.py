@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify import __version__
 from benchmarks.fit.categories import category_of
 from benchmarks.fit.corpora import (
     GENERATED,
@@ -54,6 +53,7 @@ from benchmarks.fit.trees import (
     turns_known,
     write_scorer,
 )
+from kinematify import __version__
 from kinematify.evaluation.record import table
 from kinematify.joints.choice.edges import EDGE_WEIGHTS
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, WEIGHTS

@@ -25,13 +25,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
+from benchmarks.expectations import load_sentences
+from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
-from benchmarks.expectations import load_sentences
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, among, explained
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
@@ -52,10 +52,10 @@ from kinematify.versions import package_versions
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.config import Config
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
     from kinematify.generate.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference

@@ -25,18 +25,18 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import nnls
 
+from benchmarks.study import Options, Study, explained
 from kinematify.batch.corpus import write_corpus
 from kinematify.batch.record import RECORD
 from kinematify.batch.summary import STEP_HEADINGS, step_rows
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.batch.record import ObjectRecord
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
 
 _LOOK = 0.1
 """Seconds between two looks at a run that is to be killed."""

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.batch.corpus import write_corpus
 from kinematify.evaluation.record import table
 from kinematify.evaluation.run import BenchmarkRequest, run_benchmark
-from benchmarks.study import Options, Study, explained
 from kinematify.evaluation.summary import is_right
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.job import JobResult
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
 
 BINS = 10
 LEAST = 0.2

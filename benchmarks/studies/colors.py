@@ -22,11 +22,11 @@ from PIL import Image
 from pydantic import Field
 from scipy.spatial import cKDTree
 
+from benchmarks.browser import open_browser
+from benchmarks.study import Options, Study, explained
 from kinematify.assembly.load import load_assembly
 from kinematify.errors import EnvironmentFault, KinematifyError
-from benchmarks.browser import open_browser
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 from kinematify.formats.export import export
 from kinematify.pipeline import infer, write_inference
 from kinematify.robot.appearance import Appearance, Material, Texture, plain
@@ -43,8 +43,8 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
     from kinematify.robot.arrays import FloatArray
 
 ALIKE = 0.05

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from pydantic import Field
 
-from kinematify.config.validation import load_settings
-from kinematify.evaluation.datasets import find_objects
 from benchmarks.faults.base import UNTOUCHED, write_base
 from benchmarks.faults.outcome import Verdict, facts, judge
 from benchmarks.faults.plan import FAULTS, write_mutants
-from kinematify.evaluation.record import table
 from benchmarks.study import Options, Study, explained
+from kinematify.config.validation import load_settings
+from kinematify.evaluation.datasets import find_objects
+from kinematify.evaluation.record import table
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import Severity
 from kinematify.validation.run import validate
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.faults.outcome import Fact
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 _FILE_FAMILIES = ("KV1", "KV2")
 _MOTION_FAMILIES = ("KV1", "KV2", "KV3")

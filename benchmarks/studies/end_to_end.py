@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING
 import yaml
 from pydantic import Field, TypeAdapter
 
+from benchmarks.study import Options, Study, explained
 from kinematify import evaluation
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.record import grouped, number, table
-from benchmarks.study import Options, Study, explained
 from kinematify.evaluation.summary import median_seconds, summarise
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.generate.procedural.request import from_text
@@ -40,8 +40,8 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
     from kinematify.generate.blueprint import Blueprint
     from kinematify.pipeline import Inference
     from kinematify.validation.finding import Finding

@@ -18,17 +18,17 @@ import mujoco
 import numpy as np
 from pydantic import Field
 
+from benchmarks.study import Options, Study, among, explained
 from kinematify.envs import DRAWER_PULL, OPEN_PART
 from kinematify.envs.bundled import BUNDLED, DRAWERS
 from kinematify.envs.expert import ArmExpert, HandExpert
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, among, explained
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 _SPEED_MODELS = ("drawers", "cabinet", "microwave")
 _PARTS = {

@@ -19,12 +19,6 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from kinematify import __version__
-from kinematify.config import load_config
-from kinematify.config.validation import load_settings
-from kinematify.errors import OutputError
-from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
-from kinematify.evaluation.job import erased_item
 from benchmarks.planted import (
     AXIS,
     NOTHING,
@@ -37,8 +31,14 @@ from benchmarks.planted import (
     planted_faults,
     true_mechanism,
 )
-from kinematify.evaluation.record import table
 from benchmarks.study import Options, Study, among, explained
+from kinematify import __version__
+from kinematify.config import load_config
+from kinematify.config.validation import load_settings
+from kinematify.errors import OutputError
+from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
+from kinematify.evaluation.job import erased_item
+from kinematify.evaluation.record import table
 from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.refinement.tiers import TIERS, DearTiers
@@ -50,8 +50,8 @@ from kinematify.validation.finding import Severity
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
     from kinematify.pipeline import Inference
     from kinematify.validation.finding import Finding
 

@@ -17,11 +17,11 @@ import gymnasium
 import numpy as np
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.assembly.load import load_assembly
 from kinematify.envs.expert import HandExpert
 from kinematify.errors import EnvironmentFault
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 from kinematify.pipeline import infer, write_inference
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 _OPEN_PART = "kinematify.envs:kinematify/OpenPart-v0"
 _LIMIT = 600.0

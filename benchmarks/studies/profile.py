@@ -22,12 +22,12 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
+from benchmarks.studies.scaling import chain_and_branch
+from benchmarks.study import Options, Study, among, explained
 from kinematify.assembly.erase import erase
 from kinematify.errors import InputError
 from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.record import table
-from benchmarks.studies.scaling import chain_and_branch
-from benchmarks.study import Options, Study, among, explained
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.robot.obj_file import write_obj
@@ -36,9 +36,9 @@ from kinematify.robot.read import read_robot
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.part import Part
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
 
 ROOT = Path(__file__).resolve().parents[3]
 """The checkout that this runs from."""

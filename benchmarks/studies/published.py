@@ -26,18 +26,18 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.config import StageConfig, load_values, validated
 from kinematify.errors import EnvironmentFault, ExitStatus, InputError
 from kinematify.evaluation.datasets import bench_folder, example_robots
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, explained
 from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 _JUDGED = "published"
 """Configuration with what was judged by hand."""

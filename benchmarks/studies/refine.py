@@ -27,13 +27,13 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
+from benchmarks.planted import FAULTS, NOTHING, PARENT, SECOND, Planted, planted_faults, true_mechanism
+from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.job import erased_item
-from benchmarks.planted import FAULTS, NOTHING, PARENT, SECOND, Planted, planted_faults, true_mechanism
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, among, explained
 from kinematify.refinement import refine
 from kinematify.refinement.candidates import CandidateJoints, is_same
 from kinematify.refinement.choose import Chooser
@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from benchmarks.planted import Mechanism
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 SAMPLE = (
     "bottle_3763", "box_100141", "cabinet_40147", "dishwasher_11700", "door_9128", "drawer_cabinet_20279",

@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, TypeAdapter
 
+from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects, matching
 from kinematify.evaluation.job import erased_item, predicted, score_erased, shown_parts
 from kinematify.evaluation.metrics import ObjectScore
 from kinematify.evaluation.perturb import CLEAN, PERTURBATIONS, perturbed
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, among, explained
 from kinematify.pipeline import infer
 from kinematify.refinement import refine
 from kinematify.refinement.tiers import TIERS
@@ -34,9 +34,9 @@ from kinematify.refinement.tiers import TIERS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.evaluation.metrics import JointScore
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
     from kinematify.pipeline import Inference
 
 OFF = "no feedback"

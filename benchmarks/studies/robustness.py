@@ -15,14 +15,14 @@ from pydantic import Field
 from benchmarks.corruption.bases import all_bases
 from benchmarks.corruption.cases import KINDS
 from benchmarks.corruption.validation import READY, CorruptionTask, run_case
-from kinematify.evaluation.record import table
 from benchmarks.study import Options, Study, explained
+from kinematify.evaluation.record import table
 from kinematify.validation.checks import CHECKS
 
 if TYPE_CHECKING:
+    from benchmarks.study import Measured, Record, Work
     from kinematify.batch.engine import TaskFailure
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
 
 BAD = ("crash", "timeout", "error")
 _PATIENCE = 12.0

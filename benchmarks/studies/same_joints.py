@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import Field
 
+from benchmarks.study import RECORDS, Options, Study, explained
 from kinematify.evaluation.datasets import CONDITIONS, DEFAULT_SETS, BenchObject, find_objects
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import load_report, table
-from benchmarks.study import RECORDS, Options, Study, explained
 from kinematify.pipeline import infer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
     from kinematify.joints.candidate import JointEstimate
 
 _REST = CONDITIONS[0]

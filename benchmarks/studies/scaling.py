@@ -16,11 +16,11 @@ import numpy as np
 import trimesh
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.evaluation.job import INFER, imported
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 from kinematify.pipeline.clock import peak_mb
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
     from kinematify.robot.arrays import FloatArray
 
 BRANCH = 4

@@ -15,11 +15,11 @@ import numpy as np
 import torch
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import find_objects
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 from kinematify.geometry.sampling import sample_surface
 from kinematify.paper.sdf_grid import SignedDistanceGrid, exact_signed_distance
 from kinematify.paper.sdf_neural import train_fields
@@ -27,9 +27,9 @@ from kinematify.paper.sdf_neural import train_fields
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.part import Part
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
     from kinematify.paper.sdf import SignedDistanceField
 
 _MODELS = ("panda", "allegro", "cabinet_41083")

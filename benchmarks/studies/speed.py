@@ -21,10 +21,10 @@ import mujoco
 import pybullet as bullet
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import BenchObject, find_objects
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.mujoco_engine import MujocoEngine
@@ -35,8 +35,8 @@ from kinematify.simulation.pybullet_engine import PybulletEngine
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
     from kinematify.robot.arrays import FloatArray
     from kinematify.simulation.mujoco_model import CompiledModel
     from kinematify.simulation.pybullet_world import PybulletBody

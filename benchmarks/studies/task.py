@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import Field
 
+from benchmarks.study import Options, Study
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import BenchObject, find_objects
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study
 from kinematify.geometry.scene import read_scene
 from kinematify.manipulation.copies import write_scaled
 from kinematify.manipulation.execute import execute, load
@@ -38,9 +38,9 @@ from kinematify.robot.write import write_robot
 from kinematify.validation.run import validate
 
 if TYPE_CHECKING:
+    from benchmarks.study import Measured, Record, Work
     from kinematify.config.validation import ValidationSettings
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
     from kinematify.geometry.scene import Scene
     from kinematify.robot.robot import Joint
 

@@ -15,18 +15,18 @@ import gymnasium
 import numpy as np
 from pydantic import Field
 
+from benchmarks.studies.learning import PPO_SETTINGS, stable_baselines
+from benchmarks.study import Options, Study, among, explained
 from kinematify.envs import TASK_IDS
 from kinematify.envs.expert import HandExpert
 from kinematify.envs.tasks import TASKS, TEST, TRAIN
 from kinematify.evaluation.record import number, table
-from benchmarks.studies.learning import PPO_SETTINGS, stable_baselines
-from benchmarks.study import Options, Study, among, explained
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 _RESET_MS = 50.0
 """A reset that takes longer is too slow for training [ms]."""

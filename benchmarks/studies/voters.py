@@ -14,24 +14,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 from pydantic import Field
 
+from benchmarks.study import Options, Study, explained
 from kinematify.config import load_config
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
 from kinematify.evaluation.job import erased_item, score_erased, shown_parts
 from kinematify.evaluation.prediction import prediction_of
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
 from kinematify.joints.candidate import JointCandidate
 from kinematify.pipeline import infer
 from kinematify.vision.answer import TYPES, Direction, HingeSide, JointVotes, Vote
 from kinematify.vision.votes import chosen_anew, direction_of, side_of
 
 if TYPE_CHECKING:
+    from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.erase import ErasedModel
     from kinematify.assembly.part import Part
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import VisionConfig
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
     from kinematify.pipeline import Inference
 
 _NOBODY = "nobody"

@@ -169,10 +169,10 @@ def command(
 
     `kinematify bench STUDY` answers another question; --list names the studies, and each has options of its own.
     """
+    from benchmarks.tables import benchmark_blocks
     from kinematify.evaluation.record import as_json, load_report, write_report
     from kinematify.evaluation.regression import find_regressions
     from kinematify.evaluation.run import RESULTS, BenchmarkRequest, run_benchmark
-    from benchmarks.tables import benchmark_blocks
 
     if folder is not None and data is not None:
         raise click.UsageError(f"Both DATA ({folder}) and --data ({data}) are given. Leave one out.")

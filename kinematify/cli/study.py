@@ -62,9 +62,9 @@ def _option(name: str, info: FieldInfo) -> click.Option:
 
 
 def _run(name: str, study: Study[Any], values: dict[str, Any]) -> int:
+    from benchmarks.study import RECORDS, file_stem, run_study, write_study
     from kinematify.batch.pool import WORK_FOLDER, Pool
     from kinematify.evaluation.record import as_json, load_report
-    from benchmarks.study import RECORDS, file_stem, run_study, write_study
 
     stem = values["stem"] or file_stem(name)
     if values["tables"]:

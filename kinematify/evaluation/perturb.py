@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from trimesh.intersections import slice_faces_plane
 
+from benchmarks.degrade import DEGRADATIONS, with_parts
 from kinematify.assembly.assemble import simplified
 from kinematify.contact.build import build_contact_graph
-from benchmarks.degrade import DEGRADATIONS, with_parts
 from kinematify.evaluation.prediction import Prediction
 from kinematify.geometry.surface import part_surfaces
 from kinematify.robot.joint_type import JointType
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
     from numpy.random import Generator
 
+    from benchmarks.degrade import Degrade
     from kinematify.assembly.part import Assembly, Part
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
-    from benchmarks.degrade import Degrade
     from kinematify.robot.arrays import FloatArray
 
 CLEAN = "clean"

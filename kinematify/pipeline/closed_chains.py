@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import TopologyConfig
     from kinematify.contact.graph import Pair
-    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.robot.closed_chain import Opening
     from kinematify.robot.robot import Robot
     from kinematify.topology.tree import KinematicTree

@@ -13,7 +13,7 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.pipeline.clock import StageClock, peak_mb
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.pieces import inference_of_pieces, piece_standing_for
@@ -23,7 +23,7 @@ from kinematify.pipeline.warnings import warnings_of
 if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.pipeline.clock import Progress
 
 

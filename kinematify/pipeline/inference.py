@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline.closed_chains import ClosedChain
     from kinematify.topology.tree import KinematicTree

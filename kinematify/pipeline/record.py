@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactEdge
+    from kinematify.joints.bearings.scores import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import BearingLine
     from kinematify.pipeline.closed_chains import ClosedChain
     from kinematify.pipeline.inference import Inference
     from kinematify.topology.tree import KinematicTree

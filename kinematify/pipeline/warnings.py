@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import CompoundConfig, Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
     from kinematify.topology.tree import KinematicTree
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.contact.build import build_contact_graph, exact_gap, near_pairs
-from kinematify.joints.hypotheses.bearing import fit_edge
+from kinematify.joints.bearings.fit import fit_edge
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.bearings.scores import EdgeBearing
 
 
 @dataclass(frozen=True, kw_only=True)

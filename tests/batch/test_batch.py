@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from kinematify.cli.app import run
 from benchmarks.studies.batch import Killed, killed_run, workers_of
+from kinematify.cli.app import run
 from tests.batch.assets import kill, manifest_lines, wait_for, write_assets, write_knob
 
 INFER = ("--steps", "infer", "--up", "z")

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from objects import BUILDERS
 
+from benchmarks.studies.calibration import Judged, reliability
+from benchmarks.study import write_study
 from kinematify.config import Config, load_config
 from kinematify.evaluation.metrics import JointScore
 from kinematify.evaluation.record import Report, new_header
-from benchmarks.studies.calibration import Judged, reliability
-from benchmarks.study import write_study
 from kinematify.evaluation.summary import is_right
 from kinematify.pipeline import infer
 

@@ -11,14 +11,14 @@ import trimesh
 from objects import BUILDERS
 from test_benchmark_run import request, write_object
 
+from benchmarks.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
+from benchmarks.tables import benchmark_blocks
+from benchmarks.voxels import voxel_remeshed
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.words import words_of
 from kinematify.config import load_config
-from benchmarks.degrade import DEGRADATIONS, OPEN_REACH, VERTEX_NOISE
 from kinematify.evaluation.perturb import CLEAN, DEGRADED, OVER_SEGMENTED, Perturbed, perturbed
 from kinematify.evaluation.run import run_benchmark
-from benchmarks.tables import benchmark_blocks
-from benchmarks.voxels import voxel_remeshed
 
 CONFIG = load_config()
 

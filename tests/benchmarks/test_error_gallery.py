@@ -8,10 +8,10 @@ import numpy as np
 from PIL import Image
 from test_benchmark_run import request, write_object
 
-from kinematify.assembly.part import Part
-from kinematify.config import load_config
 from benchmarks.error_pictures import ShownJoint, draw_error
 from benchmarks.errors import write_error_gallery, wrong_joints
+from kinematify.assembly.part import Part
+from kinematify.config import load_config
 from kinematify.evaluation.run import run_benchmark
 from kinematify.robot.joint_type import JointType
 

@@ -11,8 +11,8 @@ import pytest
 from benchmarks.fit.categories import ALIKE, category_of
 from benchmarks.fit.corpora import gather_examples, generated_sources
 from benchmarks.fit.judged import cause_of, folds_of
-from benchmarks.recipes import OBJECTS
 from benchmarks.fit.run import run_fit
+from benchmarks.recipes import OBJECTS
 from kinematify.generate.described import known_families
 from kinematify.joints.choice.scorer import WEIGHTS
 

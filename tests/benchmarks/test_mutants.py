@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from kinematify.assembly.erase import ErasedModel, erase
-from kinematify.evaluation.datasets import BenchObject
 from benchmarks.faults.base import BaseModel, write_base
 from benchmarks.faults.fault import Planted
 from benchmarks.faults.outcome import Verdict, judge
 from benchmarks.faults.plan import FAULTS, Mutant, write_mutants
+from kinematify.assembly.erase import ErasedModel, erase
+from kinematify.evaluation.datasets import BenchObject
 from kinematify.robot.read import read_robot
 from tests.household import barrel_hinge_door, nested_drawer
 from tests.known import KnownObject

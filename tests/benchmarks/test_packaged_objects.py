@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from lxml import etree
 
-from kinematify.assembly.erase import erase
 from benchmarks.fit.mjcf import read_mjcf
 from benchmarks.fit.packages import OBJECTS, write_installed
+from kinematify.assembly.erase import erase
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot
 

@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.assembly.erase import erase
-from kinematify.cli.app import run
-from kinematify.config import load_config
 from benchmarks.planted import (
     AXIS,
     FAULTS,
@@ -25,6 +22,9 @@ from benchmarks.planted import (
 )
 from benchmarks.studies.refine import mistakes
 from benchmarks.study import load_study_report
+from kinematify.assembly.erase import erase
+from kinematify.cli.app import run
+from kinematify.config import load_config
 from kinematify.pipeline import infer, write_inference
 from kinematify.robot.read import read_robot
 from tests.objects import BUILDERS

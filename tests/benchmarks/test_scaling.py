@@ -10,12 +10,12 @@ import pytest
 import quick_inference
 import trimesh
 
-from kinematify.assembly.part import Assembly, Part
-from kinematify.config import Config
-from kinematify.evaluation.record import Report, new_header
 from benchmarks.studies import scaling
 from benchmarks.studies.scaling import chain_and_branch
 from benchmarks.study import write_study
+from kinematify.assembly.part import Assembly, Part
+from kinematify.config import Config
+from kinematify.evaluation.record import Report, new_header
 
 
 def distance(a: Part, b: Part) -> float:

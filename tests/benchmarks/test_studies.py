@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 from test_benchmark_run import write_object
 
-from kinematify.cli.app import run
-from kinematify.errors import InputError
-from kinematify.evaluation.record import document, load_report, write_report
-from kinematify.evaluation.run import RESULTS
 from benchmarks.studies.published import Judged, Judgement, load_judged
 from benchmarks.studies.same_joints import differences
 from benchmarks.study import file_stem, load_study, load_study_report, study_names
 from benchmarks.tables import benchmark_blocks
+from kinematify.cli.app import run
+from kinematify.errors import InputError
+from kinematify.evaluation.record import document, load_report, write_report
+from kinematify.evaluation.run import RESULTS
 from kinematify.validation.checks import CHECKS
 from tests.places import ROOT
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.tables import benchmark_blocks
 from kinematify.cli.app import run
 from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.record import Header, Report
 from kinematify.evaluation.regression import find_regressions
 from kinematify.evaluation.run import BenchmarkRequest
-from benchmarks.tables import benchmark_blocks
 from kinematify.evaluation.tree_metrics import TreeDistance
 
 NO_DISTANCE = TreeDistance(value=0, exact=True)

@@ -14,11 +14,12 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.paper import ABLATION
+from benchmarks.tables import benchmark_blocks
 from kinematify.config import load_config
 from kinematify.errors import ConfigError, EnvironmentFault, InputError, OutputError
 from kinematify.evaluation.datasets import bench_folder, find_objects
 from kinematify.evaluation.job import JobResult
-from benchmarks.paper import ABLATION
 from kinematify.evaluation.record import Report, load_report, write_report
 from kinematify.evaluation.run import (
     DEFAULT_ABLATION,
@@ -30,7 +31,6 @@ from kinematify.evaluation.run import (
     run_benchmark,
 )
 from kinematify.evaluation.summary import summarise
-from benchmarks.tables import benchmark_blocks
 from tests.places import ROOT
 
 BOX = '<visual><geometry><box size="{size}"/></geometry></visual>'

@@ -12,8 +12,6 @@ import pytest
 import trimesh
 from PIL import Image
 
-from kinematify.assembly.load import load_assembly
-from kinematify.config import load_config
 from benchmarks.studies.colors import (
     dressed,
     make_object,
@@ -23,6 +21,8 @@ from benchmarks.studies.colors import (
     seen_of_usd,
     unlike,
 )
+from kinematify.assembly.load import load_assembly
+from kinematify.config import load_config
 from kinematify.formats.export import export
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model

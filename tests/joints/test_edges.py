@@ -12,8 +12,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinematify.config import load_config
-from kinematify.errors import EnvironmentFault
 from benchmarks.fit.edges import (
     TreeExample,
     edge_recipe_key,
@@ -24,6 +22,8 @@ from benchmarks.fit.edges import (
     write_edge_weights,
     write_tree_examples,
 )
+from kinematify.config import load_config
+from kinematify.errors import EnvironmentFault
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder

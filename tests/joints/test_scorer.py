@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.errors import EnvironmentFault
 from benchmarks.fit.trees import recipe_key
+from kinematify.errors import EnvironmentFault
 from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of
@@ -24,7 +24,7 @@ from tests.objects import BUILDERS
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.joints.choice.weighed import WeighedJoints
+    from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.joints.measure.cloud import Cloud
     from kinematify.joints.measure.measurements import Values
     from kinematify.robot.arrays import IntArray

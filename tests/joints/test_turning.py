@@ -7,8 +7,8 @@ import pytest
 
 from benchmarks.fit.trees import turning_recipe_key
 from kinematify.generate.procedural.solids import box, cylinder
+from kinematify.joints.choice.opening import goes_round, turning_columns
 from kinematify.joints.choice.scorer import shipped_turning
-from kinematify.joints.choice.turning import goes_round, turning_columns
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
 

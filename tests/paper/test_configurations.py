@@ -9,14 +9,14 @@ import pytest
 import torch
 import trimesh
 
+from benchmarks.paper_configurations import with_types
+from benchmarks.study import load_study_report
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.errors import InputError
-from benchmarks.paper_configurations import with_types
 from kinematify.evaluation.prediction import Prediction
-from benchmarks.study import load_study_report
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded

@@ -12,6 +12,8 @@ import pytest
 import trimesh
 
 import kinematify
+from benchmarks.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
+from benchmarks.study import load_study_report
 from kinematify.assembly.load import load_assembly
 from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
@@ -21,8 +23,6 @@ from kinematify.errors import InputError
 from kinematify.evaluation.metrics import JointScore, ObjectScore
 from kinematify.evaluation.perturb import PERTURBATIONS, perturbed, without_pieces
 from kinematify.evaluation.prediction import Prediction
-from benchmarks.studies.refinement import OFF, RefiningResult, TierResult, harmed, results_of
-from benchmarks.study import load_study_report
 from kinematify.evaluation.tree_metrics import TreeDistance
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.pipeline import Inference, infer, write_inference

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.errors import KinematifyError
 from benchmarks.corruption.bases import Base, built_base
 from benchmarks.corruption.cases import KINDS, write_case
+from kinematify.errors import KinematifyError
 from kinematify.manipulation.arm import write_arm
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.read import read_robot

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kinematify.cli.app import run
 from benchmarks.studies.colors import make_object, unlike
+from kinematify.cli.app import run
 from kinematify.robot.appearance import surfaces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes

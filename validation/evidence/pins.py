@@ -10,7 +10,7 @@ from kinematify.robot.closed_chain import widest_opening
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.joints.hypotheses.bearing_line import BearingLine
+    from kinematify.joints.bearings.scores import BearingLine
     from kinematify.robot.robot import Robot
     from kinematify.validation.evidence.bodies import Bodies
 

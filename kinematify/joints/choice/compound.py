@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.bearing_fit import across_axis
+from kinematify.joints.bearings.refine import across_axis
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

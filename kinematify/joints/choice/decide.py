@@ -9,11 +9,9 @@ import numpy as np
 
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.exact import with_exact_lines
-from kinematify.joints.choice.judge import judge
-from kinematify.joints.choice.kind import Siblings, decide_kind
+from kinematify.joints.choice.judge import agreed, alike_edges, judge
+from kinematify.joints.choice.kind import Siblings, WeighedJoints, decide_kind
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.choice.twins import agreed, alike_edges
-from kinematify.joints.choice.weighed import WeighedJoints
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
 from kinematify.joints.measure.scene import joint_scene, part_frames
@@ -25,10 +23,10 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import JointsConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearings.line import Line
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.choice.judge import Judgement
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
-    from kinematify.joints.hypotheses.frames import BoxFrame
-    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.measure.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
     from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import JointCandidate, JointEstimate
-from kinematify.joints.hypotheses.line import Line
 from kinematify.robot.exact_faces import joined_faces
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.vectors import lengths_of

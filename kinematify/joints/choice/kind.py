@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.measure.clearance import contact_clearance
+from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import eccentricity, is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides, sweep_turns
 from kinematify.robot.joint_type import JointType
@@ -401,3 +401,13 @@ def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: 
 def _slide_room(scene: JointScene, free: FloatArray) -> float:
     """Largest free travel as a fraction of the child's own diagonal."""
     return float(free.max()) / max(scene.frame.diagonal, 1e-12)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WeighedJoints:
+    """Every joint that one tree edge may have, weighed, before one is chosen."""
+
+    scene: JointScene
+    turns: RankedTurns
+    slides: RankedSlides
+    decision: KindDecision

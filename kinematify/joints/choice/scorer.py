@@ -19,8 +19,7 @@ import numpy as np
 from scipy.special import log_softmax, softmax
 
 from kinematify.errors import EnvironmentFault
-from kinematify.joints.choice.network import Network, Scale
-from kinematify.joints.choice.point_network import PointNetwork
+from kinematify.joints.choice.point_network import Network, PointNetwork, Scale
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.frames import UP
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:

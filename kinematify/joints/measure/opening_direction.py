@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.measurements import GROUPS, TURN, Hypotheses, Measured
 from kinematify.robot.vectors import lengths_of
 

@@ -12,7 +12,7 @@ from embreex.rtcore_scene import EmbreeScene
 
 from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 from kinematify.geometry.sampling import sample_surface
-from kinematify.joints.hypotheses.frames import body_axes
+from kinematify.joints.measure.frames import body_axes
 from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.errors import InputError
 from benchmarks.expectations import SETS, broken_expectations, load_sentences
 from benchmarks.studies.sentences import RIGHT, WRONG, outcome
+from kinematify.errors import InputError
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build

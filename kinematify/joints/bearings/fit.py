@@ -15,14 +15,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.directions import distinct_directions
-from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.hypotheses.bearing_fit import refine_line, refine_lines
-from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing, best_distinct, scored_line, scored_lines
-from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines, propose_lines
-from kinematify.joints.hypotheses.bearing_scores import line_support, surface_support
-from kinematify.joints.hypotheses.bearing_twins import shared_by_twins
-from kinematify.joints.hypotheses.line import Line, Lines
-from kinematify.joints.hypotheses.rail import fit_rail
+from kinematify.joints.bearings.evidence import contact_centroid, contact_sides, thin, whole_side
+from kinematify.joints.bearings.line import Line, Lines
+from kinematify.joints.bearings.proposals import normal_pair_lines, propose_lines
+from kinematify.joints.bearings.rail import fit_rail
+from kinematify.joints.bearings.refine import refine_line, refine_lines
+from kinematify.joints.bearings.scores import (
+    BearingLine,
+    EdgeBearing,
+    best_distinct,
+    line_support,
+    scored_line,
+    scored_lines,
+    surface_support,
+)
+from kinematify.joints.bearings.twins import shared_by_twins
 from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
@@ -32,7 +39,7 @@ if TYPE_CHECKING:
     from kinematify.config import BearingConfig
     from kinematify.contact.graph import ContactEdge, ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
+    from kinematify.joints.bearings.evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 _EXACTLY = 0.1  # [deg] lines that were proposed along a direction

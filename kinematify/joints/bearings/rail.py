@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.bearing_scores import CACHED
+from kinematify.joints.bearings.scores import CACHED
 from kinematify.robot.arrays import read_only
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import RailConfig
-    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
+    from kinematify.joints.bearings.evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.bearing_evidence import thin
-from kinematify.joints.hypotheses.bearing_scores import surface_support
-from kinematify.joints.hypotheses.line import NO_LINES, Lines, join
+from kinematify.joints.bearings.evidence import thin
+from kinematify.joints.bearings.line import NO_LINES, Lines, join
+from kinematify.joints.bearings.scores import surface_support
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config import BearingConfig
-    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
+    from kinematify.joints.bearings.evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 _LEAST_SINE = 0.17  # below 10 deg between two normals their intersection is ill-conditioned
