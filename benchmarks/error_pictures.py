@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from kinematify.model.scene import GLYPH_COLORS, camera_for
-from kinematify.render.glyphs import sliding_arrow, turning_arrow
+from kinematify.model.scene import GLYPH_COLORS, camera_for, sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion

@@ -16,11 +16,10 @@ from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import alike_edges, cues_of, hypotheses_of, rightness, verdicts_of
-from kinematify.joints.measure.cloud import Cloud, point_cloud
+from kinematify.joints.choice.opening import measure_sides
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
-from kinematify.joints.measure.opening_direction import measure_sides
 from kinematify.joints.measure.scene import part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.measure.workspace import Cloud, PartCache, point_cloud
 from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:

@@ -29,8 +29,7 @@ from kinematify.errors import EnvironmentFault, KinematifyError
 from kinematify.evaluation.record import table
 from kinematify.formats.export import export
 from kinematify.pipeline import infer, write_inference
-from kinematify.robot.appearance import Appearance, Material, Texture, plain
-from kinematify.robot.colors import srgb_of
+from kinematify.robot.appearance import Appearance, Material, Texture, plain, srgb_of
 from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics

@@ -18,10 +18,9 @@ import numpy as np
 
 from kinematify.geometry.carve import Sweep, carved
 from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume, enclosing_piece, surface_points
-from kinematify.geometry.fewer import fewer_pieces
 from kinematify.geometry.scene import read_scene, visible_shapes
 from kinematify.geometry.sweep import Sweeper
-from kinematify.model.collision_pieces import decomposed, shapes_of
+from kinematify.model.collision_pieces import decomposed, fewer_pieces, shapes_of
 from kinematify.model.primitives import fitted_shape
 from kinematify.model.urdf import MESH_FOLDER
 from kinematify.robot.joint_type import JointType

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import torch
 
 from kinematify.geometry.sampling import sample_surface
-from kinematify.paper.field_source import field_source
+from kinematify.paper.sdf import field_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge
     from kinematify.joints.bearings.scores import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.pipeline.closed_chains import ClosedChain
-    from kinematify.pipeline.inference import Inference
+    from kinematify.pipeline.inference import ClosedChain, Inference
     from kinematify.topology.tree import KinematicTree
 
 SCHEMA = 1

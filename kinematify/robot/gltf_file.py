@@ -11,8 +11,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinematify.robot.appearance import Appearance, Material, joined, painted
-from kinematify.robot.colors import linear_of, srgb_of
+from kinematify.robot.appearance import Appearance, Material, joined, linear_of, painted, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 
 if TYPE_CHECKING:

@@ -7,8 +7,21 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from kinematify.joints.choice.edges import edge_qualities
+from kinematify.robot.arrays import read_only
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+
+    from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.geometry.part_stats import PartStats
+    from kinematify.joints.bearings.scores import EdgeBearing
+    from kinematify.joints.measure.pins import EdgePins
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,3 +74,60 @@ class KinematicTree:
         for parent, child in self.edges():
             depth[child] = depth[parent] + 1
         return tuple(depth)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeEvidence:
+    """How good a contact is for the tree, and its best joint; the same for both directions of the edge."""
+
+    quality: float
+    """In [0, 1]."""
+    axis: FloatArray | None
+    """Unit direction of the best joint in the world frame, shape (3,); None where there is none. Read-only."""
+    carriers: frozenset[int] = frozenset()
+    """Parts that bear both ends about one line, where one end turns past the other."""
+
+    def __post_init__(self) -> None:
+        if self.axis is not None:
+            axis = np.asarray(self.axis, dtype=np.float64)
+            object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
+
+
+def gather_evidence(
+    graph: ContactGraph, stats: Sequence[PartStats], bearings: Mapping[Pair, EdgeBearing], pins: EdgePins
+) -> dict[Pair, EdgeEvidence]:
+    """Evidence of every contact edge, keyed (a, b) with a < b; arguments as in `edges.edge_measurements`."""
+    axes = {pair: bearing.lines[0].axis for pair, bearing in bearings.items() if bearing.lines}
+    return {
+        pair: EdgeEvidence(quality=quality, axis=axes.get(pair), carriers=pins.passing.get(pair, frozenset()))
+        for pair, quality in edge_qualities(graph, stats, bearings, pins).items()
+    }
+
+
+def virtual_costs(centroids: FloatArray, *, limit: float = np.inf, forbidden: Iterable[Pair] = ()) -> FloatArray:
+    """Cost of a virtual edge between every two parts [m], shape (n, n): the distance of their centroids.
+
+    Pairs beyond `limit` (``d_max``) cost more than any nearer one, and forbidden pairs (inside a cluster) more than
+    all others, so that they are taken last: a tree that leaves a part out would be of no use.
+    """
+    costs: FloatArray = np.linalg.norm(centroids[:, None] - centroids[None], axis=2)
+    span = float(costs.max()) + 1.0
+    costs = np.where(costs > limit, costs + span, costs)
+    for a, b in forbidden:
+        costs[a, b] += 4 * span
+        costs[b, a] += 4 * span
+    return costs
+
+
+def nearest_pair(costs: FloatArray, reached: ArrayLike) -> tuple[int, int]:
+    """Cheapest pair (reached part, other part).
+
+    Args:
+        costs: Cost of every pair, shape (n, n).
+        reached: Which parts are in the tree, shape (n,); at least one is and one is not.
+    """
+    mask = np.asarray(reached, dtype=bool)
+    inside, outside = np.flatnonzero(mask), np.flatnonzero(~mask)
+    choices = costs[np.ix_(inside, outside)]
+    row, column = np.unravel_index(int(choices.argmin()), choices.shape)
+    return int(inside[row]), int(outside[column])

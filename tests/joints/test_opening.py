@@ -7,9 +7,8 @@ import pytest
 
 from benchmarks.fit.trees import opening_recipe_key
 from kinematify.generate.procedural.solids import box
-from kinematify.joints.choice.opening import opening_odds, side_columns, turn_sign
+from kinematify.joints.choice.opening import measure_sides, opening_odds, side_columns, turn_sign
 from kinematify.joints.choice.scorer import shipped_opening
-from kinematify.joints.measure.opening_direction import measure_sides
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, turning
 

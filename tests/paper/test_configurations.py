@@ -24,7 +24,7 @@ from kinematify.paper.contacts import field_gaps
 from kinematify.pipeline import infer, write_inference
 from kinematify.pipeline.stages import rank_trees
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.evidence import EdgeEvidence
+from kinematify.topology.tree import EdgeEvidence
 from tests.objects import BUILDERS
 from tests.topology.topology_objects import graph_of, stat
 

@@ -19,10 +19,9 @@ from manifold3d import Manifold
 from trimesh.transformations import euler_matrix
 
 from kinematify.config.validation import ValidationSettings, load_settings
-from kinematify.geometry.boards import convex_chunks, taken_apart
 from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 from kinematify.geometry.cut import Concave, Surface, cut_worst_first, split
-from kinematify.geometry.cut_cache import cache_folder
+from kinematify.geometry.cut_cache import cache_folder, convex_chunks, taken_apart
 from kinematify.model.collision_pieces import Method
 from kinematify.model.masses import lifted
 from kinematify.robot.read import read_robot

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.robot.closed_chain import widest_opening
+from kinematify.robot.mechanism import widest_opening
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,12 +18,12 @@ from kinematify.geometry.directions import distinct_directions
 from kinematify.joints.bearings.evidence import contact_centroid, contact_sides, thin, whole_side
 from kinematify.joints.bearings.line import Line, Lines
 from kinematify.joints.bearings.proposals import normal_pair_lines, propose_lines
-from kinematify.joints.bearings.rail import fit_rail
 from kinematify.joints.bearings.refine import refine_line, refine_lines
 from kinematify.joints.bearings.scores import (
     BearingLine,
     EdgeBearing,
     best_distinct,
+    fit_rail,
     line_support,
     scored_line,
     scored_lines,

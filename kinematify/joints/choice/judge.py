@@ -12,8 +12,8 @@ import numpy as np
 from kinematify.joints.candidate import JointCandidate, JointType
 from kinematify.joints.choice.opening import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.cloud import point_cloud
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
+from kinematify.joints.measure.workspace import point_cloud
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from kinematify.config import ConfidenceConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.candidate import RootedTree
     from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.joints.measure.measurements import Values
-    from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray, IntArray
 
 

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.measure.clearance import contact_clearance
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import eccentricity, is_cap
-from kinematify.joints.measure.sweep import moving_points, sweep_slides, sweep_turns
+from kinematify.joints.measure.sweep import contact_clearance, moving_points, sweep_slides, sweep_turns
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

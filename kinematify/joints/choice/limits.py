@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.choice.opening import goes_round, turn_sign
+from kinematify.joints.choice.opening import clockwise_sign, goes_round, neutral_sign, swing_sign, turn_sign
 from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.opening_direction import clockwise_sign, neutral_sign, swing_sign
 from kinematify.joints.measure.scene import eccentricity
 from kinematify.joints.measure.sweep import moving_points, sweep_turns
 from kinematify.joints.measure.travel import Range, slide_range

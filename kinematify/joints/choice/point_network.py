@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import log_softmax
 
-from kinematify.joints.measure.cloud import CARRIED, CHILD, OTHER, PARENT
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
+from kinematify.joints.measure.workspace import CARRIED, CHILD, OTHER, PARENT
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.joints.measure.cloud import Cloud
     from kinematify.joints.measure.measurements import Hypotheses
+    from kinematify.joints.measure.workspace import Cloud
     from kinematify.robot.arrays import FloatArray, IntArray
 
 

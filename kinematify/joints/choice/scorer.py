@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.joints.measure.cloud import Cloud
     from kinematify.joints.measure.measurements import Hypotheses
+    from kinematify.joints.measure.workspace import Cloud
     from kinematify.robot.arrays import FloatArray, IntArray
 
 WEIGHTS = "weights.npz"

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kinematify.config import FrontCuesConfig, JointsConfig, RailsConfig
+    from kinematify.joints.candidate import RootedTree
     from kinematify.joints.measure.frames import BoxFrame, Fold
     from kinematify.joints.measure.journal import Journal
     from kinematify.joints.measure.workspace import ContactView, PartCache
-    from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray
 
 

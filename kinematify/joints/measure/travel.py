@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.measure.clearance import slide_clearance
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import is_cap
-from kinematify.joints.measure.sweep import moving_points, sweep_slides
+from kinematify.joints.measure.sweep import moving_points, slide_clearance, sweep_slides
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
