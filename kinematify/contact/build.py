@@ -23,12 +23,10 @@ from kinematify.robot.arrays import read_only
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.assembly.part import Assembly
     from kinematify.config import ContactConfig
     from kinematify.geometry.surface import PartSurface, Samples
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 def build_contact_graph(
@@ -146,7 +144,7 @@ def _component_labels(n: int, pairs: Sequence[Pair]) -> IntArray:
 
 
 def _smallest_gaps(
-    assembly: Assembly, surfaces: Sequence[PartSurface], chosen: NDArray[np.bool_], near: float
+    assembly: Assembly, surfaces: Sequence[PartSurface], chosen: BoolArray, near: float
 ) -> dict[Pair, float]:
     """Closest pair between the chosen parts (n,) and the rest, and all that are at most `near` times as far apart."""
     inside, outside = np.flatnonzero(chosen), np.flatnonzero(~chosen)
@@ -290,7 +288,7 @@ def _fingerprint(points: FloatArray) -> FloatArray:
     return np.concatenate([radii, spreads])
 
 
-def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: FloatArray) -> NDArray[np.bool_]:
+def _alike(prints: FloatArray, areas: FloatArray, sizes: FloatArray, tolerance: FloatArray) -> BoolArray:
     """Matrix of pairs that may be congruent within a tolerance per pair, shape (n, n)."""
     scale = np.maximum(sizes[:, None], sizes[None])
     difference = np.abs(prints[:, None] - prints[None]).max(axis=2)

@@ -20,16 +20,14 @@ from scipy.spatial import ConvexHull, QhullError
 
 from kinematify.geometry.convex import ConvexPiece
 from kinematify.geometry.hull import convex_hull
+from kinematify.robot.transforms import rotation_about
 from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    from kinematify.robot.arrays import FloatArray, IntArray
-
-    BoolArray = NDArray[np.bool_]
     FreeEnd = Callable[[int, int, int, float], float]
     """Value up to which two bodies may be kept apart on one side of a sweep [rad or m]: sweep, body, body, its sign."""
 
@@ -81,10 +79,7 @@ class Sweep:
         """Rotations (n, 3, 3) and translations (n, 3) of what moves, at values (n,) [rad or m]."""
         if not self.turns:
             return np.broadcast_to(np.eye(3), (len(values), 3, 3)), values[:, None] * self.axis
-        x, y, z = self.axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
-        rotations = np.eye(3) + sine * cross + versine * (cross @ cross)
+        rotations = rotation_about(self.axis, values)
         return rotations, self.pivot - rotations @ self.pivot
 
     def radius(self, points: FloatArray) -> float:

@@ -11,13 +11,10 @@ from kinematify.geometry.scene import inverse, transformed
 from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.geometry.solid import Solid
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    BoolArray = NDArray[np.bool_]
 
 _POINTS = 100_000  # asked about at a time: 10 MB
 _SOME = 16  # every so many of a body's points are asked about first: of what is near, most are

@@ -13,6 +13,7 @@ from kinematify.geometry.solid import Solid
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mechanism import Mechanism
 from kinematify.robot.robot import rigid_groups
+from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -324,10 +325,7 @@ def _motions(joint: Joint, values: FloatArray) -> FloatArray:
     """Motion of a joint at many values [rad or m], shape (n, 4, 4)."""
     motion = np.broadcast_to(np.eye(4), (len(values), 4, 4)).copy()
     if joint.kind.turns:
-        x, y, z = joint.axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
-        motion[:, :3, :3] += sine * cross + versine * (cross @ cross)
+        motion[:, :3, :3] = rotation_about(joint.axis, values)
     elif joint.kind is JointType.PRISMATIC:
         motion[:, :3, 3] = values[:, None] * joint.axis
     return motion

@@ -22,11 +22,7 @@ from kinematify.geometry.sampling import curve_order, place_samples
 from kinematify.robot.vectors import all_three, crossed, highest, lengths_of, lowest
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from kinematify.robot.arrays import FloatArray, IntArray
-
-    BoolArray = NDArray[np.bool_]
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 _ASKEW = np.array([0.36, 0.48, 0.8])  # along no edge of furniture

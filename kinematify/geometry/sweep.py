@@ -16,13 +16,10 @@ from kinematify.robot.vectors import lengths_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
-
     from kinematify.geometry.scene import Pair, Scene
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
     from kinematify.robot.mechanism import Travel
 
-    BoolArray = NDArray[np.bool_]
 
 _PIECE = 8  # samples beyond the declared range that are looked at in one go
 _COARSE = 9  # configurations from which the length of the way of the corners is estimated

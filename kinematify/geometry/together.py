@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from kinematify.geometry.overlap import Overlap
     from kinematify.geometry.rest import Allowance
     from kinematify.geometry.scene import Pair, Scene
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
-    BoolArray = NDArray[np.bool_]
     Bits = NDArray[np.uint32]
 
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import igl
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from scipy import ndimage
 
 if TYPE_CHECKING:
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Part
     from kinematify.config import SdfConfig
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 # Queries are cut into pieces of this many points: 10 MB of results at a time, and no loss of speed.
 _CHUNK_POINTS = 200_000
@@ -26,8 +25,6 @@ _CHUNK_POINTS = 200_000
 _WINDING_EDGE = 0.125
 # No more triangles than this after bisection: 100 MB of search structure.
 _WINDING_FACES = 500_000
-
-BoolArray = NDArray[np.bool_]
 
 
 def exact_distance(part: Part, points: FloatArray) -> FloatArray:

@@ -18,15 +18,11 @@ from kinematify.geometry.rays import RayScene
 from kinematify.robot.appearance import linear_of, srgb_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from kinematify.config import PreviewConfig
     from kinematify.geometry.rays import RayHits
     from kinematify.render.camera import Camera
     from kinematify.robot.appearance import Appearance
-    from kinematify.robot.arrays import FloatArray, IntArray
-
-    BoolArray = NDArray[np.bool_]
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 BACKGROUND = np.array([0.972, 0.976, 0.984])

@@ -14,12 +14,8 @@ from kinematify.robot.robot import forward_kinematics, joint_ends, joint_values,
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
     from kinematify.robot.robot import Robot
-
-    BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,11 +12,9 @@ from kinematify.joints.bearings.scores import surface_support
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from kinematify.config import BearingConfig
     from kinematify.joints.bearings.evidence import BearingSide, Sides
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
 _LEAST_SINE = 0.17  # below 10 deg between two normals their intersection is ill-conditioned
 _ALONG = np.cos(np.radians(1.0))
@@ -73,7 +71,7 @@ def propose_lines(
     return lines.subset(list(dict.fromkeys(chosen)))
 
 
-def _running_along(lines: Lines, directions: FloatArray) -> NDArray[np.bool_]:
+def _running_along(lines: Lines, directions: FloatArray) -> BoolArray:
     """Which lines run along each direction (k, 3), shape (k, L)."""
     return np.asarray(np.abs(directions @ lines.axes.T) > _ALONG)
 

@@ -18,14 +18,12 @@ from kinematify.joints.measure.workspace import point_cloud
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.config import ConfidenceConfig
     from kinematify.contact.graph import ContactGraph
     from kinematify.joints.candidate import RootedTree
     from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.joints.measure.measurements import Values
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 _SAME_COSINE = float(np.cos(np.radians(5.0)))
@@ -102,14 +100,14 @@ class Judgement:
         return np.asarray(np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2))
 
     @cached_property
-    def _same(self) -> NDArray[np.bool_]:
+    def _same(self) -> BoolArray:
         """Which say the same: type, direction to 5 deg, and line to a fiftieth of the part, shape (h, h)."""
         h = self.hypotheses
         near = (self._apart < _SAME_LINE * self.size) | (h.kinds == SLIDE)[:, None]
         return np.asarray(self._agree & near & near.T)
 
     @cached_property
-    def _agree(self) -> NDArray[np.bool_]:
+    def _agree(self) -> BoolArray:
         """Which agree in type and, to 5 deg, in direction, shape (h, h)."""
         h = self.hypotheses
         return np.asarray((h.kinds[:, None] == h.kinds) & (np.abs(h.axes @ h.axes.T) > _SAME_COSINE))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.joints.choice.scorer import shipped_opening, shipped_rigidity, shipped_turning
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, shipped_scorer
 from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, Measured, measure
 from kinematify.robot.vectors import lengths_of
@@ -186,7 +186,7 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
     if free.min() < stopped and free.max() > unstopped:
         return 1.0 if free[0] > free[1] else -1.0
     either = scene.serial or (scene.has_bearing and free.min() > unstopped)
-    odds = 0.0 if either else opening_odds(shipped_opening(), measure_sides(scene, axis, pivot))
+    odds = 0.0 if either else opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, axis, pivot))
     return customary_sign(scene, axis, pivot, free, config) if abs(odds) < _UNDECIDED else float(np.sign(odds))
 
 
@@ -228,7 +228,7 @@ def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Flo
     if scene.serial and scene.smallness < 1.0 and not scene.rolls:
         return False
     turn = Hypotheses(kinds=np.array([TURN]), axes=axis[None], pivots=pivot[None], sources=("chosen",))
-    scorer = shipped_turning()
+    scorer = shipped_scorer(TURNING_WEIGHTS)
     odds = scorer.sums(turning_columns(measure(scene, turn), 0, scorer.measurements)[None])[0] / scorer.temperature
     return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
 
@@ -248,7 +248,7 @@ def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
         kinds: FIXED, TURN or SLIDE of each hypothesis, shape (h,).
         measured: Name -> values, shape (h,) each.
     """
-    scorer = shipped_rigidity()
+    scorer = shipped_scorer(RIGID_WEIGHTS)
     columns = rigid_columns(kinds, measured, scorer.measurements)
     return float(scorer.sums(columns[None])[0] / scorer.temperature)
 

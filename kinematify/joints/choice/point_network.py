@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from kinematify.joints.measure.measurements import Hypotheses
     from kinematify.joints.measure.workspace import Cloud
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -55,7 +55,7 @@ class Network:
     """Networks of one shape in arrays; s of them, n inputs, h hidden values, g that are shared among hypotheses."""
 
     scale: Scale
-    verdicts: NDArray[np.bool_]
+    verdicts: BoolArray
     """Inputs that are hidden when it is asked without what the weighted cues say, shape (n,)."""
     embed: FloatArray
     """Shape (s, n, h)."""

@@ -35,6 +35,12 @@ WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
 OPENING_WEIGHTS = "opening.npz"
 TURNING_WEIGHTS = "turning.npz"
+_SCORED = {
+    WEIGHTS: "the choice of joints",
+    RIGID_WEIGHTS: "what is fixed",
+    OPENING_WEIGHTS: "the opening direction",
+    TURNING_WEIGHTS: "what goes round",
+}
 NETWORK, POINTS = "network_", "points_"
 """Before the names of the arrays of either network in a file of weights."""
 POINTS_SHARE = 0.2
@@ -163,46 +169,12 @@ def _extreme(values: NDArray[Any], pick: np.ufunc) -> NDArray[Any]:
 
 
 @cache
-def shipped_scorer() -> Scorer:
-    """The scorer of hypotheses that comes with the package.
+def shipped_scorer(name: str = WEIGHTS) -> Scorer:
+    """A scorer that comes with the package, by its file; the one of hypotheses unless another is named.
 
     Raises:
         EnvironmentFault: Its file is missing, damaged or of another version.
     """
-    return _shipped(WEIGHTS, "the choice of joints")
-
-
-@cache
-def shipped_rigidity() -> Scorer:
-    """The scorer of whether a part is fixed that comes with the package.
-
-    Raises:
-        EnvironmentFault: Its file is missing, damaged or of another version.
-    """
-    return _shipped(RIGID_WEIGHTS, "what is fixed")
-
-
-@cache
-def shipped_opening() -> Scorer:
-    """The scorer of which way a turning joint opens that comes with the package.
-
-    Raises:
-        EnvironmentFault: Its file is missing, damaged or of another version.
-    """
-    return _shipped(OPENING_WEIGHTS, "the opening direction")
-
-
-@cache
-def shipped_turning() -> Scorer:
-    """The scorer of whether a turn goes round that comes with the package.
-
-    Raises:
-        EnvironmentFault: Its file is missing, damaged or of another version.
-    """
-    return _shipped(TURNING_WEIGHTS, "what goes round")
-
-
-def _shipped(name: str, of: str) -> Scorer:
     path = files("kinematify.joints.choice") / name
     remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
     try:
@@ -211,11 +183,11 @@ def _shipped(name: str, of: str) -> Scorer:
             arrays = {key: stored[key] for key in _ARRAYS}
             network, points = _network(stored), _points(stored)
     except (OSError, ValueError, KeyError) as error:
-        raise EnvironmentFault(f"The weights of {of} ({name}) cannot be read. {remedy}") from error
+        raise EnvironmentFault(f"The weights of {_SCORED[name]} ({name}) cannot be read. {remedy}") from error
     if facts.get("format") != FORMAT:
         raise EnvironmentFault(
-            f"The weights of {of} ({name}) have format {facts.get('format')}; this version of kinematify reads format "
-            f"{FORMAT}. {remedy}"
+            f"The weights of {_SCORED[name]} ({name}) have format {facts.get('format')}; this version of "
+            f"kinematify reads format {FORMAT}. {remedy}"
         )
     return Scorer(
         measurements=tuple(facts["measurements"]),

@@ -15,14 +15,9 @@ from scipy.spatial import ConvexHull, QhullError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    from kinematify.config import FramesConfig
+    from kinematify.config import FramesConfig, RockersConfig
     from kinematify.geometry.sampling import SurfaceSamples
-    from kinematify.robot.arrays import FloatArray
-
-    BoolArray = NDArray[np.bool_]
-    from kinematify.config import RockersConfig
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -19,12 +19,9 @@ from kinematify.robot.vectors import crossed, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.joints.measure.scene import JointScene
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    BoolArray = NDArray[np.bool_]
 
 FIXED, TURN, SLIDE = range(3)
 

@@ -14,14 +14,12 @@ from kinematify.joints.measure.journal import facing_faces, find_journal
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.config import FrontCuesConfig, JointsConfig, RailsConfig
     from kinematify.joints.candidate import RootedTree
     from kinematify.joints.measure.frames import BoxFrame, Fold
     from kinematify.joints.measure.journal import Journal
     from kinematify.joints.measure.workspace import ContactView, PartCache
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
 
 def foot_side(part: BoxFrame, body: FloatArray, config: FrontCuesConfig) -> FloatArray:
@@ -416,7 +414,7 @@ def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:
     return bool(upright and thick and sides[0] < config.panel_thinness * np.sqrt(sides[1] * sides[2]))
 
 
-def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> NDArray[np.bool_]:
+def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> BoolArray:
     """Whether the parent stands in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame, (6,)."""
     steps = cache.diagonal * np.concatenate([frame.axes, -frame.axes])
     hits = cache.first_hits(parent, np.tile(frame.centre, (6, 1)), steps)

@@ -18,15 +18,10 @@ from kinematify.robot.vectors import all_three, lengths_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.assembly.part import Assembly
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.sampling import SurfaceSamples
-    from kinematify.robot.arrays import FloatArray
-
-    BoolArray = NDArray[np.bool_]
-    from kinematify.robot.arrays import IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 
 _WINDING = ((1.5, 0.1), (2.0, 0.0))
