@@ -14,7 +14,7 @@ import igl
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
-from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.surface import PartSurface
 from kinematify.robot.weld import welded
 

@@ -17,7 +17,7 @@ from kinematify.envs.picture import Piece
 from kinematify.envs.pixels import PIXEL_SIZE, STATE, observed
 from kinematify.envs.robot_plan import env_robot, robot_plan
 from kinematify.envs.worlds import shared_target
-from kinematify.geometry.hull import convex_hull
+from kinematify.geometry.convex import convex_hull
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

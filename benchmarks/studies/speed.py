@@ -25,7 +25,7 @@ from benchmarks.study import Options, Study, explained
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import BenchObject, find_objects
 from kinematify.evaluation.record import table
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.mujoco_engine import MujocoEngine
 from kinematify.simulation.prepare import prepare
@@ -103,7 +103,7 @@ def _ratios(urdf: Path, folder: Path) -> tuple[int, float, float]:
     settings = load_settings()
     model = read_robot(urdf)
     prepare(model, folder, settings.prepare)
-    prepared, mechanism = load_prepared(folder), Mechanism(robot=model)
+    prepared, mechanism = load_prepared(folder), LeaderMechanism(robot=model)
     values = mechanism.all_values(mechanism.sweep(settings.engines.sweep_samples))
     ours = MujocoEngine(settings=settings.engines, threads=1, said=[]).load(prepared, mechanism)
     by_mujoco = _ratio(lambda: ours.measure(values, dynamic=1), lambda: _bare_mujoco(ours.measuring, values))

@@ -102,7 +102,9 @@ def assemble(
     return Assembly(
         parts=tuple(thin),
         source=source,
-        set_aside=tuple(_set_aside(part, reason, triage.kept) for part, reason in triage.aside),
+        set_aside=tuple(
+            SetAside(part=part, reason=reason, nearest=_nearest(part, triage.kept)) for part, reason in triage.aside
+        ),
         original_names=dict(zip(names, (mesh.name for mesh in meshes), strict=True)),
         warnings=(*warnings, *_told_looks(meshes, names), *triage.warnings, *_thinning_warnings(thin, originals)),
         originals=originals,
@@ -244,10 +246,6 @@ def _too_few(source: str, triage: _Triage) -> str:
         f"The input {source} has {len(triage.kept)} usable part, but a mechanism needs at least two.{aside} Give one "
         "mesh per rigid part; one mesh that holds several needs --labels, or pieces that do not share vertices."
     )
-
-
-def _set_aside(part: Part, reason: str, kept: Sequence[Part]) -> SetAside:
-    return SetAside(part=part, reason=reason, nearest=_nearest(part, kept))
 
 
 def _nearest(part: Part, kept: Sequence[Part]) -> str:

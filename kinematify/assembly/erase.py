@@ -274,7 +274,7 @@ def write_parts(parts: Sequence[Part], truth: GroundTruth, folder: Path) -> Path
         OutputError: The folder or the truth exists already, or cannot be written. Nothing is left half-written.
     """
     target, truth_file = folder.absolute(), truth_path(folder)
-    if truth_file.exists() or (target.exists() and not _is_empty_folder(target)):
+    if truth_file.exists() or (target.exists() and not (target.is_dir() and not any(target.iterdir()))):
         raise OutputError(
             f"The output {folder} (or the truth {truth_file.name} beside it) exists already. Remove both, or give "
             "another folder."
@@ -287,10 +287,6 @@ def write_parts(parts: Sequence[Part], truth: GroundTruth, folder: Path) -> Path
             "with space."
         ) from error
     return truth_file
-
-
-def _is_empty_folder(path: Path) -> bool:
-    return path.is_dir() and not any(path.iterdir())
 
 
 def _write_aside_and_rename(parts: Sequence[Part], truth: GroundTruth, target: Path, truth_file: Path) -> None:

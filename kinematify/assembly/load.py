@@ -167,7 +167,11 @@ def _folder(folder: Path, reading: _Reading) -> _Given:
             f"The folder {folder} holds {len(files)} mesh files; at most {reading.config.max_parts} parts are accepted "
             "(assembly.max_parts). Join what is rigid."
         )
-    ignored = [entry.name for entry in visible if entry not in files and _is_noticed(entry)]
+    ignored = [
+        entry.name
+        for entry in visible
+        if entry not in files and (entry.is_dir() or entry.suffix.lower() not in _SILENT_SUFFIXES)
+    ]
     warnings = (f"Not read, because they are no mesh files: {', '.join(ignored[:20])}.",) if ignored else ()
     meshes = tuple(_whole_file(file, reading) for file in files)
     return _Given(meshes=meshes, warnings=warnings, up_by_standard=_up_by_standard(files, reading))
@@ -179,15 +183,11 @@ def _instead(entries: list[Path]) -> str:
     return f", or give the description {urdf} itself" if urdf else ""
 
 
-def _is_noticed(entry: Path) -> bool:
-    return entry.is_dir() or entry.suffix.lower() not in _SILENT_SUFFIXES
-
-
 def _whole_file(path: Path, reading: _Reading) -> RawMesh:
     """All that a file holds as one part; an empty mesh stays, to be set aside by name."""
     meshes = _read(path, reading, empty_ok=True)
     if not meshes:
-        return _empty(path.stem)
+        return RawMesh(name=path.stem, vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int64))
     return replace(merged(meshes, path.stem), unit=meshes[0].unit)
 
 
@@ -263,10 +263,6 @@ def _upright(mesh: RawMesh, up: str) -> RawMesh:
     if up == "z":
         return mesh
     return mesh.moved(np.array(_TO_Z_UP[up], dtype=np.float64))
-
-
-def _empty(name: str) -> RawMesh:
-    return RawMesh(name=name, vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int64))
 
 
 def _unit_warnings(meshes: tuple[RawMesh, ...]) -> tuple[str, ...]:

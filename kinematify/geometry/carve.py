@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from kinematify.geometry.convex import ConvexPiece
-from kinematify.geometry.hull import convex_hull
+from kinematify.geometry.convex import ConvexPiece, convex_hull
 from kinematify.robot.transforms import rotation_about
 from kinematify.robot.vectors import all_three, crossed, lengths_of
 
@@ -60,7 +59,7 @@ _CACHED = 200_000
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Sweep:
+class SweptJoint:
     """The motion of one joint from rest, others at rest, in the world frame."""
 
     moved: frozenset[int]
@@ -176,7 +175,7 @@ class _Polytope:
 def carved(
     bodies: Sequence[Sequence[ConvexPiece]],
     surfaces: Sequence[FloatArray],
-    sweeps: Sequence[Sweep],
+    sweeps: Sequence[SweptJoint],
     free_end: FreeEnd,
     *,
     clearance: float,
@@ -238,7 +237,7 @@ class _Clearing:
         alive: list[list[_Polytope]],
         volumes: Sequence[float],
         extents: Sequence[float],
-        sweep: Sweep,
+        sweep: SweptJoint,
         free_end: Callable[[int, int, float], float],
         *,
         clearance: float,
@@ -346,7 +345,7 @@ class _Clearing:
 class _Path:
     """One sweep in steps."""
 
-    def __init__(self, sweep: Sweep, moving: Sequence[_Polytope], clearance: float) -> None:
+    def __init__(self, sweep: SweptJoint, moving: Sequence[_Polytope], clearance: float) -> None:
         """Choose steps whose arcs rise over their chords by at most a third of the clearance, and one at rest."""
         self._sweep, self._clearance = sweep, clearance
         count = _LEAST_STEPS

@@ -22,7 +22,7 @@ _FEW = 0.03  # of the points: trims of sheets that stick in one another at rest 
 _SHRINK = 0.01  # surfaces that slide on one another must not count as crossed by a rounding error
 
 
-class Overlap:
+class OverlapQueries:
     """Asks FCL and the signed distances; a pose is that of the second body in the frame of the first one."""
 
     def __init__(self, scene: Scene) -> None:
@@ -141,7 +141,7 @@ def _reach_into(body: Solid, other: Solid, T: FloatArray) -> FloatArray:
 
 
 def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: float) -> FloatArray:
-    """`Overlap.passed` for the walls of `body` and the points of `other`."""
+    """`OverlapQueries.passed` for the walls of `body` and the points of `other`."""
     path = _posed(other.points + _SHRINK * (other.middle - other.points), T)
     few = max(1, int(_FEW * path.shape[1]))
     near = all_three((path.min(axis=0) <= body.high) & (path.max(axis=0) >= body.low))

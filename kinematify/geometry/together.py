@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.geometry.overlap import Overlap
-    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.overlap import OverlapQueries
+    from kinematify.geometry.rest import DepthAllowance
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.robot.arrays import BoolArray, FloatArray
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Configurations:
+class JudgedConfigurations:
     """What meets in some configurations."""
 
     rows: FloatArray
@@ -55,7 +55,9 @@ def random_rows(scene: Scene, seed: int) -> FloatArray:
     return np.asarray(low + sobol(scene.settings.random_rows, len(travels), seed) * (high - low))
 
 
-def looked_at(scene: Scene, overlap: Overlap, allowance: Allowance, rows: FloatArray) -> Configurations:
+def looked_at(
+    scene: Scene, overlap: OverlapQueries, allowance: DepthAllowance, rows: FloatArray
+) -> JudgedConfigurations:
     """Ask about every pair in every row but neighbours, which the sweeps of their joints judge."""
     poses = scene.poses(rows)
     touching = np.zeros((len(rows), len(scene.pairs)), dtype=bool)
@@ -66,10 +68,10 @@ def looked_at(scene: Scene, overlap: Overlap, allowance: Allowance, rows: FloatA
         T = relative(poses, pair)
         touching[:, column] = overlap.collide(pair, T)
         meeting[:, column] = _beyond(overlap, allowance, pair, T, touching[:, column])
-    return Configurations(rows=rows, touching=touching, meeting=meeting)
+    return JudgedConfigurations(rows=rows, touching=touching, meeting=meeting)
 
 
-def _beyond(overlap: Overlap, allowance: Allowance, pair: Pair, T: FloatArray, hit: BoolArray) -> BoolArray:
+def _beyond(overlap: OverlapQueries, allowance: DepthAllowance, pair: Pair, T: FloatArray, hit: BoolArray) -> BoolArray:
     """Which of the hits go beyond what the pair may."""
     found = np.zeros(len(T), dtype=bool)
     rest = allowance.pairs.get(pair)
@@ -81,7 +83,11 @@ def _beyond(overlap: Overlap, allowance: Allowance, pair: Pair, T: FloatArray, h
 
 
 def joint_pairs(
-    scene: Scene, overlap: Overlap, allowance: Allowance, alone: Sequence[frozenset[Pair]], go_on: Callable[[], bool]
+    scene: Scene,
+    overlap: OverlapQueries,
+    allowance: DepthAllowance,
+    alone: Sequence[frozenset[Pair]],
+    go_on: Callable[[], bool],
 ) -> tuple[list[JointPair], int]:
     """Move every two joints together whose bodies come near each other.
 
@@ -112,7 +118,7 @@ def joint_pairs(
 
 
 def _together(
-    scene: Scene, overlap: Overlap, allowance: Allowance, two: tuple[int, int], pairs: Sequence[Pair]
+    scene: Scene, overlap: OverlapQueries, allowance: DepthAllowance, two: tuple[int, int], pairs: Sequence[Pair]
 ) -> list[JointPair]:
     steps = scene.settings.pair_steps
     values = [np.linspace(scene.travels[k].lower, scene.travels[k].upper, steps) for k in two]

@@ -12,7 +12,7 @@ import numpy as np
 from kinematify.manipulation.grip import grip_piece
 from kinematify.manipulation.outcome import Hold
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.mujoco_model import parse
@@ -127,7 +127,7 @@ class MujocoExecution:
         return spec
 
     def _parsed(self, model: Robot, prepared: Prepared) -> mujoco.MjSpec:
-        spec = parse(prepared.urdf, Mechanism(robot=model), step=self.settings.time_step).spec
+        spec = parse(prepared.urdf, LeaderMechanism(robot=model), step=self.settings.time_step).spec
         spec.compiler.balanceinertia = True
         return spec
 

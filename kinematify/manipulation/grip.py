@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.scene import transformed
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.carve import Sweep, carved
+from kinematify.geometry.carve import SweptJoint, carved
 from kinematify.geometry.convex import (
     ConvexPiece,
     convex_piece,
@@ -247,7 +247,7 @@ def _moving(robot: Robot) -> list[Joint]:
     return [joint for joint in robot.joints if joint.kind is not JointType.FIXED]
 
 
-def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[Sweep]:
+def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConfig) -> list[SweptJoint]:
     """One sweep for every joint that moves, relative to where it rests."""
     joints = _moving(robot)
     index = {link.name: number for number, link in enumerate(robot.links)}
@@ -257,7 +257,7 @@ def _sweeps(robot: Robot, poses: Mapping[str, FloatArray], config: CollisionConf
         slack = config.turn_slack if joint.kind.turns else config.slide_slack
         T_world_child = poses[joint.child]
         found.append(
-            Sweep(
+            SweptJoint(
                 moved=frozenset(index[name] for name in _carried(robot, joint.child)),
                 turns=joint.kind.turns,
                 axis=T_world_child[:3, :3] @ joint.axis,

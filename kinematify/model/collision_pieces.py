@@ -11,7 +11,7 @@ import numpy as np
 
 from kinematify.assembly.pieces import connected_pieces
 from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume
-from kinematify.geometry.cut import Concave, Surface
+from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.robot import forward_kinematics
@@ -72,7 +72,7 @@ class _Component:
     """A connected piece of a mesh, or the rest of one that has too many."""
 
     link: str
-    surface: Surface
+    surface: CutSurface
     hull: ConvexPiece
     gap: float
     """How far the hull reaches beyond the surface [m]."""
@@ -137,7 +137,7 @@ def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettin
     if not parts:
         return []
     diagonal = float(np.linalg.norm(np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)))
-    surfaces = [Surface(part.vertices, part.faces) for part in parts[: settings.most_components]]
+    surfaces = [CutSurface(part.vertices, part.faces) for part in parts[: settings.most_components]]
     if len(parts) > settings.most_components:
         surfaces.append(_joined(parts[settings.most_components :]))
     tolerance = max(settings.link_gap * diagonal, settings.model_gap * size)
@@ -161,9 +161,9 @@ def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettin
     return found
 
 
-def _joined(parts: Sequence[RawMesh]) -> Surface:
+def _joined(parts: Sequence[RawMesh]) -> CutSurface:
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
-    return Surface(
+    return CutSurface(
         np.concatenate([part.vertices for part in parts]),
         np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
     )

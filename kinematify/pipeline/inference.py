@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.robot.mechanism import Opening
+    from kinematify.robot.mechanism import LoopOpening
     from kinematify.robot.robot import Robot
     from kinematify.topology.tree import KinematicTree
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ClosedChain:
+class CutChain:
     """Two parts that turn on one pin, and that hang together by other joints, too."""
 
     parts: tuple[str, str]
@@ -34,7 +34,7 @@ class ClosedChain:
     """Of the pin, world frame."""
     joints: tuple[str, ...]
     """The others of the chain, from one part to the other."""
-    opening: Opening
+    opening: LoopOpening
     """What happens to the pin when a joint moves alone."""
     reward: float
     """Of the tree that was taken."""
@@ -62,7 +62,7 @@ def closed_chains(
     trees: Sequence[KinematicTree],
     robot: Robot,
     config: TopologyConfig,
-) -> Iterator[ClosedChain]:
+) -> Iterator[CutChain]:
     """Find the pins that the best tree leaves out and that its motion pulls apart.
 
     Args:
@@ -82,7 +82,7 @@ def closed_chains(
         opening = widest_opening(robot, parts, line.pivot)
         if opening is not None and opening.distance > allowed:
             rivals = [tree.reward for tree in trees if ends in {pair(*edge) for edge in tree.edges()}]
-            yield ClosedChain(
+            yield CutChain(
                 parts=parts,
                 line=line,
                 joints=joints_between(robot, parts),
@@ -129,7 +129,7 @@ class Inference:
         return tuple(self.assembly.names[child] for _, child in below)
 
     @cached_property
-    def closed_chains(self) -> tuple[ClosedChain, ...]:
+    def closed_chains(self) -> tuple[CutChain, ...]:
         """Pins that the tree had to leave out; they come apart when its joints move."""
         found = closed_chains(self.assembly, self.bearings, self.trees, self.model.robot, self.config.topology)
         return tuple(found)

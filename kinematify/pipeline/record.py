@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactEdge
     from kinematify.joints.bearings.scores import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.pipeline.inference import ClosedChain, Inference
+    from kinematify.pipeline.inference import CutChain, Inference
     from kinematify.topology.tree import KinematicTree
 
 SCHEMA = 1
@@ -173,7 +173,7 @@ def _joint(joint: JointEstimate, names: tuple[str, ...]) -> dict[str, Any]:
     }
 
 
-def _closed_chain(chain: ClosedChain) -> dict[str, Any]:
+def _closed_chain(chain: CutChain) -> dict[str, Any]:
     return {
         "parts": list(chain.parts),
         "axis": chain.line.axis.tolist(),

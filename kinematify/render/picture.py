@@ -112,7 +112,7 @@ def render_scene(scene: PictureScene, camera: Camera, config: PreviewConfig) -> 
 
 
 @dataclass(frozen=True, eq=False)
-class _View:
+class _Viewpoint:
     """Rays of a picture and what they meet."""
 
     pixels: FloatArray
@@ -172,10 +172,10 @@ class _Painter:
             image[block] = self._subsampled(block, view, sparse)
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
-    def _view(self, pixels: FloatArray) -> _View:
+    def _view(self, pixels: FloatArray) -> _Viewpoint:
         return self._seen(pixels, *self.camera.rays(pixels))
 
-    def _seen(self, pixels: FloatArray, origins: FloatArray, directions: FloatArray) -> _View:
+    def _seen(self, pixels: FloatArray, origins: FloatArray, directions: FloatArray) -> _Viewpoint:
         """What rays meet that need not begin at the camera."""
         hits = self.rays.first_hits(origins, directions)
         met = hits.met
@@ -184,9 +184,9 @@ class _Painter:
         away = np.einsum("ij,ij->i", self.rays.face_normals[face], directions[met]) > 0.0
         normals = np.zeros(directions.shape)
         normals[met] = np.where(away[:, None], -smooth, smooth)
-        return _View(pixels, origins, directions, hits, normals)
+        return _Viewpoint(pixels, origins, directions, hits, normals)
 
-    def _colors(self, view: _View, light: FloatArray, panes: int = _PANES) -> FloatArray:
+    def _colors(self, view: _Viewpoint, light: FloatArray, panes: int = _PANES) -> FloatArray:
         """Linear colour of what each ray meets: a mesh, the floor or the background, shape (n, 3).
 
         What is not opaque shows what is behind it, through `panes` surfaces at most.
@@ -209,7 +209,7 @@ class _Painter:
             colors[at] = share * colors[at] + (1.0 - share) * self._behind(view, at, panes)
         return colors
 
-    def _behind(self, view: _View, at: IntArray, panes: int) -> FloatArray:
+    def _behind(self, view: _Viewpoint, at: IntArray, panes: int) -> FloatArray:
         """Linear colour of what is seen through the surfaces that some rays meet, shape (len(at), 3)."""
         along = view.directions[at]
         behind = self._seen(view.pixels[at], view.points[at] + _BEHIND * self.rays.size * along, along)
@@ -218,7 +218,7 @@ class _Painter:
         light[met] = self.sky.open_share(behind.points[met], behind.normals[met], sets)
         return self._colors(behind, light, panes - 1)
 
-    def _surfaces(self, view: _View) -> tuple[FloatArray, FloatArray]:
+    def _surfaces(self, view: _Viewpoint) -> tuple[FloatArray, FloatArray]:
         """Linear colour and opacity of what rays meet, without light, shapes (number met, 3) and (number met,)."""
         met = view.hits.met
         mesh = view.hits.mesh[met]
@@ -244,7 +244,7 @@ class _Painter:
         lamp = -0.62 * right - 0.75 * down - forward
         return np.asarray(lamp / np.linalg.norm(lamp), dtype=np.float64)
 
-    def _edges(self, view: _View) -> BoolArray:
+    def _edges(self, view: _Viewpoint) -> BoolArray:
         """Pixels whose neighbours show another surface, shape (h * w,)."""
         mesh = view.hits.mesh.reshape(self.shape)
         normal = view.normals.reshape(*self.shape, 3)
@@ -258,7 +258,7 @@ class _Painter:
             edge[second] |= differs
         return edge.ravel()
 
-    def _near_glyphs(self, view: _View) -> BoolArray:
+    def _near_glyphs(self, view: _Viewpoint) -> BoolArray:
         if self.halo is None:
             return np.zeros(len(view.pixels), dtype=bool)
         met = self.halo.first_hits(view.origins, view.directions).met.reshape(self.shape)
@@ -271,7 +271,7 @@ class _Painter:
             met = grown
         return met.ravel()
 
-    def _subsampled(self, chosen: IntArray, coarse: _View, sparse: _SparseLight) -> FloatArray:
+    def _subsampled(self, chosen: IntArray, coarse: _Viewpoint, sparse: _SparseLight) -> FloatArray:
         """Mean linear colour of a turned grid of rays in each chosen pixel, shape (len(chosen), 3)."""
         side = self.config.subsamples
         across, down = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
@@ -283,13 +283,13 @@ class _Painter:
         mean: FloatArray = colors.reshape(len(chosen), side * side, 3).mean(axis=1)
         return mean
 
-    def _sparse_light(self, view: _View) -> _SparseLight:
+    def _sparse_light(self, view: _Viewpoint) -> _SparseLight:
         """Light of every other pixel of every other row: it changes slowly over a surface."""
         chosen = np.arange(len(view.pixels)).reshape(self.shape)[::_SPARSE, ::_SPARSE]
         mesh, normals = view.hits.mesh[chosen], view.normals[chosen]
         return _SparseLight(mesh, normals, self.sky.of_picture(view.points[chosen], normals, mesh))
 
-    def _light(self, view: _View, pixel: IntArray, sparse: _SparseLight) -> FloatArray:
+    def _light(self, view: _Viewpoint, pixel: IntArray, sparse: _SparseLight) -> FloatArray:
         """Light of the nearest of the sparse pixels that shows the same surface; rays of its own for what none shows.
 
         Args:
@@ -313,7 +313,7 @@ class _Painter:
         light[left] = self.sky.open_share(view.points[left], view.normals[left], left % len(self.sky.sets))
         return light
 
-    def _with_glyphs(self, colors: FloatArray, view: _View) -> FloatArray:
+    def _with_glyphs(self, colors: FloatArray, view: _Viewpoint) -> FloatArray:
         """Lay the arrows with a light rim over colours, pale where a mesh is nearer."""
         if self.glyphs is None or self.halo is None:
             return colors

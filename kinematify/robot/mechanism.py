@@ -45,7 +45,7 @@ class Travel:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Mechanism:
+class LeaderMechanism:
     """A tree, its leading joints and its bodies (links held together by fixed joints)."""
 
     robot: Robot
@@ -142,12 +142,12 @@ class Mechanism:
 
 
 def sweep_rows(leader: int, samples: int) -> slice:
-    """Where the sweep of a leader stands among the rows of `Mechanism.sweep`."""
+    """Where the sweep of a leader stands among the rows of `LeaderMechanism.sweep`."""
     return slice(1 + leader * samples, 1 + (leader + 1) * samples)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Opening:
+class LoopOpening:
     """How far a shared pin comes apart when one joint moves alone."""
 
     joint: str
@@ -158,7 +158,7 @@ class Opening:
     """Between the two ends of the pin there [m]."""
 
 
-def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> Opening | None:
+def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> LoopOpening | None:
     """Move each leader that moves one of two links without the other to its ends; None where there is no such leader.
 
     Mimic joints that keep a linkage closed keep its pins closed, too.
@@ -168,7 +168,7 @@ def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> O
         links: The two that share a pin.
         point: Of the pin, frame of the root link at rest [m], shape (3,).
     """
-    mechanism = Mechanism(robot=robot)
+    mechanism = LeaderMechanism(robot=robot)
     first, second = (int(mechanism.body_of_link[mechanism.links.index(link)]) for link in links)
     rest = {travel.joint: travel.rest for travel in mechanism.travels}
     at_rest = forward_kinematics(robot, rest)
@@ -181,7 +181,9 @@ def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> O
                 continue
             poses = forward_kinematics(robot, {**rest, travel.joint: value})
             ends = [poses[link] @ np.linalg.inv(at_rest[link]) @ np.append(point, 1.0) for link in links]
-            found.append(Opening(joint=travel.joint, value=value, distance=float(np.linalg.norm(ends[0] - ends[1]))))
+            found.append(
+                LoopOpening(joint=travel.joint, value=value, distance=float(np.linalg.norm(ends[0] - ends[1])))
+            )
     return max(found, key=lambda opening: opening.distance, default=None)
 
 

@@ -19,7 +19,7 @@ from lxml import etree
 
 from kinematify.errors import AssemblyError, EnvironmentFault
 from kinematify.robot.appearance import joined, painted
-from kinematify.robot.exact_faces import joined_faces
+from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.gltf_file import read_gltf
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.obj_file import read_obj
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.exact_faces import ExactFaces
     from kinematify.robot.gltf_file import GltfNode
 
 

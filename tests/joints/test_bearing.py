@@ -17,9 +17,8 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.bearings.fit import fit_bearings
+from kinematify.joints.bearings.fit import fit_bearings, normal_pair_lines
 from kinematify.joints.bearings.line import Line, Lines, join
-from kinematify.joints.bearings.proposals import normal_pair_lines
 from kinematify.joints.bearings.refine import (
     across_axis,
     circle_rows,

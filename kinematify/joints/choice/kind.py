@@ -64,7 +64,11 @@ def decide_kind(
     cues = {
         **_room_cues(scene, turns, slides, config),
         **_shape_cues(scene, turns),
-        **_twin_cues(scene, siblings),
+        **{
+            "row": scene.smallness * float(siblings.count >= 3),
+            "gripper": float(siblings.gripping),
+            "sliding_pair": float(siblings.overlapping),
+        },
         **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
@@ -365,14 +369,6 @@ def _bridges_a_seam(scene: JointScene) -> bool:
         edge.b if edge.a == child else edge.a for edge in graph.edges if child in (edge.a, edge.b) and not edge.bridge
     ]
     return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
-
-
-def _twin_cues(scene: JointScene, siblings: Siblings) -> dict[str, float]:
-    return {
-        "row": scene.smallness * float(siblings.count >= 3),
-        "gripper": float(siblings.gripping),
-        "sliding_pair": float(siblings.overlapping),
-    }
 
 
 def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> bool:

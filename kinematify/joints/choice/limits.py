@@ -64,7 +64,7 @@ def _turn_range(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: 
         not scene.serial
         and scene.has_bearing
         and free.min() > np.radians(config.limits.unstopped_deg)
-        and _is_lever(scene, axis, config)
+        and eccentricity(scene, axis, scene.contact.centroid) >= config.limits.even  # an arm on a pivot
     ):
         return _lever_range(scene, axis, free, config)
     sign = turn_sign(scene, axis, pivot, free, config.limits)
@@ -167,11 +167,6 @@ def _panel_range(
 
 
 # ---- levers ----------------------------------------------------------------------------------------------
-
-
-def _is_lever(scene: JointScene, axis: FloatArray, config: JointsConfig) -> bool:
-    """An arm on a pivot."""
-    return eccentricity(scene, axis, scene.contact.centroid) >= config.limits.even
 
 
 def _lever_range(scene: JointScene, axis: FloatArray, free: FloatArray, config: JointsConfig) -> Range:

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, shipped_scorer
 from kinematify.joints.measure.frames import UP
-from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, Measured, measure
+from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, MeasuredHypotheses, measure
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
@@ -45,12 +45,12 @@ def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Val
         pivots=np.array([pivot, pivot]),
         sources=("forward", "backward"),
     )
-    measured = Measured(scene, turns, sided=True)
+    measured = MeasuredHypotheses(scene, turns, sided=True)
     found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
     return {**found, **_leads_to(measured)}
 
 
-def _leads_to(m: Measured) -> Values:
+def _leads_to(m: MeasuredHypotheses) -> Values:
     """Where the first motion of the child and of its handle leads: out, up, or to the face on which the line lies."""
     scene, frame = m.scene, m.scene.frame
     way = _directions(m, scene.centre)
@@ -69,7 +69,7 @@ def _leads_to(m: Measured) -> Values:
     return result
 
 
-def _directions(m: Measured, point: FloatArray) -> FloatArray:
+def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
     """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
     velocity = m.velocity(point[None])[:, 0]
     return np.asarray(velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None])
