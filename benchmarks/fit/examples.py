@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.contact.build import build_contact_graph
+from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.axis_metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.bearings.fit import fit_bearings
@@ -20,7 +21,6 @@ from kinematify.joints.choice.opening import measure_sides
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import Cloud, PartCache, point_cloud
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -129,7 +129,7 @@ def searched_trees(asked: PosedObject) -> Record:
     base_config = load_config("paper")
     sdf = base_config.sdf.model_copy(update={"kind": asked.sdf})
     # torch takes seconds to import, and exact gaps do without it.
-    from kinematify.paper.contacts import field_gaps  # noqa: PLC0415
+    from kinematify.paper.sdf import field_gaps  # noqa: PLC0415
 
     by_fields = field_gaps(assembly, base_config.model_copy(update={"sdf": sdf}))
     graphs = {

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.topology.tree import KinematicTree
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from kinematify.robot.arrays import FloatArray
 
@@ -70,31 +70,3 @@ class JointEstimate:
         object.__setattr__(self, "axis", read_only(axis / np.linalg.norm(axis), np.float64))
         object.__setattr__(self, "pivot", read_only(self.pivot, np.float64))
         object.__setattr__(self, "evidence", MappingProxyType(dict(self.evidence)))
-
-
-class RootedTree(Protocol):
-    """A directed spanning tree over the parts of an assembly; node i is part i."""
-
-    @property
-    def root(self) -> int:
-        """Index of the base link."""
-        ...
-
-    @property
-    def parents(self) -> tuple[int, ...]:
-        """Parent of every node; -1 for the root."""
-        ...
-
-    @property
-    def children(self) -> tuple[tuple[int, ...], ...]:
-        """Children of every node in ascending order."""
-        ...
-
-    @property
-    def depths(self) -> tuple[int, ...]:
-        """Graph distance of every node from the root."""
-        ...
-
-    def edges(self) -> Iterator[tuple[int, int]]:
-        """Yield (parent, child), parents before children."""
-        ...

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import ModelConfig
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.tree import KinematicTree
 
 
 def build_model(

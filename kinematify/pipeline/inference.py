@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.robot.mechanism import LoopOpening
     from kinematify.robot.robot import Robot
-    from kinematify.topology.tree import KinematicTree
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

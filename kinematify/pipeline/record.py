@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactEdge
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
     from kinematify.pipeline.inference import CutChain, Inference
-    from kinematify.topology.tree import KinematicTree
 
 SCHEMA = 1
 PREVIEW_FILE = "preview.png"

@@ -12,9 +12,9 @@ from kinematify.joints.choice.decide import estimate_joints
 from kinematify.joints.measure.pins import find_pins
 from kinematify.paper.trees import PaperReward, base_by_degree
 from kinematify.topology.base import BaseCandidate
+from kinematify.topology.evidence import gather_evidence
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import plausible_bases, search_trees
-from kinematify.topology.tree import gather_evidence
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,11 +22,12 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
     from kinematify.geometry.part_stats import PartStats
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
+    from kinematify.topology.evidence import EdgeEvidence
     from kinematify.topology.reward import SimulatedEdges
-    from kinematify.topology.tree import EdgeEvidence, KinematicTree
 
 
 def find_trees(

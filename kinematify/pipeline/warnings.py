@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
     from kinematify.config import CompoundConfig, Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.tree import KinematicTree
 
 
 def warnings_of(

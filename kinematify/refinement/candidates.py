@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
     from kinematify.joints.measure.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
     from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
-    from kinematify.topology.tree import KinematicTree
 
 _SAME = np.cos(np.radians(1.0))  # directions that no check tells apart
 

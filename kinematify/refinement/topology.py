@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.topology.tree import KinematicTree
     from kinematify.validation.feedback import EdgeSignal
 
 _SAME = np.cos(np.radians(1.0))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import Pair
     from kinematify.geometry.part_stats import PartStats
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.topology.tree import EdgeEvidence
+    from kinematify.topology.evidence import EdgeEvidence
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,8 +12,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from kinematify.contact.graph import pair
+from kinematify.contact.tree import KinematicTree
 from kinematify.topology.base import rank_bases
-from kinematify.topology.tree import KinematicTree, nearest_pair, virtual_costs
+from kinematify.topology.evidence import nearest_pair, virtual_costs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.assembly.erase import GroundTruth, TrueJoint
+from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import JointScore, ObjectScore, score_object
 from kinematify.evaluation.prediction import NOTHING_PREDICTED, Prediction, prediction_of
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.tree import KinematicTree
 
 X, Y, Z = np.eye(3)
 CENTROIDS = [np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5])]

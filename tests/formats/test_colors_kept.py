@@ -23,6 +23,7 @@ from benchmarks.studies.colors import (
 )
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
+from kinematify.contact.tree import KinematicTree
 from kinematify.formats.export import export
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
@@ -32,7 +33,6 @@ from kinematify.render.camera import fit_camera
 from kinematify.render.picture import PictureScene, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly

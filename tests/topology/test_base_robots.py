@@ -13,7 +13,7 @@ from kinematify.contact.graph import pair
 from kinematify.geometry.part_stats import part_stats
 from kinematify.geometry.surface import PartSurface
 from kinematify.topology.base import rank_bases
-from kinematify.topology.tree import EdgeEvidence
+from kinematify.topology.evidence import EdgeEvidence
 from tests.places import BENCH
 
 ROBOTS = ("allegro", "fetch", "go2", "h1", "panda", "ur10e")

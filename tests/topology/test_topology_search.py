@@ -16,6 +16,7 @@ from kinematify.contact.graph import ContactGraph, pair
 from kinematify.errors import InputError
 from kinematify.paper.trees import PaperReward
 from kinematify.pipeline.stages import rank_trees
+from kinematify.topology.evidence import EdgeEvidence, virtual_costs
 from kinematify.topology.reward import TreeReward
 from kinematify.topology.search import (
     SearchProblem,
@@ -26,7 +27,6 @@ from kinematify.topology.search import (
     plausible_bases,
     spanning_edges,
 )
-from kinematify.topology.tree import EdgeEvidence, virtual_costs
 from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
 
 DEFAULT = load_config().topology

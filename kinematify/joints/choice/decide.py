@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import JointsConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.bearings.scores import EdgeBearing
-    from kinematify.joints.candidate import RootedTree
     from kinematify.joints.choice.judge import Judgement
     from kinematify.joints.measure.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 def estimate_joints(
     assembly: Assembly,
     graph: ContactGraph,
-    tree: RootedTree,
+    tree: KinematicTree,
     bearings: Mapping[tuple[int, int], EdgeBearing],
     *,
     config: JointsConfig,
@@ -105,7 +105,7 @@ def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig
 
 def weigh_joints(
     cache: PartCache,
-    tree: RootedTree,
+    tree: KinematicTree,
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearing: EdgeBearing | None,
@@ -138,7 +138,7 @@ def weigh_joints(
 # ---- twins ---------------------------------------------------------------------------------------------------------
 
 
-def leaf_twins(graph: ContactGraph, tree: RootedTree, edge: tuple[int, int]) -> tuple[int, ...]:
+def leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
     """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
     parent, child = edge
     label = graph.cluster_of[child]
@@ -152,7 +152,7 @@ def leaf_twins(graph: ContactGraph, tree: RootedTree, edge: tuple[int, int]) -> 
 
 
 def describe_twins(
-    scene: JointScene, tree: RootedTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
+    scene: JointScene, tree: KinematicTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
 ) -> Siblings:
     """What the twins say about the type."""
     return Siblings(
@@ -162,7 +162,7 @@ def describe_twins(
     )
 
 
-def _gripping(scene: JointScene, tree: RootedTree, twin: BoxFrame) -> bool:
+def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
     """Fingers: no bearing, no panel, standing out of the parent and apart from each other.
 
     At the end of a chain that is enough. On a base, where doors, legs and wheels are twins too, the pair must also be

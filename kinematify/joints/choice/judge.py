@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from kinematify.config import ConfidenceConfig
     from kinematify.contact.graph import ContactGraph
-    from kinematify.joints.candidate import RootedTree
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.joints.measure.measurements import Values
     from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
@@ -291,7 +291,7 @@ def _said_of(word: str, *, otherwise: int | None) -> int | None:
 _LEAST = 1.0e-6  # probability of a type, so that one part alone cannot rule a type out for all
 
 
-def alike_edges(graph: ContactGraph, tree: RootedTree) -> list[list[tuple[int, int]]]:
+def alike_edges(graph: ContactGraph, tree: KinematicTree) -> list[list[tuple[int, int]]]:
     """Edges whose children are congruent, on one parent or on congruent ones, in groups of two or more.
 
     Args:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import FrontCuesConfig, JointsConfig, RailsConfig
-    from kinematify.joints.candidate import RootedTree
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.measure.frames import BoxFrame, Fold
     from kinematify.joints.measure.journal import Journal
     from kinematify.joints.measure.workspace import ContactView, PartCache
@@ -181,7 +181,7 @@ def _prismatic_score(bearing: EdgeBearing | None, config: RailsConfig) -> float:
     return float(strong * leading)
 
 
-def part_frames(cache: PartCache, tree: RootedTree, config: JointsConfig) -> dict[int, BoxFrame]:
+def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
     """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
     root = cache.samples(tree.root)
     body = body_axes(root.normals, root.areas)
@@ -195,7 +195,7 @@ def part_frames(cache: PartCache, tree: RootedTree, config: JointsConfig) -> dic
 
 def joint_scene(
     cache: PartCache,
-    tree: RootedTree,
+    tree: KinematicTree,
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearing: EdgeBearing | None,
@@ -391,7 +391,7 @@ def _stands(cache: PartCache, part: int, config: JointsConfig) -> bool:
 
 
 def _front(
-    cache: PartCache, tree: RootedTree, body: int, frames: Mapping[int, BoxFrame], config: JointsConfig
+    cache: PartCache, tree: KinematicTree, body: int, frames: Mapping[int, BoxFrame], config: JointsConfig
 ) -> FloatArray:
     if not _stands(cache, body, config):
         return np.zeros(3)
@@ -427,7 +427,7 @@ def _inside(cache: PartCache, child: int, frame: BoxFrame, body_box: FloatArray)
     return float(np.all((local > body_box[0] + margin) & (local < body_box[1] - margin), axis=1).mean())
 
 
-def _subtree(tree: RootedTree, part: int) -> set[int]:
+def _subtree(tree: KinematicTree, part: int) -> set[int]:
     found, queue = {part}, [part]
     for node in queue:
         found.update(tree.children[node])
@@ -450,7 +450,7 @@ def _outward(frame: BoxFrame, body_box: FloatArray) -> FloatArray:
     return np.asarray(frame.axes[k] * (1.0 if to_upper < to_lower else -1.0))
 
 
-def _handle(cache: PartCache, tree: RootedTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
+def _handle(cache: PartCache, tree: KinematicTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
     """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
     points = cache.samples(child).points
     local = frame.local(points)
