@@ -1,4 +1,4 @@
-"""Cuts are kept between runs: the same meshes, cut with the same settings, give the same pieces."""
+"""Furniture is cut board by board, all else worst first; the same meshes and settings give pieces kept between runs."""
 
 from __future__ import annotations
 
@@ -60,7 +60,10 @@ def convex_chunks(bodies: Sequence[Concave], cuts: int) -> list[list[Chunk]]:
 
 
 def taken_apart(body: Concave, most: int) -> list[Chunk] | None:
-    """Take the boards of a surface off one after the other.
+    """Take the boards of a surface off one after the other, along the planes of its own faces.
+
+    A cut that halves a cabinet leaves two cabinets; only when all of its boards are off, nothing hollow is left. So the
+    board with the most surface is taken off again and again, and what falls apart is gone on with separately.
 
     Args:
         body: The surface.

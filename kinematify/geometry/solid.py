@@ -239,7 +239,11 @@ _CELLS = 1 << 20  # more cells than an extent has
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Shells:
-    """Triangles of one body, equal corners merged, faces of a patch turned the same way."""
+    """Triangles of one body, equal corners merged, faces of a patch turned the same way.
+
+    A shell counts as closed where its holes are small against its surface. A box of five sheets stays a sheet: what
+    stands in it is not inside it.
+    """
 
     vertices: FloatArray
     """Body frame [m], shape (V, 3)."""

@@ -163,6 +163,8 @@ Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIA
 def sobol(count: int, dimensions: int, seed: int) -> FloatArray:
     """Draw points in the unit cube, scrambled by random lower triangular matrices and a random shift.
 
+    They are those of `scipy.stats.qmc.Sobol`, whose import takes as long as all else that the geometric checks import.
+
     Args:
         count: A power of two keeps them balanced.
         dimensions: Coordinates of each.

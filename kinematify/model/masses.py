@@ -41,6 +41,9 @@ class _Solid:
 def inertial_of(part: Part, origin: FloatArray, *, thickness: float, config: ModelConfig) -> Inertial:
     """Mass properties of a part in a link frame of world orientation.
 
+    A closed mesh is integrated exactly by the divergence theorem; anything else is replaced by its convex hull. The
+    result satisfies what engines demand: positive mass, a positive definite tensor, and the triangle inequality.
+
     Args:
         part: The mesh in world coordinates; may be open, flat or inside out.
         origin: Origin of the link frame in the world frame [m], shape (3,).

@@ -138,7 +138,10 @@ class Compound:
 def compounds(
     assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]], config: CompoundConfig
 ) -> tuple[Compound, ...]:
-    """Find joints that are one mechanism together.
+    """Find joints that are one mechanism together, which a tree of single joints cannot say.
+
+    A cross between two forks makes a universal joint, three axes through one point make a ball joint, two fingers that
+    close on each other are driven as one (``<mimic>``), and a cap on a neck turns and comes off along the same line.
 
     Args:
         assembly: The parts, world frame.

@@ -221,7 +221,12 @@ class _Node:
 
 
 class TreeSearch:
-    """One search from one root; `rewards` holds every complete tree that was seen."""
+    """Monte Carlo tree search from one root (paper III-C: state, actions, transition, UCT, greedy rollouts).
+
+    A state is a partial tree that grows from the root; an action adds one edge. The same partial tree is reached by many
+    orders of actions, so statistics are kept per set of edges, and a set whose completions have all been seen is closed:
+    a small problem is solved exactly. `rewards` holds every complete tree that was seen.
+    """
 
     def __init__(
         self, problem: SearchProblem, *, exploration: float, normalise: bool, seed: int, warm: Sequence[Parents] = ()

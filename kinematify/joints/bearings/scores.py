@@ -1,4 +1,4 @@
-"""How much of the evidence near a contact turns into itself about a line."""
+"""How much of the evidence near a contact turns into itself about a line, or slides along itself in a direction."""
 
 from __future__ import annotations
 
@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rail:
-    """The direction along which a contact could slide, with its support on either part (each in [0, 1])."""
+    """The direction along which a contact could slide; the counterpart of a bearing.
+
+    Area whose normals lie across the direction slides along itself (slippage of Gelfand and Guibas for a translation),
+    and straight edges along it are what guides, columns and telescopes leave; a rail needs both, on both parts.
+    """
 
     axis: FloatArray
     """Unit direction, world frame, shape (3,). Read-only."""

@@ -265,7 +265,7 @@ _TOKEN = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 
 
 def kind_said(name: str) -> int | None:
-    """FIXED, TURN or SLIDE where a word of the name says so, None where none does.
+    """FIXED, TURN or SLIDE where a word of the name says so, None where none does: a drawer slides, a door turns.
 
     The last word that says something decides, as in "oven door" and "drawer_2". Names with a word such as "handle"
     say nothing: those of doors turn, those of drawers are fixed.

@@ -1,8 +1,12 @@
-"""Which way a turning joint opens: the fitted answer.
+"""Three fitted answers beside the choice: which way a turn opens, whether it has an end, and what is fixed.
 
 Gradient-boosted trees (Friedman 2001) read what is measured towards either side, as the difference of both and their
 mean. With f for their sum, the log odds that the axis opens as it is are f(difference) - f(-difference), so that an
-axis and its opposite get opposite answers.
+axis and its opposite get opposite answers. Conventions decide where neither side opens.
+
+Whether a turn goes round is read from what is measured of it alone, not from what else was proposed nor from cues.
+Whether a part is fixed to the one that carries it (handles, feet, shelves) is asked apart from which joint it is,
+because objects teach the two apart; it is read from the turn and the slide that cues rank first.
 """
 
 from __future__ import annotations

@@ -1,10 +1,14 @@
-"""The third voice of the fitted choice: a small network that looks at points of both parts, as each joint moves them.
+"""The two small networks of the fitted choice, evaluated in numpy; what fitted them is not needed.
 
-For every hypothesis the points of an edge (`joints.measure.cloud`) are put into the frame of its line, so that what is
-learned holds whichever way an object stands: along the line, out to the child's middle, aside. Each point is embedded
-on its own; mean and greatest of the child's points, of the parent's and of the rest make the hypothesis (PointNet, Qi
-et al. 2017), which is then scored beside the others of its edge as in `network.py`. Evaluated in numpy; what fitted it
-is not needed.
+The first reads what is measured of all hypotheses of an edge at once. Each is embedded on its own; the mean and the
+greatest of what all of them say stand beside it when it is scored (deep sets, Zaheer et al. 2017). It is asked twice,
+with what the weighted cues say and without, and several networks that began elsewhere are averaged, all in log
+probability.
+
+The second looks at points of both parts, as each joint moves them. For every hypothesis the points of an edge are put
+into the frame of its line, so that what is learned holds whichever way an object stands: along the line, out to the
+child's middle, aside. Each point is embedded on its own; mean and greatest of the child's points, of the parent's and
+of the rest make the hypothesis (PointNet, Qi et al. 2017), which is then scored beside the others as in the first.
 """
 
 from __future__ import annotations

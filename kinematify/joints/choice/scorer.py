@@ -1,7 +1,7 @@
 """The fitted choice: one score for every hypothesis of an edge, from what is measured of it.
 
-Gradient-boosted trees (Friedman 2001), a small network that reads the same (`network.py`) and one that looks at points
-of both parts (`point_network.py`), all fitted listwise: with scores s_i of the hypotheses of an edge, the probability
+Gradient-boosted trees (Friedman 2001), a small network that reads the same and one that looks at points of both parts
+(`point_network.py`) were fitted listwise: with scores s_i of the hypotheses of an edge, the probability
 of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the likelihood of the right ones. So type, line and
 confidence come out at once. Each errs where the others do not; the mean of their log probabilities is what counts.
 Evaluated in numpy; what fitted them is not needed.

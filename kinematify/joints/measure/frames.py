@@ -207,7 +207,11 @@ def _dense_span(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fold:
-    """A front of two halves that lean opposite ways, world frame."""
+    """A front of two halves that lean opposite ways, as a rocker's do, world frame.
+
+    Each half lies level with the frame when the other one is pressed. Doors, lids and buttons are flat, bulge evenly or
+    slope one way; the fold shows that the part turns and where, and the angle between the halves is its stroke.
+    """
 
     axis: FloatArray
     """Unit direction of the fold, shape (3,)."""

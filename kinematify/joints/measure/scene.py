@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 def foot_side(part: BoxFrame, body: FloatArray, config: FrontCuesConfig) -> FloatArray:
     """Unit level direction from the middle of a body to a small part at one side of its foot, else zero, shape (3,).
 
+    A pedal is where the user's foot is, in front. A bin on two wheels is tipped back onto them, so they are behind.
+
     Args:
         part: Box frame of the part.
         body: Bounds of the body in the world frame [m], shape (2, 3).

@@ -170,7 +170,11 @@ def _fractions(cache: PartCache, ends: FloatArray, obstacles: Sequence[int]) -> 
 
 @dataclass(frozen=True, kw_only=True)
 class Clearance:
-    """Way that the contact can go before it is stopped, the longer of both directions."""
+    """Way that the contact itself can go before it is stopped, the longer of both directions.
+
+    Sweeps of a whole part skip the first steps, because meshes overlap where parts touch. Keys, splines, skirts, grooves
+    and beads decide within them, so that the samples near the other part are swept without that grace.
+    """
 
     turn: float
     """Length of the arc at the contact's mean radius [m]; inf where it is not stopped."""
