@@ -17,7 +17,7 @@ from trimesh.intersections import slice_faces_plane
 from kinematify.assembly.assemble import simplified
 from kinematify.assembly.part import Assembly, Part
 from kinematify.evaluation.metrics import Prediction
-from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.surface import PartSurface
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.weld import welded

@@ -19,9 +19,8 @@ from kinematify.evaluation.job import CLEAN, degraded, erased_item, shown_parts
 from kinematify.evaluation.metrics import CLOSE_ANGLE, axis_angle
 from kinematify.evaluation.record import document, replace_text
 from kinematify.evaluation.run import jobs_of
-from kinematify.model.scene import GLYPH_COLORS, camera_for
+from kinematify.model.scene import GLYPH_COLORS, camera_for, sliding_arrow, turning_arrow
 from kinematify.pipeline import infer
-from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion

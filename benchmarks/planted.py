@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.erase import ErasedModel
+from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.job import predicted, score_erased, shown_parts
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.joints.candidate import JointCandidate, JointEstimate
@@ -20,7 +21,6 @@ from kinematify.pipeline import Inference, infer
 from kinematify.pipeline.stages import choose_joints
 from kinematify.refinement.candidates import CandidateJoints
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -16,7 +16,7 @@ from kinematify.envs.goal import OPEN_BOUND, PLACE_BOUND, SPEED_BOUND
 from kinematify.envs.mujoco_worlds import ROBOT, MujocoArm
 from kinematify.envs.picture import Piece
 from kinematify.envs.robot_plan import env_robot, robot_plan
-from kinematify.geometry.hull import convex_hull
+from kinematify.geometry.convex import convex_hull
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from kinematify.geometry.scene import Scene
     from kinematify.manipulation.robot import TaskRobot
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,7 +44,7 @@ class EnvRobot:
     """Of that file."""
 
     @property
-    def mechanism(self) -> Mechanism:
+    def mechanism(self) -> LeaderMechanism:
         """Its tree."""
         return self.scene.mechanism
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part
     from kinematify.config import load_config
     from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.tree import KinematicTree
     from kinematify.errors import KinematifyError
     from kinematify.formats.export import export
     from kinematify.joints.candidate import JointCandidate
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from kinematify.pipeline.inference import Inference
     from kinematify.pipeline.record import write_inference
     from kinematify.refinement.loop import Refinement, refine
-    from kinematify.topology.tree import KinematicTree
     from kinematify.validation.finding import Finding
     from kinematify.validation.report import ValidationReport
     from kinematify.validation.run import validate
@@ -60,7 +60,7 @@ _HOMES = {
     "Inference": "kinematify.pipeline",
     "JointCandidate": "kinematify.joints.candidate",
     "KinematicModel": "kinematify.model.kinematic_model",
-    "KinematicTree": "kinematify.topology.tree",
+    "KinematicTree": "kinematify.contact.tree",
     "KinematifyError": "kinematify.errors",
     "LoadedModel": "kinematify.view.loaded",
     "Part": "kinematify.assembly.part",

@@ -12,8 +12,7 @@ from PIL import Image
 from scipy.spatial import cKDTree
 
 from kinematify.errors import KinematifyError
-from kinematify.robot.appearance import Appearance, Material, Texture, plain
-from kinematify.robot.colors import srgb_of
+from kinematify.robot.appearance import Appearance, Material, Texture, plain, srgb_of
 from kinematify.robot.mesh_file import TO_Z_UP, RawMesh, merged, read_meshes
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics

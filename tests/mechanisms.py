@@ -9,11 +9,11 @@ import trimesh
 
 from kinematify.assembly.part import Assembly, Part, SetAside
 from kinematify.config import load_config
+from kinematify.contact.tree import KinematicTree
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.kinematic_model import KinematicModel
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.tree import KinematicTree
 
 CONFIG = load_config()
 

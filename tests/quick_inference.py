@@ -11,9 +11,9 @@ import time
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
+from kinematify.contact.tree import KinematicTree
 from kinematify.joints.candidate import JointEstimate
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly

@@ -130,7 +130,7 @@ def test_relative_imports_are_refused() -> None:
         ("kinematify.config", "import kinematify.assembly.part"),
         ("kinematify.paper.cavl", "def f():\n    from kinematify.cli import main"),
         ("kinematify.contact.build", "if TYPE_CHECKING:\n    from kinematify.topology.tree import KinematicTree"),
-        ("kinematify.validation.run", "from kinematify.topology.mcts import search"),
+        ("kinematify.validation.run", "from kinematify.topology.search import search"),
         ("kinematify.model.urdf", "from kinematify import infer"),
         ("kinematify.model.urdf", "importlib.import_module('kinematify.pipeline.infer')"),
         ("kinematify.cli.bench", "from benchmarks.study import load_study"),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from kinematify.robot.joint_type import FREE_KINDS
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import GRAVITY
 from kinematify.simulation.engines import ENGINES, load_file
@@ -75,9 +75,9 @@ class AsLoadedContext:
         return read_robot(self.request.urdf, geometry="none")
 
     @cached_property
-    def mechanism(self) -> Mechanism:
+    def mechanism(self) -> LeaderMechanism:
         """The tree."""
-        return Mechanism(robot=self.robot)
+        return LeaderMechanism(robot=self.robot)
 
     @cached_property
     def loading(self) -> LoadedFile | Unloadable:

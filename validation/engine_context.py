@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from kinematify.model.collision_pieces import Method
-from kinematify.robot.mechanism import Mechanism, sweep_rows
+from kinematify.robot.mechanism import LeaderMechanism, sweep_rows
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import EnginePoses, agreement_configurations, write_poses
 from kinematify.simulation.contacts import touching
@@ -99,9 +99,9 @@ class EngineContext:
         return model_of(self.request)
 
     @cached_property
-    def mechanism(self) -> Mechanism:
+    def mechanism(self) -> LeaderMechanism:
         """The tree."""
-        return Mechanism(robot=self.declared)
+        return LeaderMechanism(robot=self.declared)
 
     @cached_property
     def engine(self) -> Engine:

@@ -12,7 +12,7 @@ from lxml import etree
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.model.inertia import inertial_of
+from kinematify.model.masses import inertial_of
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:

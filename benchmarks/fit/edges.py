@@ -14,10 +14,10 @@ from benchmarks.fit.examples import content_key
 from kinematify.contact.build import build_contact_graph
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.joints.choice.edges import FORMAT, MEASUREMENTS, EdgeWeights, edge_measurements, edge_probabilities
-from kinematify.joints.hypotheses.bearing import fit_bearings
 from kinematify.joints.measure.pins import find_pins
-from kinematify.topology.spanning import maximum_spanning_edges
+from kinematify.topology.search import maximum_spanning_edges
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,19 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.contact.build import build_contact_graph
+from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import opening_sign
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.joints.candidate import JointType
 from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.choice.judge import cues_of, hypotheses_of, rightness, verdicts_of
-from kinematify.joints.choice.twins import alike_edges
-from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.joints.measure.cloud import Cloud, point_cloud
+from kinematify.joints.choice.judge import alike_edges, cues_of, hypotheses_of, rightness, verdicts_of
+from kinematify.joints.choice.opening import measure_sides
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure_groups
-from kinematify.joints.measure.opening_direction import measure_sides
 from kinematify.joints.measure.scene import part_frames
-from kinematify.joints.measure.workspace import PartCache
-from kinematify.topology.tree import KinematicTree
+from kinematify.joints.measure.workspace import Cloud, PartCache, point_cloud
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -24,9 +24,8 @@ from benchmarks.fit.trees import (
     turns_of,
 )
 from kinematify.config import load_config
-from kinematify.joints.choice.judge import Judgement, lead_of
+from kinematify.joints.choice.judge import Judgement, agreed, lead_of
 from kinematify.joints.choice.opening import opening_odds
-from kinematify.joints.choice.twins import agreed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.joints.choice.network import Network, Scale
+from kinematify.joints.choice.point_network import Network, Scale
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

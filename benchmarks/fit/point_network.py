@@ -15,8 +15,8 @@ from kinematify.joints.choice.point_network import (
     point_groups,
     point_inputs,
 )
-from kinematify.joints.measure.cloud import CHILD
 from kinematify.joints.measure.measurements import FIXED
+from kinematify.joints.measure.workspace import CHILD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from torch import Tensor, nn
 
     from benchmarks.fit.examples import Example
-    from kinematify.joints.measure.cloud import Cloud
+    from kinematify.joints.measure.workspace import Cloud
     from kinematify.robot.arrays import FloatArray
 
 PARAMETERS = {

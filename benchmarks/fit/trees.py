@@ -17,10 +17,8 @@ from benchmarks.fit.network import fit_network
 from benchmarks.fit.point_network import PARAMETERS as POINT_PARAMETERS
 from benchmarks.fit.point_network import fit_points
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.joints.choice.opening import side_columns
-from kinematify.joints.choice.rigid import rigid_columns
+from kinematify.joints.choice.opening import rigid_columns, side_columns, turning_columns
 from kinematify.joints.choice.scorer import FORMAT, NETWORK, POINTS, SUMMARIES, Scorer, base_columns, stacked
-from kinematify.joints.choice.turning import turning_columns
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

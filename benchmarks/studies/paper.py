@@ -129,7 +129,7 @@ def searched_trees(asked: PosedObject) -> Record:
     base_config = load_config("paper")
     sdf = base_config.sdf.model_copy(update={"kind": asked.sdf})
     # torch takes seconds to import, and exact gaps do without it.
-    from kinematify.paper.contacts import field_gaps  # noqa: PLC0415
+    from kinematify.paper.sdf import field_gaps  # noqa: PLC0415
 
     by_fields = field_gaps(assembly, base_config.model_copy(update={"sdf": sdf}))
     graphs = {
@@ -187,7 +187,7 @@ def judged_joints(asked: PosedObject) -> Record:
     """Every joint of the true tree of one object by both objectives."""
     # torch takes seconds to import, and the trees do without it.
     from kinematify.paper.cavl import cavl_scene  # noqa: PLC0415
-    from kinematify.paper.field_source import field_source  # noqa: PLC0415
+    from kinematify.paper.sdf import field_source  # noqa: PLC0415
 
     erased = erased_item(asked.item, asked.condition)
     assembly = shown_parts(erased)

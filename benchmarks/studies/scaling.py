@@ -21,7 +21,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.evaluation.job import INFER, imported
 from kinematify.evaluation.record import table
-from kinematify.pipeline.clock import peak_mb
+from kinematify.pipeline.infer import peak_mb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

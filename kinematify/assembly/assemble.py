@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +12,6 @@ import igl
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.assembly.names import part_names
 from kinematify.assembly.part import Assembly, Part, SetAside
 from kinematify.errors import AssemblyError
 from kinematify.robot.appearance import MAX_MATERIALS
@@ -24,6 +25,50 @@ if TYPE_CHECKING:
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
     from kinematify.robot.mesh_file import RawMesh
+
+
+_LONGEST = 64
+"""Characters; names go into file names, and engines have crashed on long ones."""
+_RESERVED = ("world",)
+"""MuJoCo, Gazebo and URDF tools give this name to the fixed frame."""
+
+
+def part_names(originals: Sequence[str]) -> tuple[str, ...]:
+    """Return unique names of ASCII letters, digits, ``_``, ``-`` and ``.``, as near to the originals as possible.
+
+    Names that clash get a number: the first keeps its name. Upper and lower case count as equal, because the names
+    become file names.
+
+    Args:
+        originals: What the input calls the parts, in order.
+    """
+    taken: set[str] = set()
+    names = []
+    for original in originals:
+        wanted = _plain(original)
+        name, count = wanted, 1
+        while name.casefold() in taken:
+            count += 1
+            name = f"{wanted}_{count}"
+        taken.add(name.casefold())
+        names.append(name)
+    return tuple(names)
+
+
+def _plain(original: str) -> str:
+    # Decomposed, an accented letter is a plain one and a mark, and the mark goes.
+    letters = "".join(c for c in unicodedata.normalize("NFKD", original) if not unicodedata.combining(c))
+    name = re.sub(r"[^A-Za-z0-9_.-]+", "_", letters).strip("_.-")[:_LONGEST]
+    if not name:
+        return "part"
+    return f"{name}_part" if name.casefold() in _RESERVED else name
+
+
+def natural_key(name: str) -> tuple[tuple[int, int, str], ...]:
+    """Return a sorting key under which ``part_10`` comes after ``part_9``."""
+    words = re.split(r"(\d+)", name)
+    return tuple((0, int(word), word) if word.isdecimal() else (1, 0, word) for word in words)
+
 
 _MANY_TIMES, _CELLS = 10, 400
 """A part of so many times the faces that it may have is first thinned out on a grid of cells along its diagonal."""
@@ -57,7 +102,9 @@ def assemble(
     return Assembly(
         parts=tuple(thin),
         source=source,
-        set_aside=tuple(_set_aside(part, reason, triage.kept) for part, reason in triage.aside),
+        set_aside=tuple(
+            SetAside(part=part, reason=reason, nearest=_nearest(part, triage.kept)) for part, reason in triage.aside
+        ),
         original_names=dict(zip(names, (mesh.name for mesh in meshes), strict=True)),
         warnings=(*warnings, *_told_looks(meshes, names), *triage.warnings, *_thinning_warnings(thin, originals)),
         originals=originals,
@@ -199,10 +246,6 @@ def _too_few(source: str, triage: _Triage) -> str:
         f"The input {source} has {len(triage.kept)} usable part, but a mechanism needs at least two.{aside} Give one "
         "mesh per rigid part; one mesh that holds several needs --labels, or pieces that do not share vertices."
     )
-
-
-def _set_aside(part: Part, reason: str, kept: Sequence[Part]) -> SetAside:
-    return SetAside(part=part, reason=reason, nearest=_nearest(part, kept))
 
 
 def _nearest(part: Part, kept: Sequence[Part]) -> str:

@@ -7,36 +7,33 @@ cross of a universal joint) are no parts: the joints on both sides of them becom
 
 from __future__ import annotations
 
+import shutil
+import tempfile
 from collections import Counter
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.bake import baked
-from kinematify.assembly.erased_files import truth_path, write_parts
 from kinematify.assembly.part import Assembly, Part
+from kinematify.assembly.pieces import baked
 from kinematify.assembly.truth import GroundTruth, TrueJoint
-from kinematify.errors import DescriptionError
+from kinematify.errors import DescriptionError, OutputError
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import (
-    Robot,
-    forward_kinematics,
-    joint_values,
-    rest_configuration,
-    rigid_groups,
-)
+from kinematify.robot.obj_file import write_obj
+from kinematify.robot.robot import Robot, forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping, Sequence
-    from pathlib import Path
 
     from numpy.random import Generator
 
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.mesh_file import RawMesh
     from kinematify.robot.robot import Joint, RigidGroup
+
 
 __all__ = ["ErasedModel", "GroundTruth", "TrueJoint", "erase", "truth_path", "write_erased"]
 
@@ -250,3 +247,57 @@ def _way(
     climb = [_Step(joint, False) for joint in root_upward if joint.name not in shared]
     descent = [_Step(joint, True) for joint in reversed(upward) if joint.name not in shared]
     return _Way(root, (*climb, *descent))
+
+
+TRUTH_SUFFIX = ".truth.json"
+"""Files that end so are the benchmark's business; `load_assembly` opens none of them."""
+
+
+def truth_path(folder: Path) -> Path:
+    """Return where the truth about the parts in `folder` is kept."""
+    absolute = folder.absolute()
+    return absolute.with_name(absolute.name + TRUTH_SUFFIX)
+
+
+def write_parts(parts: Sequence[Part], truth: GroundTruth, folder: Path) -> Path:
+    """Write one OBJ per part into a new folder, without loss, and the truth beside the folder.
+
+    Args:
+        parts: The anonymous parts.
+        truth: What is known about them.
+        folder: Does not exist yet, or is empty.
+
+    Returns:
+        The path of the truth, ``FOLDER.truth.json``.
+
+    Raises:
+        OutputError: The folder or the truth exists already, or cannot be written. Nothing is left half-written.
+    """
+    target, truth_file = folder.absolute(), truth_path(folder)
+    if truth_file.exists() or (target.exists() and not (target.is_dir() and not any(target.iterdir()))):
+        raise OutputError(
+            f"The output {folder} (or the truth {truth_file.name} beside it) exists already. Remove both, or give "
+            "another folder."
+        )
+    try:
+        _write_aside_and_rename(parts, truth, target, truth_file)
+    except OSError as error:
+        raise OutputError(
+            f"The output {folder} cannot be written ({error.strerror}). Give a folder that you may write to, on a disk "
+            "with space."
+        ) from error
+    return truth_file
+
+
+def _write_aside_and_rename(parts: Sequence[Part], truth: GroundTruth, target: Path, truth_file: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    try:
+        (aside / "parts").mkdir()
+        for part in parts:
+            write_obj(aside / "parts" / f"{part.name}.obj", part.vertices, part.faces)
+        (aside / "truth").write_text(truth.to_json(), encoding="utf-8")
+        (aside / "truth").rename(truth_file)
+        (aside / "parts").rename(target)
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import math
+import stat
 import tempfile
+import zipfile
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.assembly.archive import check_packed_mesh, unpack
-from kinematify.assembly.assemble import assemble, check_finite
-from kinematify.assembly.bake import baked
-from kinematify.assembly.names import natural_key
-from kinematify.assembly.pieces import connected_pieces, labelled_parts
+from kinematify.assembly.assemble import assemble, check_finite, natural_key
+from kinematify.assembly.pieces import baked, connected_pieces, labelled_parts
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.lengths import length_text
 from kinematify.robot.mesh_file import RawMesh, merged, read_meshes
-from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES
+from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics, rest_configuration, rigid_groups
 
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import AssemblyConfig
     from kinematify.robot.arrays import FloatArray
+
 
 _TO_Z_UP = {
     "x": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
@@ -167,7 +167,11 @@ def _folder(folder: Path, reading: _Reading) -> _Given:
             f"The folder {folder} holds {len(files)} mesh files; at most {reading.config.max_parts} parts are accepted "
             "(assembly.max_parts). Join what is rigid."
         )
-    ignored = [entry.name for entry in visible if entry not in files and _is_noticed(entry)]
+    ignored = [
+        entry.name
+        for entry in visible
+        if entry not in files and (entry.is_dir() or entry.suffix.lower() not in _SILENT_SUFFIXES)
+    ]
     warnings = (f"Not read, because they are no mesh files: {', '.join(ignored[:20])}.",) if ignored else ()
     meshes = tuple(_whole_file(file, reading) for file in files)
     return _Given(meshes=meshes, warnings=warnings, up_by_standard=_up_by_standard(files, reading))
@@ -179,15 +183,11 @@ def _instead(entries: list[Path]) -> str:
     return f", or give the description {urdf} itself" if urdf else ""
 
 
-def _is_noticed(entry: Path) -> bool:
-    return entry.is_dir() or entry.suffix.lower() not in _SILENT_SUFFIXES
-
-
 def _whole_file(path: Path, reading: _Reading) -> RawMesh:
     """All that a file holds as one part; an empty mesh stays, to be set aside by name."""
     meshes = _read(path, reading, empty_ok=True)
     if not meshes:
-        return _empty(path.stem)
+        return RawMesh(name=path.stem, vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int64))
     return replace(merged(meshes, path.stem), unit=meshes[0].unit)
 
 
@@ -265,10 +265,6 @@ def _upright(mesh: RawMesh, up: str) -> RawMesh:
     return mesh.moved(np.array(_TO_Z_UP[up], dtype=np.float64))
 
 
-def _empty(name: str) -> RawMesh:
-    return RawMesh(name=name, vertices=np.empty((0, 3)), faces=np.empty((0, 3), dtype=np.int64))
-
-
 def _unit_warnings(meshes: tuple[RawMesh, ...]) -> tuple[str, ...]:
     units = sorted({mesh.unit for mesh in meshes if mesh.unit and not mesh.unit.startswith("meter")})
     return tuple(
@@ -319,3 +315,88 @@ def _metres(unit: str) -> str:
     """The number for --scale, as a word where the unit is not known."""
     known = _UNITS.get(unit.rstrip("s"))
     return "METRES_PER_UNIT" if known is None else f"{known:g}"
+
+
+WANTED_SUFFIXES = (*MESH_SUFFIXES, *CAD_SUFFIXES, ".bin", ".urdf")
+"""Files that an assembly can consist of; nothing else is unpacked."""
+_CHUNK = 1 << 20
+
+
+def unpack(archive: Path, folder: Path, max_bytes: int) -> None:
+    """Unpack the meshes of a ZIP into an existing folder, keeping its subfolders.
+
+    Args:
+        archive: The ZIP.
+        folder: Where to.
+        max_bytes: Cap on the unpacked size, as declared and as found.
+
+    Raises:
+        AssemblyError: It is no ZIP, is damaged or encrypted, names a file outside itself, holds a link, or is too big.
+    """
+    try:
+        with zipfile.ZipFile(archive) as opened:
+            entries = [entry for entry in opened.infolist() if not entry.is_dir()]
+            for entry in entries:
+                _check_entry(archive, entry)
+            _check_size(archive, sum(entry.file_size for entry in entries), max_bytes)
+            _extract(archive, opened, [entry for entry in entries if _is_wanted(entry.filename)], folder, max_bytes)
+    # zipfile raises NotImplementedError where it does not know the compression, RuntimeError where one is encrypted.
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, NotImplementedError, RuntimeError, OSError) as error:
+        raise AssemblyError(
+            f"The archive {archive} cannot be unpacked ({error}). It may be damaged: pack the mesh files again."
+        ) from error
+
+
+def check_packed_mesh(path: Path, max_bytes: int) -> None:
+    """Refuse a 3MF, which is a ZIP inside, that would unpack to more than `max_bytes`.
+
+    Raises:
+        AssemblyError: It is too big. A damaged file passes: reading it gives the better message.
+    """
+    try:
+        with zipfile.ZipFile(path) as opened:
+            declared = sum(entry.file_size for entry in opened.infolist())
+    except (zipfile.BadZipFile, OSError):
+        return
+    _check_size(path, declared, max_bytes)
+
+
+def _check_entry(archive: Path, entry: zipfile.ZipInfo) -> None:
+    name = entry.filename.replace("\\", "/")
+    outside = name.startswith("/") or ".." in name.split("/") or ":" in name.split("/")[0]
+    if outside or stat.S_ISLNK(entry.external_attr >> 16):
+        raise AssemblyError(
+            f"The archive {archive} holds {entry.filename!r}, which leads outside of the archive. Pack plain files "
+            "with relative paths only; do not trust this archive."
+        )
+    if entry.flag_bits & 1:
+        raise AssemblyError(f"The archive {archive} is encrypted. Unpack it yourself and give the folder.")
+
+
+def _check_size(archive: Path, found: int, allowed: int) -> None:
+    if found > allowed:
+        raise AssemblyError(
+            f"The archive {archive} unpacks to more than {allowed} bytes (assembly.max_archive_bytes). Simplify the "
+            "meshes, or raise the limit in the configuration if you trust the archive."
+        )
+
+
+def _is_wanted(name: str) -> bool:
+    path = PurePosixPath(name.replace("\\", "/"))
+    # Dot files and __MACOSX hold attributes of the machine that packed the archive.
+    hidden = any(word.startswith((".", "__MACOSX")) for word in path.parts)
+    return not hidden and path.suffix.lower() in WANTED_SUFFIXES
+
+
+def _extract(
+    archive: Path, opened: zipfile.ZipFile, entries: Sequence[zipfile.ZipInfo], folder: Path, max_bytes: int
+) -> None:
+    total = 0
+    for entry in entries:
+        target = folder.joinpath(*PurePosixPath(entry.filename.replace("\\", "/")).parts)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with opened.open(entry) as source, target.open("wb") as sink:
+            while chunk := source.read(_CHUNK):
+                total += len(chunk)
+                _check_size(archive, total, max_bytes)  # what a file declares need not be true
+                sink.write(chunk)

@@ -19,8 +19,7 @@ from kinematify.config.validation import ValidationSettings
 from kinematify.errors import InputError, KinematifyError, OutputError
 from kinematify.formats.export import export
 from kinematify.model.output import MODEL_FILE
-from kinematify.pipeline.clock import StageClock, peak_mb
-from kinematify.pipeline.infer import infer
+from kinematify.pipeline.infer import StageClock, infer, peak_mb
 from kinematify.pipeline.record import write_inference_files
 from kinematify.processes.pool import sentence
 from kinematify.refinement.loop import refine

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from kinematify.batch.source import Source
     from kinematify.config import Config
     from kinematify.config.validation import ValidationSettings
-    from kinematify.pipeline.clock import Progress
+    from kinematify.pipeline.infer import Progress
     from kinematify.processes.pool import Executor
 
 OBJECTS = "objects"

@@ -33,9 +33,8 @@ if TYPE_CHECKING:
     from kinematify.config import SeamConfig
     from kinematify.contact.graph import Pair
     from kinematify.geometry.surface import PartSurface
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
-    BoolArray = NDArray[np.bool_]
 _LINE = 1e-3  # what is narrower than this share of its length is a line
 _SMOOTH = np.cos(np.radians(30.0))  # facets of a cylinder of 12 sides go on
 

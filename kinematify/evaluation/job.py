@@ -14,7 +14,7 @@ from kinematify.assembly.part import Assembly
 from kinematify.config import Config
 from kinematify.evaluation.datasets import BenchObject, Condition
 from kinematify.evaluation.metrics import NOTHING_PREDICTED, ObjectScore, Prediction, prediction_of, score_object
-from kinematify.pipeline.clock import peak_mb
+from kinematify.pipeline.infer import peak_mb
 from kinematify.processes.pool import sentence
 from kinematify.robot.read import read_robot
 

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.assembly.truth import GroundTruth, TrueJoint
+    from kinematify.contact.tree import KinematicTree
     from kinematify.generate.blueprint import Blueprint
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.tree import KinematicTree
 
 FULL_TURN = 2.0 * math.pi
 ONE_SIDED = 0.5

@@ -9,7 +9,7 @@ import trimesh
 from PIL import Image
 
 from kinematify.formats.content import shown_surfaces
-from kinematify.robot.colors import linear_of
+from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

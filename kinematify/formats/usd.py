@@ -9,7 +9,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics, UsdShade
 
 from kinematify.errors import OutputError
 from kinematify.formats.content import GREY, shown_surfaces
-from kinematify.robot.colors import linear_of
+from kinematify.robot.appearance import linear_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.material_files import write_texture
 from kinematify.robot.robot import forward_kinematics

@@ -18,18 +18,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from kinematify.geometry.convex import ConvexPiece
-from kinematify.geometry.hull import convex_hull
+from kinematify.geometry.convex import ConvexPiece, convex_hull
+from kinematify.robot.transforms import rotation_about
 from kinematify.robot.vectors import all_three, crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    from kinematify.robot.arrays import FloatArray, IntArray
-
-    BoolArray = NDArray[np.bool_]
     FreeEnd = Callable[[int, int, int, float], float]
     """Value up to which two bodies may be kept apart on one side of a sweep [rad or m]: sweep, body, body, its sign."""
 
@@ -62,7 +59,7 @@ _CACHED = 200_000
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Sweep:
+class SweptJoint:
     """The motion of one joint from rest, others at rest, in the world frame."""
 
     moved: frozenset[int]
@@ -81,10 +78,7 @@ class Sweep:
         """Rotations (n, 3, 3) and translations (n, 3) of what moves, at values (n,) [rad or m]."""
         if not self.turns:
             return np.broadcast_to(np.eye(3), (len(values), 3, 3)), values[:, None] * self.axis
-        x, y, z = self.axis
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        sine, versine = np.sin(values)[:, None, None], (1.0 - np.cos(values))[:, None, None]
-        rotations = np.eye(3) + sine * cross + versine * (cross @ cross)
+        rotations = rotation_about(self.axis, values)
         return rotations, self.pivot - rotations @ self.pivot
 
     def radius(self, points: FloatArray) -> float:
@@ -181,7 +175,7 @@ class _Polytope:
 def carved(
     bodies: Sequence[Sequence[ConvexPiece]],
     surfaces: Sequence[FloatArray],
-    sweeps: Sequence[Sweep],
+    sweeps: Sequence[SweptJoint],
     free_end: FreeEnd,
     *,
     clearance: float,
@@ -243,7 +237,7 @@ class _Clearing:
         alive: list[list[_Polytope]],
         volumes: Sequence[float],
         extents: Sequence[float],
-        sweep: Sweep,
+        sweep: SweptJoint,
         free_end: Callable[[int, int, float], float],
         *,
         clearance: float,
@@ -351,7 +345,7 @@ class _Clearing:
 class _Path:
     """One sweep in steps."""
 
-    def __init__(self, sweep: Sweep, moving: Sequence[_Polytope], clearance: float) -> None:
+    def __init__(self, sweep: SweptJoint, moving: Sequence[_Polytope], clearance: float) -> None:
         """Choose steps whose arcs rise over their chords by at most a third of the clearance, and one at rest."""
         self._sweep, self._clearance = sweep, clearance
         count = _LEAST_STEPS

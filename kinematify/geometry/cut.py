@@ -60,7 +60,7 @@ _COARSE_CELLS = 40
 """Cells of the grid on which meshes are thinned out that cannot be simplified."""
 
 
-class Surface:
+class CutSurface:
     """A mesh that pieces are compared with."""
 
     def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
@@ -129,7 +129,7 @@ class Surface:
 class Concave:
     """A surface that is to be cut."""
 
-    surface: Surface
+    surface: CutSurface
     """What hulls are compared with."""
     tolerance: float
     """How far they may reach beyond it [m]."""

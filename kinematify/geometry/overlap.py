@@ -11,13 +11,10 @@ from kinematify.geometry.scene import inverse, transformed
 from kinematify.robot.vectors import all_three, lengths_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.geometry.solid import Solid
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    BoolArray = NDArray[np.bool_]
 
 _POINTS = 100_000  # asked about at a time: 10 MB
 _SOME = 16  # every so many of a body's points are asked about first: of what is near, most are
@@ -25,7 +22,7 @@ _FEW = 0.03  # of the points: trims of sheets that stick in one another at rest 
 _SHRINK = 0.01  # surfaces that slide on one another must not count as crossed by a rounding error
 
 
-class Overlap:
+class OverlapQueries:
     """Asks FCL and the signed distances; a pose is that of the second body in the frame of the first one."""
 
     def __init__(self, scene: Scene) -> None:
@@ -144,7 +141,7 @@ def _reach_into(body: Solid, other: Solid, T: FloatArray) -> FloatArray:
 
 
 def _passed(body: Solid, other: Solid, T: FloatArray, hit: BoolArray, grace: float) -> FloatArray:
-    """`Overlap.passed` for the walls of `body` and the points of `other`."""
+    """`OverlapQueries.passed` for the walls of `body` and the points of `other`."""
     path = _posed(other.points + _SHRINK * (other.middle - other.points), T)
     few = max(1, int(_FEW * path.shape[1]))
     near = all_three((path.min(axis=0) <= body.high) & (path.max(axis=0) >= body.low))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
 _OFFSET = 2e-5  # of the scene's size: rays that start on a surface must not meet it again in float32
 _WELD = 1e-6  # of the scene's size: corners closer than this are one vertex for smooth shading
@@ -35,7 +35,7 @@ class RayHits:
     """Weights of the triangle's corners, shape (n, 3)."""
 
     @property
-    def met(self) -> NDArray[np.bool_]:
+    def met(self) -> BoolArray:
         """True where a surface is met, shape (n,)."""
         return self.mesh >= 0
 
@@ -86,7 +86,7 @@ class RayScene:
             barycentric=np.stack([1.0 - u - v, u, v], axis=1),
         )
 
-    def occluded(self, origins: FloatArray, directions: NDArray[np.floating], reach: float) -> NDArray[np.bool_]:
+    def occluded(self, origins: FloatArray, directions: NDArray[np.floating], reach: float) -> BoolArray:
         """Tell which rays meet any surface within `reach` [m]; a surface on which a ray starts does not count.
 
         Args:
@@ -96,7 +96,7 @@ class RayScene:
         """
         start, along = self._local_rays(origins, directions)
         reaches = np.full(len(start), reach / self.size, dtype=np.float32)
-        answer: NDArray[np.bool_] = self._tree.run(start + _OFFSET * along, along, reaches, query="OCCLUDED") >= 0
+        answer: BoolArray = self._tree.run(start + _OFFSET * along, along, reaches, query="OCCLUDED") >= 0
         return answer
 
     def _local_rays(self, origins: FloatArray, directions: NDArray[np.floating]) -> tuple[NDArray[np.float32], ...]:

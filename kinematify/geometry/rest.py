@@ -7,7 +7,7 @@ from enum import StrEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import relative
 
 if TYPE_CHECKING:
@@ -40,16 +40,16 @@ class AtRest:
 
 def overlapping_links(scene: Scene) -> tuple[tuple[str, str], ...]:
     """Pairs of links with geometry whose bodies are in each other at rest: engines would drive them apart."""
-    allowance = Allowance(scene, Overlap(scene))
+    allowance = DepthAllowance(scene, OverlapQueries(scene))
     pairs = [pair for pair, rest in allowance.pairs.items() if rest.collide or rest.contained]
     shown = [[name for name in body.links if scene.model.link_by_name[name].has_geometry] for body in scene.bodies]
     return tuple((first, second) for a, b in sorted(pairs) for first in shown[a] for second in shown[b])
 
 
-class Allowance:
+class DepthAllowance:
     """How deep each pair is at rest, and how much deeper it may get."""
 
-    def __init__(self, scene: Scene, overlap: Overlap) -> None:
+    def __init__(self, scene: Scene, overlap: OverlapQueries) -> None:
         """Keep the scene; pairs are measured when first asked for."""
         self._scene, self._overlap = scene, overlap
         self._depth: dict[Pair, float] = {}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.geometry.solid import Solid
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import rigid_groups
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _UNIT_SHARE = 1e-3  # of the model's size: a good unit for FCL, which takes shor
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
+class SceneBody:
     """Links that fixed joints hold together; frame: that of the link nearest the root."""
 
     name: str
@@ -61,8 +61,8 @@ class Scene:
     """A model as geometry in motion."""
 
     model: Robot
-    mechanism: Mechanism
-    bodies: tuple[Body, ...]
+    mechanism: LeaderMechanism
+    bodies: tuple[SceneBody, ...]
     """In the order of the tree, parents before children; only those with geometry."""
     settings: GeometrySettings
     unit: float
@@ -237,9 +237,9 @@ def read_scene(
     unit = _UNIT_SHARE * max(largest, 1e-9)
     return Scene(
         model=model,
-        mechanism=Mechanism(robot=model),
+        mechanism=LeaderMechanism(robot=model),
         bodies=tuple(
-            Body(
+            SceneBody(
                 name=next(name for name in links if model.link_by_name[name].has_geometry),
                 links=tuple(links),
                 group=index,

@@ -8,21 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
+from kinematify.geometry.overlap import OverlapQueries
+from kinematify.geometry.rest import DepthAllowance
 from kinematify.geometry.scene import box_corners, relative
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from numpy.typing import NDArray
-
     from kinematify.geometry.scene import Pair, Scene
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
     from kinematify.robot.mechanism import Travel
 
-    BoolArray = NDArray[np.bool_]
 
 _PIECE = 8  # samples beyond the declared range that are looked at in one go
 _COARSE = 9  # configurations from which the length of the way of the corners is estimated
@@ -46,7 +43,7 @@ class Meeting:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Side:
+class SweepSide:
     """One direction of a joint from rest."""
 
     sign: float
@@ -73,7 +70,7 @@ class JointSweep:
     travel: Travel
     own: frozenset[Pair]
     """Neighbours that this joint connects."""
-    sides: tuple[Side, Side]
+    sides: tuple[SweepSide, SweepSide]
     """Downwards and upwards."""
 
     @property
@@ -86,7 +83,7 @@ class JointSweep:
 class Sweeper:
     """Moves the joints of one scene."""
 
-    def __init__(self, scene: Scene, overlap: Overlap, allowance: Allowance) -> None:
+    def __init__(self, scene: Scene, overlap: OverlapQueries, allowance: DepthAllowance) -> None:
         """Keep what is shared by all joints."""
         self._scene, self._overlap, self._allowance = scene, overlap, allowance
         self._way = lru_cache(maxsize=2)(self._way_to_end)  # one joint's pairs are asked about in a row
@@ -94,8 +91,8 @@ class Sweeper:
     @classmethod
     def of(cls, scene: Scene) -> Sweeper:
         """Return one that shares nothing."""
-        overlap = Overlap(scene)
-        return cls(scene, overlap, Allowance(scene, overlap))
+        overlap = OverlapQueries(scene)
+        return cls(scene, overlap, DepthAllowance(scene, overlap))
 
     def sweep(self, leader: int) -> JointSweep:
         """Move one joint to both sides."""
@@ -131,7 +128,7 @@ class Sweeper:
         names = self._scene.mechanism.joints
         return any(abs(self._scene.mechanism.leads[names.index(name), leader]) > 0.0 for name in joints)
 
-    def _side(self, leader: int, sign: float, own: frozenset[Pair]) -> Side:
+    def _side(self, leader: int, sign: float, own: frozenset[Pair]) -> SweepSide:
         travel, scene = self._scene.travels[leader], self._scene
         values, poses = self._way(leader, sign)
         found = {pair: self._within(leader, pair, values, relative(poses, pair)) for pair in scene.affected[leader]}
@@ -139,7 +136,7 @@ class Sweeper:
         for pair in own:
             found[pair] = found[pair] or self._outside(leader, pair, values, beyond)
         meetings = sorted((m for m in found.values() if m is not None), key=lambda item: abs(item.first - travel.rest))
-        return Side(
+        return SweepSide(
             sign=sign,
             declared=float(values[-1]),
             reached=float(beyond[-1]),

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from kinematify.robot.arrays import FloatArray
 
+
 __all__ = ["JointCandidate", "JointEstimate", "JointType"]
 
 

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from kinematify.geometry.hull import convex_hull, thickened
+from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.geometry.scene import transformed
 from kinematify.manipulation.request import Hold
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import forward_kinematics, joint_values, rest_configuration, rigid_groups
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.mujoco_model import (
@@ -136,7 +136,7 @@ class MujocoExecution:
         return spec
 
     def _parsed(self, model: Robot, prepared: Prepared) -> mujoco.MjSpec:
-        spec = parse(prepared.urdf, Mechanism(robot=model), step=self.settings.time_step).spec
+        spec = parse(prepared.urdf, LeaderMechanism(robot=model), step=self.settings.time_step).spec
         spec.compiler.balanceinertia = True
         return spec
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pybullet as bullet
 
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import joint_values, rest_configuration
 from kinematify.robot.transforms import quaternion_of
 from kinematify.simulation.engine import Refused
@@ -38,7 +38,7 @@ def open_world(loaded: Loaded, settings: ExecutionSettings, hold: Hold) -> Pybul
     client, motion = connect(settings.time_step, iterations=_ITERATIONS), loaded.motion
     try:
         robot, placed = (
-            load_at(client, Mechanism(robot=model), prepared.urdf, T_world_root, itself=False)
+            load_at(client, LeaderMechanism(robot=model), prepared.urdf, T_world_root, itself=False)
             for model, prepared, T_world_root in (
                 (loaded.robot, loaded.robot_prepared, motion.T_world_base),
                 (loaded.object, loaded.object_prepared, motion.T_world_object),

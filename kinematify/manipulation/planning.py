@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
+from kinematify.geometry.overlap import OverlapQueries
+from kinematify.geometry.rest import DepthAllowance
 from kinematify.geometry.sweep import Sweeper
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.execute import Motion
@@ -102,8 +102,8 @@ def _with(before: Clearing, scene: Scene, helper: int, leader: int, settings: Pl
 
 def _freedom(scene: Scene, leader: int, settings: PlanSettings) -> Freedom:
     """How far a leader goes while all others rest."""
-    overlap = Overlap(scene)
-    sweep = Sweeper(scene, overlap, Allowance(scene, overlap)).sweep(leader)
+    overlap = OverlapQueries(scene)
+    sweep = Sweeper(scene, overlap, DepthAllowance(scene, overlap)).sweep(leader)
     travel = scene.travels[leader]
     end = pull_end(travel, settings)
     side = sweep.sides[0 if end < travel.rest else 1]

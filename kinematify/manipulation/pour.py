@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.errors import InputError
-from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import read_scene, relative, visible_shapes
 from kinematify.manipulation.collision import CollisionWorld
 from kinematify.manipulation.execute import Motion
@@ -302,7 +302,7 @@ class _PourPlanning:
 
     def _meeting(self) -> str | None:
         """What the cup itself runs into on its way."""
-        overlap = Overlap(self._scene)
+        overlap = OverlapQueries(self._scene)
         cups = {body for bodies in moved_bodies(self._scene, TILT) for body in bodies}
         for pair in self._scene.pairs:
             if len(cups & set(pair)) == 1 and overlap.collide(pair, relative(self._motion.body_poses, pair)).any():

@@ -17,8 +17,8 @@ import numpy as np
 from lxml import etree
 
 from kinematify.errors import InputError
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
+from kinematify.geometry.overlap import OverlapQueries
+from kinematify.geometry.rest import DepthAllowance
 from kinematify.geometry.scene import judged_shapes, placed_links, read_scene, relative, transformed
 from kinematify.geometry.solid import Solid
 from kinematify.geometry.together import random_rows
@@ -195,8 +195,8 @@ def _link_reasons(scene: Scene, settings: ValidationSettings) -> list[tuple[tupl
     found: list[tuple[tuple[str, str], DisableReason | None]] = [
         (two, DisableReason.ADJACENT) for links in shown for two in combinations(links, 2)
     ]
-    overlap = Overlap(scene)
-    allowance = Allowance(scene, overlap)
+    overlap = OverlapQueries(scene)
+    allowance = DepthAllowance(scene, overlap)
     rest = scene.mechanism.rest[None]
     poses = scene.poses(np.concatenate([rest, random_rows(scene, settings.seed)]))
     links = _LinkSolids(scene)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.assembly.part import Part
-from kinematify.geometry.hull import convex_hull, thickened
-from kinematify.model.inertia import inertial_of
+from kinematify.geometry.convex import convex_hull, thickened
 from kinematify.model.kinematic_model import KinematicModel, ModelLink
+from kinematify.model.masses import inertial_of
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import Joint
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import ModelConfig
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
     from kinematify.robot.arrays import FloatArray
-    from kinematify.topology.tree import KinematicTree
 
 
 def build_model(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -10,10 +11,11 @@ import numpy as np
 
 from kinematify.assembly.pieces import connected_pieces
 from kinematify.geometry.convex import ConvexPiece, convex_piece, enclosed_volume
-from kinematify.geometry.cut import Concave, Surface
+from kinematify.geometry.cut import Concave, CutSurface
 from kinematify.geometry.cut_cache import cached_cuts
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.robot import forward_kinematics
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from kinematify.config.validation import PrepareSettings
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
+
 
 _KEPT = ("box", "cylinder", "sphere")
 """Primitives that all engines have; capsules become meshes."""
@@ -69,7 +72,7 @@ class _Component:
     """A connected piece of a mesh, or the rest of one that has too many."""
 
     link: str
-    surface: Surface
+    surface: CutSurface
     hull: ConvexPiece
     gap: float
     """How far the hull reaches beyond the surface [m]."""
@@ -134,7 +137,7 @@ def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettin
     if not parts:
         return []
     diagonal = float(np.linalg.norm(np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)))
-    surfaces = [Surface(part.vertices, part.faces) for part in parts[: settings.most_components]]
+    surfaces = [CutSurface(part.vertices, part.faces) for part in parts[: settings.most_components]]
     if len(parts) > settings.most_components:
         surfaces.append(_joined(parts[settings.most_components :]))
     tolerance = max(settings.link_gap * diagonal, settings.model_gap * size)
@@ -158,9 +161,9 @@ def _components(link: Link, mesh: LinkMesh, size: float, settings: PrepareSettin
     return found
 
 
-def _joined(parts: Sequence[RawMesh]) -> Surface:
+def _joined(parts: Sequence[RawMesh]) -> CutSurface:
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
-    return Surface(
+    return CutSurface(
         np.concatenate([part.vertices for part in parts]),
         np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
     )
@@ -213,3 +216,44 @@ def _volume_error(shapes: Sequence[Shape], convex: Sequence[ConvexPiece]) -> flo
     if not known or len(known) < len(volumes):
         return None
     return sum(piece.volume for piece in convex) / sum(known) - 1.0
+
+
+_NEIGHBOURS = 8
+"""Nearest pieces that one is tried with."""
+
+
+def fewer_pieces(pieces: Sequence[ConvexPiece], most: int, *, thickness: float, corners: int) -> list[ConvexPiece]:
+    """Join pieces until there are at most so many, two by two, those first whose hull is least larger than both.
+
+    Args:
+        pieces: Any number.
+        most: At least 1.
+        thickness: Of flat pieces [m].
+        corners: Vertices of a piece at most.
+    """
+    alive = dict(enumerate(pieces))
+    waiting: list[tuple[float, int, int, ConvexPiece]] = []
+
+    def offer(number: int) -> None:
+        one = alive[number]
+        others = [other for other in alive if other != number]
+        middles = np.array([alive[other].low + alive[other].high for other in others])
+        for place in np.argsort(lengths_of(middles - one.low - one.high), kind="stable")[:_NEIGHBOURS]:
+            other = alive[others[place]]
+            points = np.concatenate([one.vertices, other.vertices])
+            hull = convex_piece(points, thickness=thickness, directions=corners)
+            heapq.heappush(waiting, (hull.volume - one.volume - other.volume, number, others[place], hull))
+
+    if len(alive) > most:
+        for number in list(alive):
+            offer(number)
+    following = len(alive)
+    while len(alive) > most:
+        _, first, second, hull = heapq.heappop(waiting)
+        if first in alive and second in alive:
+            del alive[first], alive[second]
+            alive[following] = hull
+            if len(alive) > most:
+                offer(following)
+            following += 1
+    return list(alive.values())

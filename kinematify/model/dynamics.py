@@ -182,7 +182,7 @@ def _lightened(robot: Robot, joint: Joint, config: DynamicsConfig) -> Robot:
 
 def _with_dynamics(robot: Robot, joint: Joint, config: DynamicsConfig) -> Joint:
     load, hand = joint_load(robot, joint), _hand(joint, config)
-    friction = _friction(load, config, hand)
+    friction = min(_rubbing(load, config), config.most_friction * hand)
     left = max(hand - load.largest - friction, (1.0 - config.hand_share) * hand)
     damping = min(load.inertia / config.settling_time, left * config.opening_time / max(load.travel, 1e-9))
     return _stated(joint, damping, friction)
@@ -223,11 +223,6 @@ def _with_motor(robot: Robot, joint: Joint, config: DynamicsConfig, *, measured:
 
 def _stated(joint: Joint, damping: float, friction: float) -> Joint:
     return replace(joint, damping=float(f"{damping:.3g}"), friction=float(f"{friction:.3g}"))
-
-
-def _friction(load: JointLoad, config: DynamicsConfig, hand: float) -> float:
-    """What holds a part where it rests, never so much that a hand could not move it."""
-    return min(_rubbing(load, config), config.most_friction * hand)
 
 
 def _rubbing(load: JointLoad, config: DynamicsConfig) -> float:

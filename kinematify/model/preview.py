@@ -9,7 +9,6 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 from scipy.ndimage import distance_transform_edt
 
-from kinematify.model.palette import link_colors, link_shades, tell_apart
 from kinematify.model.scene import (
     GLYPH_COLORS,
     best_azimuth,
@@ -19,8 +18,9 @@ from kinematify.model.scene import (
     opened_configuration,
     posed_meshes,
 )
+from kinematify.model.urdf import link_colors, link_shades, tell_apart
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
-from kinematify.robot.colors import linear_of, srgb_of
+from kinematify.robot.appearance import linear_of, srgb_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -12,12 +12,15 @@ from kinematify.config.validation import load_settings
 from kinematify.model.collision import fit_collision
 from kinematify.model.dynamics import with_dynamics
 from kinematify.model.urdf import model_robot
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from kinematify.config import Config
+    from kinematify.config.validation import PrepareSettings
     from kinematify.model.collision import FittedCollision
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.robot.robot import Inertial, Robot
+    from kinematify.robot.robot import Inertial, Joint, Robot
+
 
 _DIGITS = 9
 
@@ -80,3 +83,27 @@ def simulable_model(model: KinematicModel, config: Config) -> SimulableModel:
     settings = load_settings()
     fitted = fit_collision(robot, config.collision, settings.prepare, settings.geometry)
     return SimulableModel(robot=fitted.robot, collision=fitted)
+
+
+def lacks_drive(joint: Joint) -> bool:
+    """True if a joint that moves has no effort or no velocity above zero."""
+    return joint.kind is not JointType.FIXED and (_positive(joint.effort) is None or _positive(joint.velocity) is None)
+
+
+def prepared_joint(joint: Joint, settings: PrepareSettings) -> Joint:
+    """Return the joint with what readers demand; negative damping and friction, which they refuse, are left out."""
+    return replace(
+        joint,
+        effort=_positive(joint.effort) or settings.effort,
+        velocity=_positive(joint.velocity) or settings.velocity,
+        damping=_unless_negative(joint.damping),
+        friction=_unless_negative(joint.friction),
+    )
+
+
+def _positive(value: float | None) -> float | None:
+    return value if value is not None and value > 0.0 else None
+
+
+def _unless_negative(value: float | None) -> float | None:
+    return value if value is not None and value >= 0.0 else None

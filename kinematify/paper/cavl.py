@@ -14,8 +14,7 @@ import torch
 
 from kinematify.contact.graph import ContactSamples
 from kinematify.joints.candidate import JointCandidate
-from kinematify.paper.contact_region import ContactRegion
-from kinematify.paper.motion import revolve, slide, unit_axis
+from kinematify.paper.contact_region import ContactRegion, revolve, slide, unit_axis
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from kinematify.contact.graph import ContactEdge, ContactSamples
 from kinematify.geometry.sampling import sample_surface
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import cavl_scene, rank_candidates, refine, virtual_motions
-from kinematify.paper.field_source import field_source
+from kinematify.paper.sdf import field_source
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:

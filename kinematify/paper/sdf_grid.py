@@ -7,27 +7,23 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import igl
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from scipy import ndimage
+
+from kinematify.geometry.mesh_trees import DistanceTree, WindingTree
 
 if TYPE_CHECKING:
     from torch import Tensor
 
     from kinematify.assembly.part import Part
     from kinematify.config import SdfConfig
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
-# Queries are cut into pieces of this many points: 10 MB of results at a time, and no loss of speed.
-_CHUNK_POINTS = 200_000
 # Longest edge for winding numbers, fraction of the part's extent: between 1/4 and 1/16 they are quickest.
 _WINDING_EDGE = 0.125
 # No more triangles than this after bisection: 100 MB of search structure.
 _WINDING_FACES = 500_000
-
-BoolArray = NDArray[np.bool_]
 
 
 def exact_distance(part: Part, points: FloatArray) -> FloatArray:
@@ -48,46 +44,33 @@ def exact_signed_distance(part: Part, points: FloatArray) -> FloatArray:
 
 
 class _Surface:
-    """Search structure over the triangles of one part; built once, asked piece by piece."""
+    """Search structures over the triangles of one part; built once."""
 
     def __init__(self, part: Part) -> None:
         # The vertices are centred, for far from the origin the squares would eat the digits.
         self._origin: FloatArray = part.bounds.mean(axis=0)
-        self._vertices = np.ascontiguousarray(part.vertices - self._origin)
-        self._faces = np.ascontiguousarray(part.faces)
-        self._tree = igl.AABB()
-        self._tree.init(self._vertices, self._faces)
+        self._triangles = part.vertices[part.faces] - self._origin
+        self._tree = DistanceTree(part.vertices - self._origin, part.faces)
 
     def closest(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Distances (n,) and nearest surface points in the world frame (n, 3)."""
-        distances = np.empty(len(points))
-        nearest = np.empty((len(points), 3))
-        for piece in _pieces(len(points)):
-            local = np.ascontiguousarray(points[piece] - self._origin, dtype=np.float64)
-            squares, _, found = self._tree.squared_distance(self._vertices, self._faces, local)
-            distances[piece] = np.sqrt(squares)
-            nearest[piece] = found + self._origin
-        return distances, nearest
+        distances, _, nearest = self._tree.nearest(points - self._origin)
+        return distances, nearest + self._origin
 
     def winding(self, points: FloatArray) -> FloatArray:
         """Generalised winding number, 1 inside and 0 outside a closed mesh, (n,)."""
-        numbers = np.empty(len(points))
-        vertices, faces = self._compact
-        for piece in _pieces(len(points)):
-            local = np.ascontiguousarray(points[piece] - self._origin, dtype=np.float64)
-            numbers[piece] = igl.fast_winding_number(vertices, faces, local)
-        return numbers
+        return self._solid.numbers(points - self._origin)
 
     @cached_property
-    def _compact(self) -> tuple[FloatArray, IntArray]:
+    def _solid(self) -> WindingTree:
         """The same surface in triangles without long edges.
 
         Winding numbers are quick because far clusters of triangles are summed up; a fan of needles, as on the cap of
         a cylinder, is never far, and would be 20 times as slow.
         """
-        longest = _WINDING_EDGE * float(np.ptp(self._vertices[self._faces].reshape(-1, 3), axis=0).max())
-        triangles = _bisected(self._vertices[self._faces], longest)
-        return triangles.reshape(-1, 3), np.arange(3 * len(triangles), dtype=np.int64).reshape(-1, 3)
+        longest = _WINDING_EDGE * float(np.ptp(self._triangles.reshape(-1, 3), axis=0).max())
+        triangles = _bisected(self._triangles, longest)
+        return WindingTree(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
 
 
 def _bisected(triangles: FloatArray, longest: float) -> FloatArray:
@@ -105,10 +88,6 @@ def _bisected(triangles: FloatArray, longest: float) -> FloatArray:
         halves = [np.stack([rest[:, 0], middle, rest[:, 2]], 1), np.stack([middle, rest[:, 1], rest[:, 2]], 1)]
         rest = np.concatenate(halves)
     return np.ascontiguousarray(np.concatenate(kept))
-
-
-def _pieces(count: int) -> list[slice]:
-    return [slice(start, start + _CHUNK_POINTS) for start in range(0, count, _CHUNK_POINTS)]
 
 
 class SignedDistanceGrid:

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kinematify.contact.tree import KinematicTree
 from kinematify.generate.procedural.truth import ground_truth
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
@@ -14,7 +15,6 @@ from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.robot.obj_file import write_obj
 from kinematify.robot.robot import LoopJoint
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import resource
+import sys
+import time
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -13,18 +17,48 @@ from kinematify.contact.build import build_contact_graph
 from kinematify.contact.seams import find_cuts, joined, rigid_pieces
 from kinematify.errors import InputError
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.pipeline.clock import StageClock, peak_mb
+from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.pipeline.inference import Inference
 from kinematify.pipeline.pieces import inference_of_pieces, piece_standing_for
 from kinematify.pipeline.stages import choose_joints, find_trees, with_doubt_of_parents
 from kinematify.pipeline.warnings import warnings_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
-    from kinematify.pipeline.clock import Progress
+    from kinematify.joints.bearings.scores import EdgeBearing
+
+    Progress = Callable[[str, float], None]
+
+
+class StageClock:
+    """Times the stages and tells who waits."""
+
+    def __init__(self, progress: Progress | None) -> None:
+        """Start with no stage.
+
+        Args:
+            progress: Called with the name of each stage and the share of the work done before it, in [0, 1].
+        """
+        self.progress = progress or (lambda stage, share: None)
+        self.seconds: dict[str, float] = {}
+        """Wall time of every stage that has ended [s]."""
+
+    @contextmanager
+    def stage(self, name: str, share: float) -> Iterator[None]:
+        """Time what is done inside; `share` of all work is done before it."""
+        self.progress(name, share)
+        start = time.perf_counter()
+        yield
+        self.seconds[name] = time.perf_counter() - start
+
+
+def peak_mb() -> float:
+    """Peak resident memory of the process so far [MB]."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (1024 * 1024 if sys.platform == "darwin" else 1024)
 
 
 def infer(

@@ -6,20 +6,91 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from kinematify.contact.graph import pair
 from kinematify.model.build import build_model
-from kinematify.pipeline.closed_chains import closed_chains
+from kinematify.robot.lengths import length_text
+from kinematify.robot.mechanism import joints_between, widest_opening
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from kinematify.assembly.part import Assembly
-    from kinematify.config import Config
+    from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.pipeline.closed_chains import ClosedChain
-    from kinematify.topology.tree import KinematicTree
+    from kinematify.robot.mechanism import LoopOpening
+    from kinematify.robot.robot import Robot
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CutChain:
+    """Two parts that turn on one pin, and that hang together by other joints, too."""
+
+    parts: tuple[str, str]
+    line: BearingLine
+    """Of the pin, world frame."""
+    joints: tuple[str, ...]
+    """The others of the chain, from one part to the other."""
+    opening: LoopOpening
+    """What happens to the pin when a joint moves alone."""
+    reward: float
+    """Of the tree that was taken."""
+    rival: float | None
+    """Of the best tree that keeps the joint instead; None where none was kept."""
+
+    @property
+    def told(self) -> str:
+        """Which joint was cut, why, and what to do, in words."""
+        first, second = self.parts
+        kept = "no tree that was kept has it"
+        if self.rival is not None:
+            kept = f"the best one that has it is worth no more ({self.rival:.3f})"
+        return (
+            f"{first} and {second} share a pin, and a chain closes there ({', '.join(self.joints)}). A URDF is a tree, "
+            f"so the joint between them was cut: of all trees this one is worth most ({self.reward:.3f}), {kept}. "
+            f"Moving {self.opening.joint} alone pulls it apart by {length_text(self.opening.distance)}. Close it in "
+            "the engine (<equality><connect> in MuJoCo, createConstraint in PyBullet), or let joints follow (<mimic>)."
+        )
+
+
+def closed_chains(
+    assembly: Assembly,
+    bearings: Mapping[Pair, EdgeBearing],
+    trees: Sequence[KinematicTree],
+    robot: Robot,
+    config: TopologyConfig,
+) -> Iterator[CutChain]:
+    """Find the pins that the best tree leaves out and that its motion pulls apart.
+
+    Args:
+        assembly: The parts.
+        bearings: Of their contacts.
+        trees: Best first.
+        robot: What the best tree became; a link is named as its part.
+        config: `pin_score` and `pin_opens`.
+    """
+    best, names = trees[0], assembly.names
+    allowed = config.pin_opens * assembly.diagonal
+    used = {pair(parent, child) for parent, child in best.edges()}
+    for ends, bearing in bearings.items():
+        if ends in used or not bearing.lines or bearing.lines[0].score < config.pin_score:
+            continue
+        line, parts = bearing.lines[0], (names[ends[0]], names[ends[1]])
+        opening = widest_opening(robot, parts, line.pivot)
+        if opening is not None and opening.distance > allowed:
+            rivals = [tree.reward for tree in trees if ends in {pair(*edge) for edge in tree.edges()}]
+            yield CutChain(
+                parts=parts,
+                line=line,
+                joints=joints_between(robot, parts),
+                opening=opening,
+                reward=best.reward,
+                rival=max(rivals, default=None),
+            )
+
 
 DOUBTFUL = 0.5
 """Joints of less confidence are named as those to look at first."""
@@ -58,7 +129,7 @@ class Inference:
         return tuple(self.assembly.names[child] for _, child in below)
 
     @cached_property
-    def closed_chains(self) -> tuple[ClosedChain, ...]:
+    def closed_chains(self) -> tuple[CutChain, ...]:
         """Pins that the tree had to leave out; they come apart when its joints move."""
         found = closed_chains(self.assembly, self.bearings, self.trees, self.model.robot, self.config.topology)
         return tuple(found)

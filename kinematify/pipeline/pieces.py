@@ -10,10 +10,10 @@ import numpy as np
 
 from kinematify.contact.graph import pair
 from kinematify.contact.seams import largest_piece
+from kinematify.contact.tree import KinematicTree
 from kinematify.joints.candidate import JointEstimate
 from kinematify.pipeline.warnings import cut_parts
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -20,11 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactEdge
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import BearingLine
     from kinematify.joints.candidate import JointCandidate, JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import BearingLine
-    from kinematify.pipeline.closed_chains import ClosedChain
-    from kinematify.pipeline.inference import Inference
-    from kinematify.topology.tree import KinematicTree
+    from kinematify.pipeline.inference import CutChain, Inference
 
 SCHEMA = 1
 PREVIEW_FILE = "preview.png"
@@ -174,7 +173,7 @@ def _joint(joint: JointEstimate, names: tuple[str, ...]) -> dict[str, Any]:
     }
 
 
-def _closed_chain(chain: ClosedChain) -> dict[str, Any]:
+def _closed_chain(chain: CutChain) -> dict[str, Any]:
     return {
         "parts": list(chain.parts),
         "axis": chain.line.axis.tolist(),

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config, TopologyConfig
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
     from kinematify.geometry.part_stats import PartStats
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.topology.evidence import EdgeEvidence
     from kinematify.topology.reward import SimulatedEdges
-    from kinematify.topology.tree import KinematicTree
 
 
 def find_trees(

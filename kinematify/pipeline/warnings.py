@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from kinematify.contact.graph import pair
-from kinematify.joints.choice.compound import compounds, described
+from kinematify.joints.bearings.refine import across_axis
+from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
-    from kinematify.assembly.part import Assembly
+    from kinematify.assembly.part import Assembly, Part
     from kinematify.config import CompoundConfig, Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
-    from kinematify.topology.tree import KinematicTree
+    from kinematify.robot.arrays import FloatArray
 
 
 def warnings_of(
@@ -108,3 +115,170 @@ def cut_parts(assembly: Assembly, groups: Sequence[Sequence[int]], mains: Sequen
                 "coincide, and the surface goes on. They are fixed to each other."
             )
     return warnings
+
+
+class CompoundKind(StrEnum):
+    """What several joints are together."""
+
+    BALL = "ball"
+    UNIVERSAL = "universal"
+    FINGERS = "fingers"
+    CAP = "cap"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compound:
+    """Several joints that are one mechanism."""
+
+    kind: CompoundKind
+    children: tuple[int, ...]
+    """Indices of the parts that the joints move, from the base outward."""
+
+
+def compounds(
+    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]], config: CompoundConfig
+) -> tuple[Compound, ...]:
+    """Find joints that are one mechanism together, which a tree of single joints cannot say.
+
+    A cross between two forks makes a universal joint, three axes through one point make a ball joint, two fingers that
+    close on each other are driven as one (``<mimic>``), and a cap on a neck turns and comes off along the same line.
+
+    Args:
+        assembly: The parts, world frame.
+        joints: The chosen joints of the tree.
+        clusters: Parts that are congruent, by index.
+        config: How exact lines must meet, and what counts as a cross.
+
+    Returns:
+        Ball joints first, then universal ones that are no piece of a ball joint, then pairs of fingers, then caps.
+    """
+    by_child = {joint.child: joint for joint in joints}
+    near = config.meeting * assembly.diagonal
+    balls = [
+        Compound(kind=CompoundKind.BALL, children=tuple(joint.child for joint in chain))
+        for chain in _chains(by_child, 3)
+        if _one_point(chain, near) and abs(np.linalg.det([joint.axis for joint in chain])) > config.spread
+    ]
+    taken = {frozenset(pair) for ball in balls for pair in combinations(ball.children, 2)}
+    universals = [
+        Compound(kind=CompoundKind.UNIVERSAL, children=(first.child, second.child))
+        for first, second in _chains(by_child, 2)
+        if frozenset((first.child, second.child)) not in taken
+        and abs(float(first.axis @ second.axis)) < config.square
+        and _one_point((first, second), near)
+        and _is_cross(assembly, first, second, config)
+    ]
+    return (*balls, *universals, *_fingers(assembly, joints, clusters, config), *_caps(assembly, joints, config))
+
+
+def described(compound: Compound, names: Sequence[str]) -> str:
+    """A sentence for the user; `names` are those of the parts."""
+    parts = [names[child] for child in compound.children]
+    if compound.kind is CompoundKind.BALL:
+        return f"The joints of {parts[0]}, {parts[1]} and {parts[2]} turn about one point: together a ball joint."
+    if compound.kind is CompoundKind.UNIVERSAL:
+        return (
+            f"The joints of {parts[0]} and {parts[1]} cross at a right angle in {parts[0]}: together a universal joint."
+        )
+    if compound.kind is CompoundKind.CAP:
+        return (
+            f"{parts[0]} closes the end of what it turns on and may come off along its axis: a screw or cylindrical "
+            "pair, which takes two joints about one line with a link without geometry between them."
+        )
+    return (
+        f"{parts[0]} and {parts[1]} mirror each other as fingers do. Where one drive moves both, let one joint follow "
+        "the other (<mimic>)."
+    )
+
+
+def _chains(by_child: Mapping[int, JointEstimate], length: int) -> Iterator[tuple[JointEstimate, ...]]:
+    """All runs of so many turning joints, each hanging on the one before."""
+    for joint in by_child.values():
+        chain = [joint]
+        while len(chain) < length and chain[0].parent in by_child:
+            chain.insert(0, by_child[chain[0].parent])
+        if len(chain) == length and all(item.kind.turns for item in chain):
+            yield tuple(chain)
+
+
+def _one_point(chain: Sequence[JointEstimate], near: float) -> bool:
+    """True if all axes pass within `near` [m] of the point that is nearest to them all."""
+    across = [np.eye(3) - np.outer(joint.axis, joint.axis) for joint in chain]
+    offsets = [matrix @ joint.pivot for matrix, joint in zip(across, chain, strict=True)]
+    point = np.linalg.lstsq(np.sum(across, axis=0), np.sum(offsets, axis=0), rcond=None)[0]
+    gaps = [matrix @ point - offset for matrix, offset in zip(across, offsets, strict=True)]
+    return bool(np.all(np.linalg.norm(gaps, axis=1) < near))
+
+
+def _is_cross(assembly: Assembly, first: JointEstimate, second: JointEstimate, config: CompoundConfig) -> bool:
+    """True if the part between two joints is small beside those that it joins."""
+    middle, ends = assembly.parts[first.child], (assembly.parts[first.parent], assembly.parts[second.child])
+    return all(middle.diagonal < config.cross * end.diagonal for end in ends)
+
+
+def _fingers(
+    assembly: Assembly, joints: Sequence[JointEstimate], clusters: Sequence[Sequence[int]], config: CompoundConfig
+) -> Iterator[Compound]:
+    """Congruent parts that carry nothing and slide towards each other on one body."""
+    label = {part: index for index, cluster in enumerate(clusters) for part in cluster}
+    bearing = {joint.parent for joint in joints}
+    leaves = [
+        joint
+        for joint in joints
+        if joint.kind is JointType.PRISMATIC and joint.child not in bearing and joint.child in label
+    ]
+    for one, other in combinations(leaves, 2):
+        twins = one.parent == other.parent and label[one.child] == label[other.child]
+        if twins and float(one.axis @ other.axis) < -1.0 + config.square and _face(assembly, one, other, config):
+            yield Compound(kind=CompoundKind.FINGERS, children=(one.child, other.child))
+
+
+def _face(assembly: Assembly, one: JointEstimate, other: JointEstimate, config: CompoundConfig) -> bool:
+    """True if two parts stand opposite each other along their axis, no farther apart than they travel together."""
+    between: FloatArray = assembly.parts[other.child].centroid - assembly.parts[one.child].centroid
+    along = float(between @ one.axis)
+    beside = float(np.linalg.norm(between - along * one.axis))
+    spans = [np.sort(assembly.parts[joint.child].vertices @ one.axis)[[0, -1]] for joint in (one, other)]
+    gap = max(spans[0][0], spans[1][0]) - min(spans[0][1], spans[1][1])
+    reach = (one.upper - one.lower) + (other.upper - other.lower)
+    return beside < config.beside * abs(along) and gap < reach
+
+
+def _caps(assembly: Assembly, joints: Sequence[JointEstimate], config: CompoundConfig) -> Iterator[Compound]:
+    """Parts that carry nothing and turn in a bearing on the end of a part about the same line, which they close."""
+    carriers = {joint.parent for joint in joints}
+    for joint in joints:
+        turns = joint.kind.turns and joint.evidence.get("bearing_gate", 0.0) > 0.0
+        if turns and joint.child not in carriers and _closes(assembly, joint, config):
+            yield Compound(kind=CompoundKind.CAP, children=(joint.child,))
+
+
+def _closes(assembly: Assembly, joint: JointEstimate, config: CompoundConfig) -> bool:
+    """True if a part goes around the end of its parent, and over it."""
+    cap, body = assembly.parts[joint.child], assembly.parts[joint.parent]
+    across = across_axis(joint.axis)
+    aside = float(np.linalg.norm(across @ (body.centroid - joint.pivot)))
+    for direction in (joint.axis, -joint.axis):
+        end = float(((body.vertices - joint.pivot) @ direction).max())
+        height = (cap.vertices - joint.pivot) @ direction
+        rim = cap.vertices[height < end]
+        neck = body.vertices[(body.vertices - joint.pivot) @ direction > height.min()]
+        if len(rim) == 0 or len(neck) == 0 or height.max() <= end:
+            continue
+        inner, outer = (np.linalg.norm((points - joint.pivot) @ across.T, axis=1).max() for points in (neck, rim))
+        if outer > inner and aside < config.coaxial * inner and _on_the_line(cap, joint, direction, end):
+            return True
+    return False
+
+
+def _on_the_line(part: Part, joint: JointEstimate, direction: FloatArray, beyond: float) -> bool:
+    """True if the joint's line meets a part farther along `direction` than `beyond` [m]."""
+    corners = part.vertices[part.faces] - joint.pivot
+    flat = corners @ across_axis(joint.axis).T
+    turns = np.stack([_cross(flat[:, k], flat[:, (k + 1) % 3]) for k in range(3)])
+    met = (turns >= 0).all(axis=0) | (turns <= 0).all(axis=0)
+    return bool(met.any() and ((corners[met] @ direction).max(axis=1) > beyond).any())
+
+
+def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
+    return np.asarray(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0])

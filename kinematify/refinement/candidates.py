@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.bearings.line import Line
 from kinematify.joints.candidate import JointEstimate
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import judge
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.hypotheses.line import Line
 from kinematify.joints.measure.measurements import SLIDE, TURN
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph, Pair
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointCandidate
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
-    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.joints.measure.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
     from kinematify.paper.cavl import FailedMotions
     from kinematify.paper.joints import PaperJoints
-    from kinematify.topology.tree import KinematicTree
 
 _SAME = np.cos(np.radians(1.0))  # directions that no check tells apart
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from kinematify.assembly.assemble import assemble
 from kinematify.config import Config
+from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.model.output import MODEL_FILE, RECORD_FILE, write_model_folder
@@ -22,7 +23,6 @@ from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import RawMesh
 from kinematify.robot.read import read_robot
 from kinematify.robot.robot import forward_kinematics
-from kinematify.topology.tree import KinematicTree
 
 if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly, Part

@@ -38,7 +38,7 @@ from kinematify.validation.finding import Blame, Severity
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
-    from kinematify.pipeline.clock import Progress
+    from kinematify.pipeline.infer import Progress
     from kinematify.pipeline.inference import Inference
     from kinematify.refinement.simulate import MotionVerdict
     from kinematify.validation.feedback import Feedback

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
     from kinematify.assembly.part import Assembly
     from kinematify.config import Config
+    from kinematify.contact.tree import KinematicTree
     from kinematify.joints.candidate import JointEstimate
     from kinematify.model.kinematic_model import KinematicModel
-    from kinematify.topology.tree import KinematicTree
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.scene import Body, Scene
+from kinematify.geometry.scene import Scene, SceneBody
 from kinematify.geometry.solid import Solid
 from kinematify.manipulation.request import PULL, TaskRequest
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.robot import Joint, Link, LinkMesh, Robot, Shape, rigid_groups
 from kinematify.validation.check import FeedbackRow, OpenCheck
 from kinematify.validation.checks import checks_of
@@ -88,9 +88,11 @@ class PartsWorld:
         origins = {link.name: link.T_world_link[:3, 3] for link in model.links}
         return WorldScene(
             model=robot,
-            mechanism=Mechanism(robot=robot),
+            mechanism=LeaderMechanism(robot=robot),
             bodies=tuple(
-                Body(name=group.links[0], links=group.links, group=index, solid=self._solid(group.links), shapes=())
+                SceneBody(
+                    name=group.links[0], links=group.links, group=index, solid=self._solid(group.links), shapes=()
+                )
                 for index, group in enumerate(groups)
             ),
             settings=self.settings,

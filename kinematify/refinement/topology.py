@@ -16,7 +16,9 @@ import numpy as np
 
 from kinematify.contact.build import build_contact_graph, exact_gap, near_pairs
 from kinematify.contact.seams import joined, largest_piece, rigid_pieces
-from kinematify.joints.hypotheses.bearing import fit_edge
+from kinematify.contact.tree import KinematicTree
+from kinematify.joints.bearings.fit import fit_edge
+from kinematify.joints.bearings.scores import EdgeBearing
 from kinematify.pipeline.infer import infer
 from kinematify.pipeline.pieces import joints_of_pieces, tree_of_pieces
 from kinematify.pipeline.stages import choose_joints, find_trees
@@ -31,8 +33,6 @@ if TYPE_CHECKING:
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.surface import PartSurface
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
-    from kinematify.topology.tree import KinematicTree
     from kinematify.validation.feedback import EdgeSignal
 
 

@@ -12,21 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
+from scipy.ndimage import gaussian_filter, map_coordinates
 
 from kinematify.geometry.rays import RayScene
-from kinematify.render.daylight import SAME_SURFACE_COSINE, FloorShadow, SkyLight
-from kinematify.robot.colors import linear_of, srgb_of
+from kinematify.robot.appearance import linear_of, srgb_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from kinematify.config import PreviewConfig
     from kinematify.geometry.rays import RayHits
     from kinematify.render.camera import Camera
     from kinematify.robot.appearance import Appearance
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    BoolArray = NDArray[np.bool_]
 
 BACKGROUND = np.array([0.972, 0.976, 0.984])
 """sRGB of the empty picture, shape (3,)."""
@@ -115,7 +112,7 @@ def render_scene(scene: PictureScene, camera: Camera, config: PreviewConfig) -> 
 
 
 @dataclass(frozen=True, eq=False)
-class _View:
+class _Viewpoint:
     """Rays of a picture and what they meet."""
 
     pixels: FloatArray
@@ -175,10 +172,10 @@ class _Painter:
             image[block] = self._subsampled(block, view, sparse)
         return Image.fromarray(np.round(srgb_of(image) * 255.0).astype(np.uint8).reshape(*self.shape, 3))
 
-    def _view(self, pixels: FloatArray) -> _View:
+    def _view(self, pixels: FloatArray) -> _Viewpoint:
         return self._seen(pixels, *self.camera.rays(pixels))
 
-    def _seen(self, pixels: FloatArray, origins: FloatArray, directions: FloatArray) -> _View:
+    def _seen(self, pixels: FloatArray, origins: FloatArray, directions: FloatArray) -> _Viewpoint:
         """What rays meet that need not begin at the camera."""
         hits = self.rays.first_hits(origins, directions)
         met = hits.met
@@ -187,9 +184,9 @@ class _Painter:
         away = np.einsum("ij,ij->i", self.rays.face_normals[face], directions[met]) > 0.0
         normals = np.zeros(directions.shape)
         normals[met] = np.where(away[:, None], -smooth, smooth)
-        return _View(pixels, origins, directions, hits, normals)
+        return _Viewpoint(pixels, origins, directions, hits, normals)
 
-    def _colors(self, view: _View, light: FloatArray, panes: int = _PANES) -> FloatArray:
+    def _colors(self, view: _Viewpoint, light: FloatArray, panes: int = _PANES) -> FloatArray:
         """Linear colour of what each ray meets: a mesh, the floor or the background, shape (n, 3).
 
         What is not opaque shows what is behind it, through `panes` surfaces at most.
@@ -212,7 +209,7 @@ class _Painter:
             colors[at] = share * colors[at] + (1.0 - share) * self._behind(view, at, panes)
         return colors
 
-    def _behind(self, view: _View, at: IntArray, panes: int) -> FloatArray:
+    def _behind(self, view: _Viewpoint, at: IntArray, panes: int) -> FloatArray:
         """Linear colour of what is seen through the surfaces that some rays meet, shape (len(at), 3)."""
         along = view.directions[at]
         behind = self._seen(view.pixels[at], view.points[at] + _BEHIND * self.rays.size * along, along)
@@ -221,7 +218,7 @@ class _Painter:
         light[met] = self.sky.open_share(behind.points[met], behind.normals[met], sets)
         return self._colors(behind, light, panes - 1)
 
-    def _surfaces(self, view: _View) -> tuple[FloatArray, FloatArray]:
+    def _surfaces(self, view: _Viewpoint) -> tuple[FloatArray, FloatArray]:
         """Linear colour and opacity of what rays meet, without light, shapes (number met, 3) and (number met,)."""
         met = view.hits.met
         mesh = view.hits.mesh[met]
@@ -247,7 +244,7 @@ class _Painter:
         lamp = -0.62 * right - 0.75 * down - forward
         return np.asarray(lamp / np.linalg.norm(lamp), dtype=np.float64)
 
-    def _edges(self, view: _View) -> BoolArray:
+    def _edges(self, view: _Viewpoint) -> BoolArray:
         """Pixels whose neighbours show another surface, shape (h * w,)."""
         mesh = view.hits.mesh.reshape(self.shape)
         normal = view.normals.reshape(*self.shape, 3)
@@ -261,7 +258,7 @@ class _Painter:
             edge[second] |= differs
         return edge.ravel()
 
-    def _near_glyphs(self, view: _View) -> BoolArray:
+    def _near_glyphs(self, view: _Viewpoint) -> BoolArray:
         if self.halo is None:
             return np.zeros(len(view.pixels), dtype=bool)
         met = self.halo.first_hits(view.origins, view.directions).met.reshape(self.shape)
@@ -274,7 +271,7 @@ class _Painter:
             met = grown
         return met.ravel()
 
-    def _subsampled(self, chosen: IntArray, coarse: _View, sparse: _SparseLight) -> FloatArray:
+    def _subsampled(self, chosen: IntArray, coarse: _Viewpoint, sparse: _SparseLight) -> FloatArray:
         """Mean linear colour of a turned grid of rays in each chosen pixel, shape (len(chosen), 3)."""
         side = self.config.subsamples
         across, down = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
@@ -286,13 +283,13 @@ class _Painter:
         mean: FloatArray = colors.reshape(len(chosen), side * side, 3).mean(axis=1)
         return mean
 
-    def _sparse_light(self, view: _View) -> _SparseLight:
+    def _sparse_light(self, view: _Viewpoint) -> _SparseLight:
         """Light of every other pixel of every other row: it changes slowly over a surface."""
         chosen = np.arange(len(view.pixels)).reshape(self.shape)[::_SPARSE, ::_SPARSE]
         mesh, normals = view.hits.mesh[chosen], view.normals[chosen]
         return _SparseLight(mesh, normals, self.sky.of_picture(view.points[chosen], normals, mesh))
 
-    def _light(self, view: _View, pixel: IntArray, sparse: _SparseLight) -> FloatArray:
+    def _light(self, view: _Viewpoint, pixel: IntArray, sparse: _SparseLight) -> FloatArray:
         """Light of the nearest of the sparse pixels that shows the same surface; rays of its own for what none shows.
 
         Args:
@@ -316,7 +313,7 @@ class _Painter:
         light[left] = self.sky.open_share(view.points[left], view.normals[left], left % len(self.sky.sets))
         return light
 
-    def _with_glyphs(self, colors: FloatArray, view: _View) -> FloatArray:
+    def _with_glyphs(self, colors: FloatArray, view: _Viewpoint) -> FloatArray:
         """Lay the arrows with a light rim over colours, pale where a mesh is nearer."""
         if self.glyphs is None or self.halo is None:
             return colors
@@ -348,3 +345,137 @@ def _pixel_centers(camera: Camera) -> FloatArray:
     """Picture positions of all pixels, row by row, shape (h * w, 2)."""
     x, y = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
     return np.column_stack([x.ravel(), y.ravel()])
+
+
+SAME_SURFACE_COSINE = 0.94
+"""Places of one mesh whose normals differ less (20 deg) share light."""
+_TILE = 4  # places per side of the square over which light is averaged; each pixel of it has its own directions
+_FLOOR_RAYS = 64
+_FLOOR_REACH = 0.6  # of the scene's size
+_FLOOR_ROOM = 0.4  # of the scene's size: how far the map of the shadow reaches beyond the object
+_FLOOR_FADE = 0.5  # of the map's half width: the shadow fades to nothing over this distance
+_BORDER = 60.0  # pixels over which the shadow fades towards the border of the picture
+
+
+class SkyLight:
+    """Rays to the sky, the same few directions at like places, so that even surfaces show no noise."""
+
+    def __init__(self, scene: RayScene, config: PreviewConfig) -> None:
+        self.scene = scene
+        self.rays = config.openness_rays
+        self.reach = config.openness_reach * scene.size
+        ball = _even_directions(self.rays * _TILE**2)
+        # Directions that follow each other on the spiral lie at one height: every set takes them from all heights.
+        self.sets = ball.reshape(self.rays, _TILE**2, 3).transpose(1, 0, 2).astype(np.float32)
+
+    def open_share(self, points: FloatArray, normals: FloatArray, sets: IntArray) -> FloatArray:
+        """Share of the sky that points see within reach.
+
+        Args:
+            points: World frame [m], shape (n, 3).
+            normals: Unit, shape (n, 3).
+            sets: Which set of directions each point uses, from 0 to 15, shape (n,).
+
+        Returns:
+            From 0 (dark) to 1 (open), weighted by the cosine to the normal, shape (n,).
+        """
+        # A point of the unit ball that lies on the surface is cosine distributed as seen from the point of contact.
+        towards = self.sets[sets] + normals[:, None, :].astype(np.float32)
+        towards /= np.sqrt(np.einsum("nrk,nrk->nr", towards, towards) + 1e-12)[..., None]
+        hidden = self.scene.occluded(np.repeat(points, self.rays, axis=0), towards.reshape(-1, 3), self.reach)
+        share: FloatArray = 1.0 - np.count_nonzero(hidden.reshape(-1, self.rays), axis=1) / self.rays
+        return share
+
+    def of_picture(self, points: FloatArray, normals: FloatArray, mesh: IntArray) -> FloatArray:
+        """Share of the sky that a grid of places sees, averaged over a tile of the same surface, shape (h, w).
+
+        Args:
+            points: World frame [m], shape (h, w, 3).
+            normals: Unit, shape (h, w, 3).
+            mesh: Which one each shows, -1 for none, shape (h, w).
+        """
+        row, column = np.meshgrid(*(np.arange(size) for size in mesh.shape), indexing="ij")
+        sets = (row % _TILE) * _TILE + column % _TILE
+        share = np.ones(mesh.shape)
+        met = mesh >= 0
+        share[met] = self.open_share(points[met], normals[met], sets[met])
+        return _average_on_surface(share, mesh, normals)
+
+
+def _even_directions(count: int) -> FloatArray:
+    """Unit vectors spread evenly over the sphere along a golden spiral, from pole to pole, shape (count, 3)."""
+    index = np.arange(count)
+    height = 1.0 - (2.0 * index + 1.0) / count
+    turn = index * np.pi * (3.0 - np.sqrt(5.0))
+    radius = np.sqrt(1.0 - height**2)
+    return np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=1)
+
+
+def _average_on_surface(values: FloatArray, mesh: IntArray, normals: FloatArray) -> FloatArray:
+    """Mean over a tile around each pixel of those that show the same mesh with a like normal, shape (h, w)."""
+    total, weight = values.copy(), np.ones_like(values)
+    offsets = range(-(_TILE // 2), _TILE - _TILE // 2)
+    for down, right in ((down, right) for down in offsets for right in offsets if down or right):
+        here = (_span(values.shape[0], down), _span(values.shape[1], right))
+        there = (_span(values.shape[0], -down), _span(values.shape[1], -right))
+        cosine = np.einsum("ijk,ijk->ij", normals[here], normals[there])
+        alike = (mesh[here] == mesh[there]) & (cosine > SAME_SURFACE_COSINE)
+        total[here] += alike * values[there]
+        weight[here] += alike
+    return total / weight
+
+
+def _span(size: int, offset: int) -> slice:
+    """Indices i for which i and i - offset are both in range."""
+    return slice(max(offset, 0), size + min(offset, 0))
+
+
+class FloorShadow:
+    """A horizontal plane below the scene that shows nothing but the shadow on it."""
+
+    def __init__(self, scene: RayScene, config: PreviewConfig) -> None:
+        room = _FLOOR_ROOM * scene.size
+        self.low = scene.bounds[0, :2] - room
+        self.step = (scene.bounds[1, :2] + room - self.low) / (config.floor_cells - 1)
+        # A little lower than the lowest point: an object that stands on the plane would hide its own shadow.
+        self.height = scene.bounds[0, 2] - 2e-3 * scene.size
+        self.map = self._hidden_share(scene, config.floor_cells)
+
+    def _hidden_share(self, scene: RayScene, cells: int) -> FloatArray:
+        """Share of the sky that the scene hides from each cell, fading to zero at the border, shape (cells, cells)."""
+        x, y = np.meshgrid(*(self.low[k] + self.step[k] * np.arange(cells) for k in range(2)), indexing="ij")
+        points = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, self.height)])
+        towards = _even_directions(_FLOOR_RAYS)
+        towards[:, 2] += 1.0
+        towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+        hidden = scene.occluded(
+            np.repeat(points, _FLOOR_RAYS, axis=0), np.tile(towards, (len(points), 1)), _FLOOR_REACH * scene.size
+        )
+        share = hidden.reshape(cells, cells, _FLOOR_RAYS).mean(axis=2)
+        from_middle = np.linspace(-1.0, 1.0, cells)
+        radius = np.hypot(from_middle[:, None], from_middle)
+        faded: FloatArray = gaussian_filter(share, 1.0) * _smooth_step((1.0 - radius) / _FLOOR_FADE)
+        return faded
+
+    def seen(self, origins: FloatArray, directions: FloatArray, pixels: FloatArray, camera: Camera) -> FloatArray:
+        """Darkness of the floor where rays meet it, 0 elsewhere and at the border of the picture, shape (n,).
+
+        Args:
+            origins: World frame [m], shape (n, 3), or (3,) where all start.
+            directions: Unit, shape (n, 3).
+            pixels: Picture positions of the rays [pixels], shape (n, 2).
+            camera: For the size of the picture.
+        """
+        down = directions[:, 2] < -1e-6
+        distance = (self.height - origins[..., 2]) / np.where(down, directions[:, 2], -1.0)
+        spots = origins[..., :2] + distance[:, None] * directions[:, :2]
+        dark = map_coordinates(self.map, ((spots - self.low) / self.step).T, order=1, cval=0.0)
+        inside = np.minimum(pixels, np.array([camera.width, camera.height]) - pixels).min(axis=1)
+        share: FloatArray = np.where(down & (distance > 0.0), dark, 0.0) * _smooth_step(inside / _BORDER)
+        return share
+
+
+def _smooth_step(values: FloatArray) -> FloatArray:
+    clipped = np.clip(values, 0.0, 1.0)
+    smooth: FloatArray = clipped**2 * (3.0 - 2.0 * clipped)
+    return smooth

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     FloatArray = NDArray[np.float64]
     IntArray = NDArray[np.int64]
+    BoolArray = NDArray[np.bool_]
 
 
 def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
@@ -20,7 +21,7 @@ def read_only(array: NDArray[Any], dtype: type) -> NDArray[Any]:
     return copy
 
 
-def used_vertices(faces: IntArray, n_vertices: int) -> NDArray[np.bool_]:
+def used_vertices(faces: IntArray, n_vertices: int) -> BoolArray:
     """Return which vertices a face uses, shape (V,); far quicker on millions of faces than sorting them."""
     used = np.zeros(n_vertices, dtype=np.bool_)
     used[faces.reshape(-1)] = True

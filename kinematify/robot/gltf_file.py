@@ -11,8 +11,7 @@ from urllib.parse import unquote
 
 import numpy as np
 
-from kinematify.robot.appearance import Appearance, Material, joined, painted
-from kinematify.robot.colors import linear_of, srgb_of
+from kinematify.robot.appearance import Appearance, Material, joined, linear_of, painted, srgb_of
 from kinematify.robot.exact_faces import ExactFaces, joined_faces
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def read_gltf(path: Path, *, appearance: bool = False, unnamed: re.Pattern[str] 
     """
     document, binary = _opened(path)
     _check_extensions(document)
-    source = _Buffers(document=document, binary=binary, folder=path.parent, loaded={})
+    source = _GltfBuffers(document=document, binary=binary, folder=path.parent, loaded={})
     if unnamed is not None:
         for node in document.get("nodes", []):
             if unnamed.fullmatch(str(node.get("name", ""))):
@@ -105,7 +104,7 @@ def _check_extensions(document: dict[str, Any]) -> None:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Buffers:
+class _GltfBuffers:
     """Numbers of a document by the index of their accessor."""
 
     document: dict[str, Any]
@@ -162,7 +161,7 @@ class _Buffers:
 class _Materials:
     """Materials of a document, each read once."""
 
-    def __init__(self, document: dict[str, Any], source: _Buffers) -> None:
+    def __init__(self, document: dict[str, Any], source: _GltfBuffers) -> None:
         self._document, self._source = document, source
         self._read: dict[int, Material] = {}
         self._textures: dict[int, Texture | str] = {}
@@ -256,7 +255,7 @@ def _base_color(material: dict[str, Any]) -> tuple[list[float], dict[str, Any]]:
     return surface.get("baseColorFactor", [1.0, 1.0, 1.0, 1.0]), surface.get("baseColorTexture", {})
 
 
-def _nodes(document: dict[str, Any], source: _Buffers, materials: _Materials | None) -> Iterator[GltfNode]:
+def _nodes(document: dict[str, Any], source: _GltfBuffers, materials: _Materials | None) -> Iterator[GltfNode]:
     nodes = document.get("nodes", [])
     waiting = [(index, np.eye(4)) for index in reversed(_roots(document))]
     seen: set[int] = set()
@@ -322,7 +321,7 @@ def _local_transform(node: dict[str, Any]) -> FloatArray:
 
 
 def _merged_primitives(
-    mesh: dict[str, Any], source: _Buffers, materials: _Materials | None
+    mesh: dict[str, Any], source: _GltfBuffers, materials: _Materials | None
 ) -> tuple[FloatArray, IntArray, Appearance | None]:
     """All triangles of a mesh; its primitives differ by material only. Points and lines are left out."""
     vertices, faces, count = [np.empty((0, 3))], [np.empty((0, 3), dtype=np.int64)], 0

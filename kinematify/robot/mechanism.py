@@ -9,17 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.robot.joint_type import JointType
-from kinematify.robot.robot import joint_ends, joint_values, rest_configuration, rigid_groups
+from kinematify.robot.robot import forward_kinematics, joint_ends, joint_values, rest_configuration, rigid_groups
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from numpy.typing import NDArray
-
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
     from kinematify.robot.robot import Robot
-
-    BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +45,7 @@ class Travel:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Mechanism:
+class LeaderMechanism:
     """A tree, its leading joints and its bodies (links held together by fixed joints)."""
 
     robot: Robot
@@ -146,5 +142,61 @@ class Mechanism:
 
 
 def sweep_rows(leader: int, samples: int) -> slice:
-    """Where the sweep of a leader stands among the rows of `Mechanism.sweep`."""
+    """Where the sweep of a leader stands among the rows of `LeaderMechanism.sweep`."""
     return slice(1 + leader * samples, 1 + (leader + 1) * samples)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopOpening:
+    """How far a shared pin comes apart when one joint moves alone."""
+
+    joint: str
+    """Leader that opens it most."""
+    value: float
+    """Where that leader stands then [rad or m]."""
+    distance: float
+    """Between the two ends of the pin there [m]."""
+
+
+def widest_opening(robot: Robot, links: tuple[str, str], point: FloatArray) -> LoopOpening | None:
+    """Move each leader that moves one of two links without the other to its ends; None where there is no such leader.
+
+    Mimic joints that keep a linkage closed keep its pins closed, too.
+
+    Args:
+        robot: A tree.
+        links: The two that share a pin.
+        point: Of the pin, frame of the root link at rest [m], shape (3,).
+    """
+    mechanism = LeaderMechanism(robot=robot)
+    first, second = (int(mechanism.body_of_link[mechanism.links.index(link)]) for link in links)
+    rest = {travel.joint: travel.rest for travel in mechanism.travels}
+    at_rest = forward_kinematics(robot, rest)
+    found = []
+    for travel, moved in zip(mechanism.travels, mechanism.moved, strict=True):
+        if not (moved[first] or moved[second]):
+            continue
+        for value in (travel.lower, travel.upper):
+            if value == travel.rest:
+                continue
+            poses = forward_kinematics(robot, {**rest, travel.joint: value})
+            ends = [poses[link] @ np.linalg.inv(at_rest[link]) @ np.append(point, 1.0) for link in links]
+            found.append(
+                LoopOpening(joint=travel.joint, value=value, distance=float(np.linalg.norm(ends[0] - ends[1])))
+            )
+    return max(found, key=lambda opening: opening.distance, default=None)
+
+
+def joints_between(robot: Robot, links: tuple[str, str]) -> tuple[str, ...]:
+    """Return the joints of the tree on the way from one link to another, fixed ones left out."""
+    ways = []
+    for link in links:
+        way, above = [], robot.joint_above.get(link)
+        while above is not None:
+            way.append(above)
+            above = robot.joint_above.get(above.parent)
+        ways.append(way)
+    first, second = ways
+    shared = {joint.name for joint in first} & {joint.name for joint in second}
+    between = [joint for joint in [*first, *second[::-1]] if joint.name not in shared]
+    return tuple(joint.name for joint in between if joint.kind is not JointType.FIXED)

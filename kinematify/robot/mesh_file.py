@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import importlib.util
 import io
 import logging
+import re
+import subprocess
+import sys
+import tempfile
 import warnings
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,24 +19,22 @@ from lxml import etree
 
 from kinematify.errors import AssemblyError, EnvironmentFault
 from kinematify.robot.appearance import joined, painted
-from kinematify.robot.exact_faces import joined_faces
+from kinematify.robot.exact_faces import ExactFaces, joined_faces
 from kinematify.robot.gltf_file import read_gltf
 from kinematify.robot.mesh_paths import CAD_SUFFIXES, GLTF_SUFFIXES, MESH_SUFFIXES
 from kinematify.robot.obj_file import read_obj
-from kinematify.robot.step_file import read_step
 from kinematify.robot.weld import without_unused
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from trimesh import Trimesh
     from trimesh.scene import Scene
 
     from kinematify.robot.appearance import Appearance
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.exact_faces import ExactFaces
     from kinematify.robot.gltf_file import GltfNode
+
 
 # Without a handler of its own the logger of trimesh would write to the user's terminal; a program that sets up
 # logging still hears it.
@@ -322,3 +326,53 @@ _READERS = {
     **dict.fromkeys(CAD_SUFFIXES, _read_step),
 }
 """Formats whose groups, names or exact numbers the general reader would lose, or that need none of it."""
+
+
+_TURN = 0.2
+"""Angle between neighbouring triangles of a round face at most [rad]: 32 around a circle."""
+_SAG = 0.01
+"""Distance of triangles from a curved face, as a share of the length of its edges."""
+_CONVERT = """
+import cascadio, sys
+sys.exit(cascadio.step_to_glb(sys.argv[1], sys.argv[2], tol_linear=float(sys.argv[3]), tol_angular=float(sys.argv[4]),
+                              tol_relative=True, include_brep=True, brep_types={"cylinder", "plane"}))
+"""
+_NUMBERED = re.compile(r"(NAUO|=>\[|NEXT_ASSEMBLY_USAGE)[\d:\]]*", re.IGNORECASE)
+"""Names that CAD programs give to instances which nobody named."""
+_CONTROLS = re.compile(r"\x1b\[[\d;]*m|\*")
+
+
+def read_step(path: Path, *, appearance: bool = False) -> tuple[GltfNode, ...]:
+    """Read the instances of parts of a STEP file [m], whatever its unit is.
+
+    Args:
+        path: A ``.step`` or ``.stp``.
+        appearance: Read colours too.
+
+    Raises:
+        EnvironmentFault: cascadio is not installed.
+        ValueError: The file cannot be converted.
+    """
+    if importlib.util.find_spec("cascadio") is None:
+        raise EnvironmentFault(
+            f"Reading {path} needs the package cascadio, which is not installed. Run `pip install kinematify[cad]`, or "
+            "export the model as GLB from the CAD program."
+        )
+    with tempfile.TemporaryDirectory(prefix="kinematify-") as folder:
+        converted = Path(folder) / "converted.glb"
+        # In a process of its own: OpenCASCADE writes to the terminal, and broken files have crashed it.
+        run = subprocess.run(
+            [sys.executable, "-c", _CONVERT, str(path), str(converted), str(_SAG), str(_TURN)],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+        )
+        if run.returncode or not converted.is_file():
+            raise ValueError(_reason(run.stdout + run.stderr))
+        return read_gltf(converted, appearance=appearance, unnamed=_NUMBERED)
+
+
+def _reason(told: str) -> str:
+    lines = [_CONTROLS.sub("", line).strip() for line in told.splitlines()]
+    return next((line for line in lines if "ERR" in line), "the converter gave no reason")

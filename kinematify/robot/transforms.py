@@ -20,10 +20,11 @@ _PARALLEL = 1e-12
 """Sine of the angle below which two directions are one line."""
 
 
-def rotation_about(axis: FloatArray, angle: float) -> FloatArray:
-    """Return the rotation matrix, shape (3, 3), by `angle` [rad] about a unit `axis` (Rodrigues)."""
+def rotation_about(axis: FloatArray, angle: float | FloatArray) -> FloatArray:
+    """Return rotation matrices, shape (..., 3, 3), by angles (...) [rad] about a unit `axis` (3,) (Rodrigues)."""
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = np.asarray(angle)[..., None, None]
     matrix: FloatArray = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
     return matrix
 

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
 
 
 def crossed(first: FloatArray, second: FloatArray) -> FloatArray:
@@ -44,6 +42,6 @@ def highest(points: FloatArray) -> FloatArray:
     return np.asarray(np.ascontiguousarray(points.T).max(axis=1))
 
 
-def all_three(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def all_three(flags: BoolArray) -> BoolArray:
     """True where x, y and z are, as ``flags.all(axis=-1)``, (..., 3) -> (...)."""
     return np.asarray(flags[..., 0] & flags[..., 1] & flags[..., 2])

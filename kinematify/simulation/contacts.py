@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.prepared import Prepared
 
 
@@ -103,7 +103,9 @@ class Touching:
         return names[first], names[second]
 
 
-def touching(contacts: Contacts, mechanism: Mechanism, prepared: Prepared, *, rows: int, tolerance: float) -> Touching:
+def touching(
+    contacts: Contacts, mechanism: LeaderMechanism, prepared: Prepared, *, rows: int, tolerance: float
+) -> Touching:
     """Gather contacts of links into contacts of bodies; row 0 is the rest."""
     bodies = np.sort(mechanism.body_of_link[contacts.links], axis=1)
     pairs, index = np.unique(bodies, axis=0, return_inverse=True)

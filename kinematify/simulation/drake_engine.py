@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
@@ -96,7 +96,7 @@ class DrakeEngine:
     settings: EngineSettings
     said: _Said
 
-    def load(self, prepared: Prepared, mechanism: Mechanism) -> DrakeModel:
+    def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> DrakeModel:
         """Load a prepared file."""
         model = DrakeModel(engine=self, prepared=prepared, mechanism=mechanism)
         assert model.looking  # what it refuses, it refuses here
@@ -111,7 +111,7 @@ class DrakeEngine:
 class _World:
     """A diagram with one model in it, and a context."""
 
-    mechanism: Mechanism
+    mechanism: LeaderMechanism
     diagram: Any
     plant: Any
     scene: Any
@@ -137,7 +137,7 @@ class _World:
 
     @cached_property
     def joints(self) -> list[Any]:
-        """Of each of `Mechanism.joints`, None for lost ones."""
+        """Of each of `LeaderMechanism.joints`, None for lost ones."""
         plant = self.plant
         found = [plant.GetJointByName(n) if plant.HasJointNamed(n) else None for n in self.mechanism.joints]
         return [joint if isinstance(joint, RevoluteJoint | PrismaticJoint) else None for joint in found]
@@ -255,7 +255,7 @@ class DrakeModel:
 
     engine: DrakeEngine
     prepared: Prepared
-    mechanism: Mechanism
+    mechanism: LeaderMechanism
 
     @cached_property
     def looking(self) -> _World:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Touching
     from kinematify.simulation.engine import DriveRun, PhysicsModel, Simulation
     from kinematify.simulation.prepared import Prepared
@@ -89,7 +89,7 @@ class _Record:
 def drive_all(
     simulation: Simulation,
     model: PhysicsModel,
-    mechanism: Mechanism,
+    mechanism: LeaderMechanism,
     prepared: Prepared,
     *,
     seen: Contacts,
@@ -104,7 +104,7 @@ def drive_all(
         model: Where contacts are looked at.
         mechanism: The tree.
         prepared: Its record.
-        seen: Contacts along `Mechanism.sweep`.
+        seen: Contacts along `LeaderMechanism.sweep`.
         sweep: The same by bodies.
         settings: Of the engines.
         remaining: Seconds that are left.
@@ -135,7 +135,7 @@ def drive_all(
     )
 
 
-def _record(mechanism: Mechanism, drive: Drive, run: DriveRun) -> _Record:
+def _record(mechanism: LeaderMechanism, drive: Drive, run: DriveRun) -> _Record:
     travel = mechanism.travels[drive.leader]
     moved = run.q[:, mechanism.joints.index(travel.joint)]
     arrived, looks = drive.arrived, drive.looks
@@ -161,7 +161,7 @@ def _both(sweep: Contacts, looked: Contacts, rows: int) -> Contacts:
 
 
 def _driven(
-    mechanism: Mechanism, record: _Record, sweep: Touching, rows: range, silent: Iterable[tuple[int, int]]
+    mechanism: LeaderMechanism, record: _Record, sweep: Touching, rows: range, silent: Iterable[tuple[int, int]]
 ) -> Driven:
     """Put the contacts to a drive, which ends where a pair that does not act gets too deep.
 

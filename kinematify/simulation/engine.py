@@ -2,7 +2,7 @@
 
 An engine loads the prepared copy of a model (`Engine.load`), looks at configurations of it (`EngineModel`), and runs it
 in time (`Simulation`). One that only computes, as Pinocchio does, sees no contacts and never runs. All numbers are in
-the order of the document: links as in `Mechanism.links`, joints as in `Mechanism.joints`.
+the order of the document: links as in `LeaderMechanism.links`, joints as in `LeaderMechanism.joints`.
 
 A new engine is one file: the three classes, and an entry in `kinematify.simulation.engines`.
 """
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
@@ -117,7 +117,7 @@ class Dropped:
 class Engine(Protocol):
     """An engine in this process."""
 
-    def load(self, prepared: Prepared, mechanism: Mechanism) -> EngineModel:
+    def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> EngineModel:
         """Load a prepared file, its root fixed at the world's origin, gravity along -z.
 
         Args:
@@ -177,7 +177,7 @@ class PhysicsModel(EngineModel, Protocol):
         """Return what runs with servos.
 
         Args:
-            sweep: Contacts along `Mechanism.sweep`: what a pair has at rest it may have in runs.
+            sweep: Contacts along `LeaderMechanism.sweep`: what a pair has at rest it may have in runs.
             seen: What was measured there.
             servos: One per leader.
         """

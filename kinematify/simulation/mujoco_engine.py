@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Contacts, Touching
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
@@ -72,7 +72,7 @@ class MujocoEngine:
     said: list[str]
     """Added to at any time."""
 
-    def load(self, prepared: Prepared, mechanism: Mechanism) -> MujocoModel:
+    def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> MujocoModel:
         """Load a prepared file."""
         source = parse(prepared.urdf, mechanism, step=self.settings.time_step)
         return MujocoModel(engine=self, source=source, measuring=compiled(source))
@@ -174,7 +174,7 @@ class MujocoSimulation:
         return self._compiled(with_allowances(self._servoed, self.model.measuring, self.sweep, only=False))
 
     @property
-    def _mechanism(self) -> Mechanism:
+    def _mechanism(self) -> LeaderMechanism:
         return self.model.source.mechanism
 
     @property

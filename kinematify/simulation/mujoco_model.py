@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Touching
 
 _RESERVED = "world"
@@ -41,7 +41,7 @@ class CompiledModel:
     body: IntArray
     """Body of each link, -1 for lost ones, shape (L,)."""
     joint: IntArray
-    """MuJoCo joint of each of `Mechanism.joints`, -1 for lost ones, shape (J,)."""
+    """MuJoCo joint of each of `LeaderMechanism.joints`, -1 for lost ones, shape (J,)."""
     balanced: bool
     """True if MuJoCo refused an inertia tensor, and all such were replaced by balanced ones."""
 
@@ -75,12 +75,12 @@ class ParsedModel:
     spec: mujoco.MjSpec
     names: tuple[str, ...]
     """Names of the links in the document's order, as MuJoCo knows them."""
-    mechanism: Mechanism
+    mechanism: LeaderMechanism
     step: float
     """Time step [s]."""
 
 
-def parse(urdf: Path, mechanism: Mechanism, *, step: float) -> ParsedModel:
+def parse(urdf: Path, mechanism: LeaderMechanism, *, step: float) -> ParsedModel:
     """Parse a file.
 
     Raises:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.prepared import Prepared
 
 
@@ -32,7 +32,7 @@ def open_engine(settings: EngineSettings, log: Path) -> PinocchioEngine:
 class PinocchioEngine:
     """See `kinematify.simulation.engine.Engine`."""
 
-    def load(self, prepared: Prepared, mechanism: Mechanism) -> PinocchioModel:
+    def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> PinocchioModel:
         """Build the tree; the geometry is left out, Pinocchio would only look for the files."""
         robot = etree.parse(prepared.urdf).getroot()
         for link in robot.iter("link"):
@@ -55,7 +55,7 @@ class PinocchioModel:
     """See `kinematify.simulation.engine.EngineModel`."""
 
     model: pin.Model
-    mechanism: Mechanism
+    mechanism: LeaderMechanism
 
     @cached_property
     def loaded(self) -> LoadedModel:

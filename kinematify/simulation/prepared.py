@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kinematify.model.collision_pieces import Method, Pieces, decomposed
-from kinematify.model.drives import lacks_drive, prepared_joint
 from kinematify.model.masses import prepared_inertials
+from kinematify.model.simulable import lacks_drive, prepared_joint
 from kinematify.robot.obj_file import OBJ_DIGITS, write_obj
 from kinematify.robot.robot import Link, LinkMesh, Robot, Shape
 from kinematify.robot.write import write_robot

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
     from kinematify.simulation.contacts import Touching
     from kinematify.simulation.prepared import Prepared
     from kinematify.simulation.servos import Drive, Servos
@@ -62,7 +62,7 @@ class PybulletEngine:
     settings: EngineSettings
     log: Path
 
-    def load(self, prepared: Prepared, mechanism: Mechanism) -> PybulletModel:
+    def load(self, prepared: Prepared, mechanism: LeaderMechanism) -> PybulletModel:
         """Load a prepared file; a second time with a free base, because a fixed one has no mass."""
         step = self.settings.pybullet_time_step
         try:
@@ -361,7 +361,7 @@ class _Motors:
                 self.command(column, float(values[column]), 0.0, _UNLIMITED)
 
     def command(self, column: int, target: float, speed: float, force: float) -> None:
-        """Command one of `Mechanism.joints`."""
+        """Command one of `LeaderMechanism.joints`."""
         bullet.setJointMotorControl2(
             self._world.body,
             self._world.indices[column],

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import Mechanism
+    from kinematify.robot.mechanism import LeaderMechanism
 
 _FLAGS = (
     bullet.URDF_USE_SELF_COLLISION
@@ -45,11 +45,11 @@ class PybulletBody:
 
     client: int
     body: int
-    mechanism: Mechanism
+    mechanism: LeaderMechanism
     link: IntArray
     """PyBullet's index of each link, -1 for the root, -2 for lost ones, shape (L,)."""
     joint: IntArray
-    """PyBullet's index of each of `Mechanism.joints`, -2 for lost ones, shape (J,)."""
+    """PyBullet's index of each of `LeaderMechanism.joints`, -2 for lost ones, shape (J,)."""
     margin: FloatArray
     """By which each link's shapes are inflated [m], shape (L,)."""
     mass_scale: float = 1.0
@@ -255,7 +255,9 @@ def connect(step: float, *, iterations: int | None = None) -> int:
     return client
 
 
-def load(mechanism: Mechanism, urdf: Path, *, step: float, fixed: bool = True, looking: bool = False) -> PybulletBody:
+def load(
+    mechanism: LeaderMechanism, urdf: Path, *, step: float, fixed: bool = True, looking: bool = False
+) -> PybulletBody:
     """Load a file into a new world; links that fixed joints join do not collide with each other.
 
     Args:
@@ -283,7 +285,9 @@ def load(mechanism: Mechanism, urdf: Path, *, step: float, fixed: bool = True, l
     return loaded
 
 
-def load_at(client: int, mechanism: Mechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool) -> PybulletBody:
+def load_at(
+    client: int, mechanism: LeaderMechanism, urdf: Path, T_world_root: FloatArray, *, itself: bool
+) -> PybulletBody:
     """Load a file into a world, its root fixed at a pose.
 
     Args:
@@ -302,7 +306,7 @@ def load_at(client: int, mechanism: Mechanism, urdf: Path, T_world_root: FloatAr
     return _loaded(client, mechanism, urdf, **options)
 
 
-def _loaded(client: int, mechanism: Mechanism, urdf: Path, **options: Any) -> PybulletBody:
+def _loaded(client: int, mechanism: LeaderMechanism, urdf: Path, **options: Any) -> PybulletBody:
     try:
         body = bullet.loadURDF(str(urdf), physicsClientId=client, **options)
     except bullet.error as error:
@@ -344,7 +348,7 @@ def _scaled_down(loaded: PybulletBody) -> float:
     return float(scale)
 
 
-def _welded_pairs(mechanism: Mechanism) -> list[tuple[int, int]]:
+def _welded_pairs(mechanism: LeaderMechanism) -> list[tuple[int, int]]:
     """Pairs of links that fixed joints join."""
     members: dict[int, list[int]] = defaultdict(list)
     for link, body in enumerate(mechanism.body_of_link.tolist()):

@@ -13,7 +13,7 @@ from kinematify.robot.mechanism import sweep_rows
 if TYPE_CHECKING:
     from kinematify.config.validation import EngineSettings
     from kinematify.robot.arrays import FloatArray, IntArray
-    from kinematify.robot.mechanism import Mechanism, Travel
+    from kinematify.robot.mechanism import LeaderMechanism, Travel
     from kinematify.simulation.contacts import Touching
 
 LOOKS = 16
@@ -37,7 +37,7 @@ class Servos:
 
 
 def servos(
-    mechanism: Mechanism,
+    mechanism: LeaderMechanism,
     mass_matrix: FloatArray,
     gravity: FloatArray,
     resistance: FloatArray,
@@ -48,7 +48,7 @@ def servos(
     Args:
         mechanism: The tree.
         mass_matrix: Of all joints at rest, shape (J, J).
-        gravity: Torques that hold the model still along `Mechanism.sweep`, shape (rows, J).
+        gravity: Torques that hold the model still along `LeaderMechanism.sweep`, shape (rows, J).
         resistance: Damping and friction of all joints, as (damping, friction), shape (2, J).
         settings: Frequency and margin.
     """
@@ -76,7 +76,7 @@ class Drive:
     """One joint on its way from rest to one end, the others held."""
 
     leader: int
-    """Index in `Mechanism.travels`."""
+    """Index in `LeaderMechanism.travels`."""
     end: float
     """[rad or m]."""
     reference: FloatArray
@@ -92,7 +92,7 @@ class Drive:
         return np.linspace(self.arrived / LOOKS, self.arrived, LOOKS).astype(np.int64) - 1
 
 
-def drives(mechanism: Mechanism, settings: EngineSettings, step: float) -> tuple[Drive, ...]:
+def drives(mechanism: LeaderMechanism, settings: EngineSettings, step: float) -> tuple[Drive, ...]:
     """Return a drive to each end of every leading joint that has a way, all of the same number of steps."""
     return tuple(
         _drive(leader, travel, end, settings, step)
@@ -116,7 +116,7 @@ def _drive(leader: int, travel: Travel, end: float, settings: EngineSettings, st
     return Drive(leader=leader, end=end, reference=reference, speed=speed, arrived=moving + waiting)
 
 
-def commands(drive: Drive, mechanism: Mechanism, servos: Servos, samples: int) -> FloatArray:
+def commands(drive: Drive, mechanism: LeaderMechanism, servos: Servos, samples: int) -> FloatArray:
     """Return what each servo is told per step, shape (steps, leaders); weight and resistance are made up for."""
     travel = mechanism.travels[drive.leader]
     places = np.linspace(travel.lower, travel.upper, samples)
@@ -131,7 +131,7 @@ def commands(drive: Drive, mechanism: Mechanism, servos: Servos, samples: int) -
 
 
 def acting_pairs(
-    mechanism: Mechanism, sweep: Touching, drive: Drive, silent: frozenset[tuple[int, int]], samples: int
+    mechanism: LeaderMechanism, sweep: Touching, drive: Drive, silent: frozenset[tuple[int, int]], samples: int
 ) -> list[tuple[int, int]]:
     """Return the pairs of links of the bodies that get too deep into each other on the way, but for silent ones.
 
@@ -140,7 +140,7 @@ def acting_pairs(
 
     Args:
         mechanism: The tree.
-        sweep: Along `Mechanism.sweep`.
+        sweep: Along `LeaderMechanism.sweep`.
         drive: One of `drives`.
         silent: Pairs of links, smaller index first.
         samples: Of each joint in the sweep.

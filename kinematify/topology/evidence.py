@@ -1,4 +1,4 @@
-"""What is known of the joint of each contact edge before the tree is: how good the edge is, and the joint's axis."""
+"""What the search knows of edges: how good a contact is, and how parts that no contact reaches join a tree (III-C)."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from kinematify.joints.choice.edges import edge_qualities
 from kinematify.robot.arrays import read_only
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import ArrayLike
 
     from kinematify.contact.graph import ContactGraph, Pair
     from kinematify.geometry.part_stats import PartStats
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.measure.pins import EdgePins
     from kinematify.robot.arrays import FloatArray
 
@@ -46,3 +48,32 @@ def gather_evidence(
         pair: EdgeEvidence(quality=quality, axis=axes.get(pair), carriers=pins.passing.get(pair, frozenset()))
         for pair, quality in edge_qualities(graph, stats, bearings, pins).items()
     }
+
+
+def virtual_costs(centroids: FloatArray, *, limit: float = np.inf, forbidden: Iterable[Pair] = ()) -> FloatArray:
+    """Cost of a virtual edge between every two parts [m], shape (n, n): the distance of their centroids.
+
+    Pairs beyond `limit` (``d_max``) cost more than any nearer one, and forbidden pairs (inside a cluster) more than
+    all others, so that they are taken last: a tree that leaves a part out would be of no use.
+    """
+    costs: FloatArray = np.linalg.norm(centroids[:, None] - centroids[None], axis=2)
+    span = float(costs.max()) + 1.0
+    costs = np.where(costs > limit, costs + span, costs)
+    for a, b in forbidden:
+        costs[a, b] += 4 * span
+        costs[b, a] += 4 * span
+    return costs
+
+
+def nearest_pair(costs: FloatArray, reached: ArrayLike) -> tuple[int, int]:
+    """Cheapest pair (reached part, other part).
+
+    Args:
+        costs: Cost of every pair, shape (n, n).
+        reached: Which parts are in the tree, shape (n,); at least one is and one is not.
+    """
+    mask = np.asarray(reached, dtype=bool)
+    inside, outside = np.flatnonzero(mask), np.flatnonzero(~mask)
+    choices = costs[np.ix_(inside, outside)]
+    row, column = np.unravel_index(int(choices.argmin()), choices.shape)
+    return int(inside[row]), int(outside[column])

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image
 
-from kinematify.robot.colors import linear_of
+from kinematify.robot.appearance import linear_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

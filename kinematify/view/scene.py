@@ -24,8 +24,8 @@ from kinematify.validation.formats.view_data import camera_turn
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kinematify.geometry.overlap import Overlap
-    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.overlap import OverlapQueries
+    from kinematify.geometry.rest import DepthAllowance
     from kinematify.geometry.scene import Scene
     from kinematify.render.picture import PosedMesh
     from kinematify.robot.appearance import Appearance, Rgba, Surface
@@ -289,15 +289,15 @@ class ViewScene:
         return forward_kinematics(self.robot, {})
 
     @cached_property
-    def _collisions(self) -> tuple[Scene, Overlap, Allowance]:
+    def _collisions(self) -> tuple[Scene, OverlapQueries, DepthAllowance]:
         from kinematify.config.validation import load_settings  # noqa: PLC0415  # what is seen first needs none of these
-        from kinematify.geometry.overlap import Overlap  # noqa: PLC0415
-        from kinematify.geometry.rest import Allowance  # noqa: PLC0415
+        from kinematify.geometry.overlap import OverlapQueries  # noqa: PLC0415
+        from kinematify.geometry.rest import DepthAllowance  # noqa: PLC0415
         from kinematify.geometry.scene import read_scene  # noqa: PLC0415
 
         scene = read_scene(self._read_solid(), load_settings().geometry)
-        overlap = Overlap(scene)
-        return scene, overlap, Allowance(scene, overlap)
+        overlap = OverlapQueries(scene)
+        return scene, overlap, DepthAllowance(scene, overlap)
 
     def _mesh(self, group: RigidGroup) -> tuple[FloatArray, IntArray, Appearance | None]:
         vertices, faces, start = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0

@@ -17,8 +17,8 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kinematify.assembly.assemble import natural_key, part_names
 from kinematify.assembly.load import load_assembly
-from kinematify.assembly.names import natural_key, part_names
 from kinematify.config import load_config
 from kinematify.errors import AssemblyError, InputError
 from kinematify.robot.weld import welded

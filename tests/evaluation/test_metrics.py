@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kinematify.assembly.erase import GroundTruth, TrueJoint
+from kinematify.contact.tree import KinematicTree
 from kinematify.evaluation.metrics import (
     NOTHING_PREDICTED,
     JointScore,
@@ -21,7 +22,6 @@ from kinematify.evaluation.metrics import (
 )
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.robot.joint_type import JointType
-from kinematify.topology.tree import KinematicTree
 
 X, Y, Z = np.eye(3)
 CENTROIDS = [np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5])]

@@ -14,17 +14,16 @@ from PIL import Image
 
 from kinematify.assembly.load import load_assembly
 from kinematify.config import load_config
+from kinematify.contact.tree import KinematicTree
 from kinematify.formats.export import export
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
-from kinematify.model.palette import link_colors
 from kinematify.model.scene import posed_meshes
-from kinematify.model.urdf import write_urdf
+from kinematify.model.urdf import link_colors, write_urdf
 from kinematify.render.camera import fit_camera
 from kinematify.render.picture import PictureScene, render_scene
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.mesh_file import read_meshes
-from kinematify.topology.tree import KinematicTree
 from tests.colored_objects import (
     dressed,
     make_object,

@@ -9,7 +9,7 @@ import coal
 import numpy as np
 import pytest
 
-from kinematify.geometry.carve import Sweep, carved
+from kinematify.geometry.carve import SweptJoint, carved
 from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
 
 if TYPE_CHECKING:
@@ -33,20 +33,22 @@ def rod(radius: float, length: float) -> ConvexPiece:
     return convex_piece(points, thickness=1e-6, directions=256)
 
 
-def slide(moved: int, axis: tuple[float, float, float], upper: float) -> Sweep:
-    return Sweep(moved=frozenset({moved}), turns=False, axis=np.array(axis), pivot=np.zeros(3), lower=0.0, upper=upper)
+def slide(moved: int, axis: tuple[float, float, float], upper: float) -> SweptJoint:
+    return SweptJoint(
+        moved=frozenset({moved}), turns=False, axis=np.array(axis), pivot=np.zeros(3), lower=0.0, upper=upper
+    )
 
 
-def turn(moved: int, pivot: tuple[float, float, float], lower: float, upper: float) -> Sweep:
+def turn(moved: int, pivot: tuple[float, float, float], lower: float, upper: float) -> SweptJoint:
     axis = np.array([0.0, 0.0, 1.0])
-    return Sweep(moved=frozenset({moved}), turns=True, axis=axis, pivot=np.array(pivot), lower=lower, upper=upper)
+    return SweptJoint(moved=frozenset({moved}), turns=True, axis=axis, pivot=np.array(pivot), lower=lower, upper=upper)
 
 
 def everywhere(sweep: int, first: int, second: int, sign: float) -> float:
     return sign * math.inf
 
 
-def freed(bodies: Sequence[Sequence[ConvexPiece]], sweep: Sweep, free_end=everywhere, most: int = 64) -> Carved:
+def freed(bodies: Sequence[Sequence[ConvexPiece]], sweep: SweptJoint, free_end=everywhere, most: int = 64) -> Carved:
     surfaces = [
         np.concatenate([surface_points(piece.vertices, piece.faces, 500) for piece in pieces]) for pieces in bodies
     ]
@@ -60,7 +62,7 @@ def convex(piece: ConvexPiece) -> coal.ConvexBase:
     return coal.ConvexBase.convexHull(points, False, "Qt")
 
 
-def nearest(result: Carved, sweep: Sweep) -> float:
+def nearest(result: Carved, sweep: SweptJoint) -> float:
     """Smallest signed distance between what moves and what rests at many values [m]."""
     (moving,) = sweep.moved
     values = np.linspace(sweep.lower, sweep.upper, 181)
@@ -139,7 +141,7 @@ def test_the_bodies_are_asked_only_on_the_side_where_pieces_meet() -> None:
 
     post, arm = rod(0.02, 0.3), rod(0.02, 0.3)
     beside = ConvexPiece(vertices=arm.vertices + np.array([0.1, 0.0, 0.0]), faces=arm.faces)
-    sweep = Sweep(
+    sweep = SweptJoint(
         moved=frozenset({1}), turns=False, axis=np.array([-1.0, 0.0, 0.0]), pivot=np.zeros(3), lower=-0.1, upper=0.1
     )
     freed([[post], [beside]], sweep, free_end)

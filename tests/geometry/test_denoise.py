@@ -11,7 +11,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.geometry.surface import FACETED, PartSurface, part_surfaces
-from kinematify.joints.hypotheses.bearing import fit_bearings
+from kinematify.joints.bearings.fit import fit_bearings
 
 CONFIG = load_config()
 

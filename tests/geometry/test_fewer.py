@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinematify.geometry.convex import ConvexPiece, convex_piece
-from kinematify.geometry.fewer import fewer_pieces
+from kinematify.model.collision_pieces import fewer_pieces
 
 
 def cube(x: float, y: float = 0.0) -> ConvexPiece:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from kinematify.geometry.sobol import sobol
+from kinematify.geometry.together import sobol
 
 
 @pytest.mark.parametrize("dimensions", [1, 2, 7, 48, 50])

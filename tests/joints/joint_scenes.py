@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
+from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.joints.choice.decide import estimate_joints
-from kinematify.joints.hypotheses.bearing import fit_bearings
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
-from kinematify.topology.tree import KinematicTree
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from kinematify.contact.graph import ContactGraph
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.candidate import JointEstimate
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
     from kinematify.joints.measure.scene import JointScene
     from tests.known import KnownObject
 

@@ -16,9 +16,10 @@ from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.joints.hypotheses.bearing_evidence import contact_centroid, contact_sides, thin, whole_side
-from kinematify.joints.hypotheses.bearing_fit import (
+from kinematify.joints.bearings.evidence import contact_centroid, contact_sides, thin, whole_side
+from kinematify.joints.bearings.fit import fit_bearings, normal_pair_lines
+from kinematify.joints.bearings.line import Line, Lines, join
+from kinematify.joints.bearings.refine import (
     across_axis,
     circle_rows,
     line_frames,
@@ -27,16 +28,14 @@ from kinematify.joints.hypotheses.bearing_fit import (
     refine_lines,
     surface_rows,
 )
-from kinematify.joints.hypotheses.bearing_proposals import normal_pair_lines
-from kinematify.joints.hypotheses.bearing_scores import circle_support, line_support, surface_support
-from kinematify.joints.hypotheses.line import Line, Lines, join
+from kinematify.joints.bearings.scores import circle_support, line_support, surface_support
 from kinematify.robot.transforms import rotation_about
 from tests.known import known_object, posed, shuffled, turning
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
-    from kinematify.joints.hypotheses.bearing_evidence import Sides
-    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
+    from kinematify.joints.bearings.evidence import Sides
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from tests.known import KnownJoint, KnownObject
 
 CONFIG = load_config()

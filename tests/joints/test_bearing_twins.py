@@ -13,12 +13,12 @@ from kinematify.config import load_config
 from kinematify.contact.build import build_contact_graph
 from kinematify.generate.procedural.solids import box, cylinder, union
 from kinematify.geometry.surface import part_surfaces
-from kinematify.joints.hypotheses.bearing import fit_edge
-from kinematify.joints.hypotheses.bearing_evidence import contact_sides
-from kinematify.joints.hypotheses.bearing_twins import shared_by_twins
+from kinematify.joints.bearings.evidence import contact_sides
+from kinematify.joints.bearings.fit import fit_edge
+from kinematify.joints.bearings.twins import shared_by_twins
 
 if TYPE_CHECKING:
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.bearings.scores import EdgeBearing
 
 CONFIG = load_config()
 LEFT, RIGHT = (0, 1), (0, 2)

@@ -14,7 +14,7 @@ from kinematify.config import load_config
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.joints.candidate import JointEstimate
-from kinematify.joints.choice.compound import Compound, CompoundKind, compounds, described
+from kinematify.pipeline.warnings import Compound, CompoundKind, compounds, described
 from kinematify.robot.joint_type import JointType
 
 CONFIG = load_config().joints.compound

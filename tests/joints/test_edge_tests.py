@@ -9,8 +9,8 @@ import pytest
 
 from kinematify.config import load_config
 from kinematify.generate.procedural.solids import bore, box, cylinder
-from kinematify.joints.hypotheses.bearing_line import BearingLine
-from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, middle_leaf, passing_pairs
+from kinematify.joints.bearings.scores import BearingLine
+from kinematify.joints.measure.pins import journal_pairs, leaf_pairs, middle_leaf, passing_pairs
 from kinematify.joints.measure.workspace import PartCache
 from tests.joints.joint_scenes import evidence
 from tests.known import known_object, turning

@@ -10,7 +10,7 @@ import pytest
 
 from kinematify.generate.procedural.solids import bore, box, cylinder
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.measure.guide import guided_share, guided_travel
+from kinematify.joints.measure.travel import guided_share, guided_travel
 from kinematify.robot.joint_type import JointType
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, sliding

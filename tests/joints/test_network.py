@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.fit.network import fit_network, scale_of
-from kinematify.joints.choice.network import Network
+from kinematify.joints.choice.point_network import Network
 
 EDGES, HYPOTHESES, COLUMNS = 800, 5, 4
 

@@ -7,9 +7,8 @@ import pytest
 
 from benchmarks.fit.trees import opening_recipe_key
 from kinematify.generate.procedural.solids import box
-from kinematify.joints.choice.opening import opening_odds, side_columns, turn_sign
-from kinematify.joints.choice.scorer import shipped_opening
-from kinematify.joints.measure.opening_direction import measure_sides
+from kinematify.joints.choice.opening import measure_sides, opening_odds, side_columns, turn_sign
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, shipped_scorer
 from tests.joints.joint_scenes import CONFIG, scene_of
 from tests.known import known_object, turning
 
@@ -37,8 +36,8 @@ def test_a_slab_opens_away_from_its_body(door) -> None:
 
 def test_an_axis_and_its_opposite_get_opposite_odds(door) -> None:
     scene, axis, pivot = door
-    given = opening_odds(shipped_opening(), measure_sides(scene, axis, pivot))
-    reversed_ = opening_odds(shipped_opening(), measure_sides(scene, -axis, pivot))
+    given = opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, axis, pivot))
+    reversed_ = opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, -axis, pivot))
     assert given > 0.0
     assert given == pytest.approx(-reversed_, rel=0.05)
 
@@ -57,5 +56,5 @@ def test_what_is_not_finite_never_reaches_the_trees() -> None:
 
 
 def test_the_weights_are_of_the_recipe() -> None:
-    shipped = shipped_opening()
+    shipped = shipped_scorer(OPENING_WEIGHTS)
     assert shipped.provenance["recipe"] == opening_recipe_key(shipped.measurements)

@@ -7,7 +7,7 @@ import pytest
 
 from kinematify.generate.procedural.pieces.bearings import fork
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.measure.opening_direction import clockwise_sign, swing_sign
+from kinematify.joints.choice.opening import clockwise_sign, swing_sign
 from tests.joints.joint_scenes import infer_joints, scene_of
 from tests.known import KnownObject, known_object, turning
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kinematify.joints.choice.part_names import kind_said
+from kinematify.joints.choice.judge import kind_said
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinematify.config import load_config
-from kinematify.joints.hypotheses.bearing_line import BearingLine
+from kinematify.joints.bearings.scores import BearingLine
 from kinematify.joints.measure.pins import EdgePins, coaxial_carriers, find_pins, on_cycles
 from tests.joints.joint_scenes import evidence
 from tests.joints.test_edges import clock

@@ -11,8 +11,8 @@ import torch
 from benchmarks.fit.point_network import unfitted_model, written
 from kinematify.joints.choice.point_network import LINE_INPUTS, POINT_INPUTS, point_inputs
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.cloud import CARRIED, CHILD, OTHER, PARENT, Cloud
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses
+from kinematify.joints.measure.workspace import CARRIED, CHILD, OTHER, PARENT, Cloud
 
 
 def some_cloud(seed: int, *, others: bool = True) -> Cloud:

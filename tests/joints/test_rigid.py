@@ -10,11 +10,11 @@ from benchmarks.fit.broken_off import with_pieces_broken_off
 from kinematify.assembly.part import Assembly, Part
 from kinematify.assembly.truth import GroundTruth
 from kinematify.contact.build import build_contact_graph
+from kinematify.contact.tree import KinematicTree
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearings.fit import fit_bearings
 from kinematify.joints.candidate import JointEstimate, JointType
 from kinematify.joints.choice.decide import estimate_joints
-from kinematify.joints.hypotheses.bearing import fit_bearings
-from kinematify.topology.tree import KinematicTree
 from tests.joints.joint_scenes import CONFIG
 
 

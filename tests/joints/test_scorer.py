@@ -14,19 +14,18 @@ from kinematify.joints.choice import scorer as scorer_module
 from kinematify.joints.choice.decide import weigh_joints
 from kinematify.joints.choice.judge import cues_of, hypotheses_of, judge, verdicts_of
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.cloud import point_cloud
 from kinematify.joints.measure.measurements import Hypotheses, measure
 from kinematify.joints.measure.scene import part_frames
-from kinematify.joints.measure.workspace import PartCache
+from kinematify.joints.measure.workspace import PartCache, point_cloud
 from tests.joints.joint_scenes import CONFIG, evidence
 from tests.objects import BUILDERS
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kinematify.joints.choice.weighed import WeighedJoints
-    from kinematify.joints.measure.cloud import Cloud
+    from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.joints.measure.measurements import Values
+    from kinematify.joints.measure.workspace import Cloud
     from kinematify.robot.arrays import IntArray
 
 

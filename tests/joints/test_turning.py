@@ -7,8 +7,8 @@ import pytest
 
 from benchmarks.fit.trees import turning_recipe_key
 from kinematify.generate.procedural.solids import box, cylinder
-from kinematify.joints.choice.scorer import shipped_turning
-from kinematify.joints.choice.turning import goes_round, turning_columns
+from kinematify.joints.choice.opening import goes_round, turning_columns
+from kinematify.joints.choice.scorer import TURNING_WEIGHTS, shipped_scorer
 from tests.joints.joint_scenes import scene_of
 from tests.known import known_object, turning
 
@@ -43,5 +43,5 @@ def test_what_is_not_finite_never_reaches_the_trees() -> None:
 
 
 def test_the_weights_are_of_the_recipe() -> None:
-    shipped = shipped_turning()
+    shipped = shipped_scorer(TURNING_WEIGHTS)
     assert shipped.provenance["recipe"] == turning_recipe_key(shipped.measurements)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.joints.choice.twins import agreed, alike_edges
+from kinematify.joints.choice.judge import agreed, alike_edges
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 from tests.joints.joint_scenes import evidence, infer_joints
 from tests.objects import BUILDERS

@@ -10,7 +10,7 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import read_scene, relative
 from kinematify.manipulation.robot import GRASP_LINK, TaskRobot, builtin_robot, user_robot
 from kinematify.robot.read import read_robot
@@ -58,7 +58,7 @@ def test_neighbours_of_the_arm_touch_in_no_configuration(arm: TaskRobot) -> None
     rng = np.random.default_rng(1)
     low, high = (np.array([getattr(t, end) for t in scene.travels]) for end in ("lower", "upper"))
     poses = scene.poses(rng.uniform(low, high, (300, len(low))))
-    overlap = Overlap(scene)
+    overlap = OverlapQueries(scene)
     for connection in scene.connections:
         assert not overlap.collide(connection.pair, relative(poses, connection.pair)).any(), scene.name(connection.pair)
 

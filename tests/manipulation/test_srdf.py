@@ -12,8 +12,8 @@ from lxml import etree
 from kinematify.cli.app import run
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
-from kinematify.geometry.overlap import Overlap
-from kinematify.geometry.rest import Allowance
+from kinematify.geometry.overlap import OverlapQueries
+from kinematify.geometry.rest import DepthAllowance
 from kinematify.geometry.scene import read_scene
 from kinematify.geometry.together import looked_at, random_rows
 from kinematify.manipulation.robot import builtin_robot
@@ -126,8 +126,8 @@ def test_reasons_agree_with_those_of_kv3(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(STUCK)
     model = read_robot(tmp_path / "r.urdf")
     scene = read_scene(model, SETTINGS.geometry)
-    overlap = Overlap(scene)
-    allowance = Allowance(scene, overlap)
+    overlap = OverlapQueries(scene)
+    allowance = DepthAllowance(scene, overlap)
     random = looked_at(scene, overlap, allowance, random_rows(scene, SETTINGS.seed))
     tolerated = {frozenset(scene.name(pair)) for pair in allowed_pairs(scene, allowance, random)}
     disabled = {frozenset(pair.links) for pair in disabled_pairs(model, SETTINGS)[0] if pair.reason != "Never"}

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
-from kinematify.geometry.hull import convex_hull, thickened
-from kinematify.model.inertia import inertial_of
+from kinematify.geometry.convex import convex_hull, thickened
+from kinematify.model.masses import inertial_of
 from kinematify.robot.robot import Inertial
 
 CONFIG = load_config().model

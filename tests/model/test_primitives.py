@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kinematify.geometry.convex import ConvexPiece, convex_piece
-from kinematify.geometry.hull import convex_hull
-from kinematify.model.primitives import fitted_shape
+from kinematify.geometry.convex import ConvexPiece, convex_hull, convex_piece
+from kinematify.model.collision import fitted_shape
 from kinematify.robot.transforms import rotation_about
 
 if TYPE_CHECKING:

@@ -8,12 +8,12 @@ from lxml import etree
 from scipy.spatial import cKDTree
 
 from kinematify.assembly.part import Assembly, Part
+from kinematify.contact.tree import KinematicTree
 from kinematify.errors import DescriptionError
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics
-from kinematify.topology.tree import KinematicTree
 from tests.engines import READERS
 from tests.mechanisms import ALL, CONFIG, Mechanism, box, chain, door, drawer, flat_and_fixed, joint
 

@@ -30,9 +30,8 @@ from kinematify.paper.cavl import (
     refine,
     virtual_motions,
 )
-from kinematify.paper.contact_region import ContactRegion
+from kinematify.paper.contact_region import ContactRegion, revolve, slide, unit_axis
 from kinematify.paper.joints import estimate_paper_joint, paper_candidates
-from kinematify.paper.motion import revolve, slide, unit_axis
 from kinematify.paper.sdf_grid import SignedDistanceCache, exact_distance
 from kinematify.robot.joint_type import JointType
 

@@ -20,7 +20,7 @@ from kinematify.evaluation.metrics import Prediction
 from kinematify.geometry.surface import part_surfaces
 from kinematify.joints.candidate import JointCandidate, JointEstimate
 from kinematify.paper.cavl import _bounded
-from kinematify.paper.contacts import field_gaps
+from kinematify.paper.sdf import field_gaps
 from kinematify.pipeline import infer, write_inference
 from kinematify.pipeline.stages import rank_trees
 from kinematify.robot.joint_type import JointType

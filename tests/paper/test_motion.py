@@ -7,7 +7,7 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinematify.paper.motion import cross_matrix, revolve, rotation_matrix, slide, unit_axis
+from kinematify.paper.contact_region import cross_matrix, revolve, rotation_matrix, slide, unit_axis
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import joint_motion
 

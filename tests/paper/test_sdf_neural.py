@@ -10,7 +10,7 @@ import trimesh
 from kinematify.assembly.part import Part
 from kinematify.config import load_config
 from kinematify.geometry.sampling import sample_surface
-from kinematify.paper.field_source import field_source
+from kinematify.paper.sdf import field_source
 from kinematify.paper.sdf_grid import exact_signed_distance
 from kinematify.paper.sdf_neural import NeuralSignedDistanceField, train_fields
 

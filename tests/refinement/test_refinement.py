@@ -18,6 +18,7 @@ from kinematify.assembly.part import Assembly, Part
 from kinematify.cli.app import run
 from kinematify.config import load_config
 from kinematify.config.validation import ValidationSettings, load_settings
+from kinematify.contact.tree import KinematicTree
 from kinematify.errors import InputError
 from kinematify.evaluation.metrics import Prediction
 from kinematify.joints.candidate import JointCandidate, JointEstimate
@@ -31,7 +32,6 @@ from kinematify.refinement.plan import Plan
 from kinematify.refinement.simulate import Simulator
 from kinematify.robot.joint_type import JointType
 from kinematify.simulation.engines import ENGINES
-from kinematify.topology.tree import KinematicTree
 from kinematify.validation.failure_rates import LINE, TYPE, shipped_rates
 from kinematify.validation.finding import Severity
 from kinematify.validation.inferred import round_rows

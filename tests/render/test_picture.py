@@ -11,7 +11,6 @@ from PIL import Image
 
 from kinematify.config import load_config
 from kinematify.geometry.rays import RayScene
-from kinematify.model.palette import link_colors, link_shades, tell_apart
 from kinematify.model.preview import draw_pair, render_preview, render_story
 from kinematify.model.scene import (
     GLYPH_COLORS,
@@ -20,11 +19,13 @@ from kinematify.model.scene import (
     joint_glyphs,
     opened_configuration,
     posed_meshes,
+    sliding_arrow,
+    turning_arrow,
 )
+from kinematify.model.urdf import link_colors, link_shades, tell_apart
 from kinematify.render.camera import fit_camera
-from kinematify.render.glyphs import sliding_arrow, turning_arrow
 from kinematify.render.picture import BACKGROUND, PictureScene, PosedMesh, render_scene
-from kinematify.robot.colors import linear_of, srgb_of
+from kinematify.robot.appearance import linear_of, srgb_of
 from kinematify.robot.joint_type import JointType
 from tests.mechanisms import box, chain, door, drawer, flat_and_fixed, knob
 

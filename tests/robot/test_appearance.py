@@ -9,8 +9,17 @@ import numpy as np
 import pytest
 import trimesh
 
-from kinematify.robot.appearance import MAX_MATERIALS, Appearance, Material, Texture, joined, painted, plain, surfaces
-from kinematify.robot.colors import linear_of
+from kinematify.robot.appearance import (
+    MAX_MATERIALS,
+    Appearance,
+    Material,
+    Texture,
+    joined,
+    linear_of,
+    painted,
+    plain,
+    surfaces,
+)
 from kinematify.robot.mesh_file import read_meshes
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import pytest
 
 from kinematify.config.validation import load_settings
 from kinematify.errors import EnvironmentFault
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses
 from kinematify.simulation.engines import ENGINES, EngineEntry, open_engine, require_engine
@@ -33,7 +33,7 @@ def crane() -> Model:
 def test_poses_inertia_and_weight_are_those_of_mechanics(tmp_path: Path, name: str) -> None:
     settings = load_settings()
     robot = read_robot(crane().write(tmp_path))
-    prepared, mechanism = prepare(robot, tmp_path, settings.prepare), Mechanism(robot=robot)
+    prepared, mechanism = prepare(robot, tmp_path, settings.prepare), LeaderMechanism(robot=robot)
     model = open_engine(name, settings.engines, tmp_path / "log").load(prepared, mechanism)
     rows = agreement_configurations(robot, settings.agreement, seed=0)
     seen = model.measure(rows.q, dynamic=rows.dynamic)

@@ -8,8 +8,8 @@ import yourdfpy
 
 from kinematify.assembly.part import Assembly, Part
 from kinematify.config import load_config
+from kinematify.contact.build import find_clusters
 from kinematify.contact.graph import pair
-from kinematify.contact.symmetry import find_clusters
 from kinematify.geometry.part_stats import part_stats
 from kinematify.geometry.surface import PartSurface
 from kinematify.topology.base import rank_bases

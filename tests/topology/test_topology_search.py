@@ -16,12 +16,17 @@ from kinematify.contact.graph import ContactGraph, pair
 from kinematify.errors import InputError
 from kinematify.paper.trees import PaperReward
 from kinematify.pipeline.stages import rank_trees
-from kinematify.topology.evidence import EdgeEvidence
-from kinematify.topology.mcts import SearchProblem, SearchState
+from kinematify.topology.evidence import EdgeEvidence, virtual_costs
 from kinematify.topology.reward import TreeReward
-from kinematify.topology.search import open_edges, plausible_bases
-from kinematify.topology.spanning import breadth_first_tree, parents_from, spanning_edges
-from kinematify.topology.virtual import virtual_costs
+from kinematify.topology.search import (
+    SearchProblem,
+    SearchState,
+    breadth_first_tree,
+    open_edges,
+    parents_from,
+    plausible_bases,
+    spanning_edges,
+)
 from tests.topology.topology_objects import edge, graph_of, random_assembly, stat
 
 DEFAULT = load_config().topology

@@ -10,12 +10,12 @@ import numpy as np
 
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
+from kinematify.contact.tree import KinematicTree
 from kinematify.joints.candidate import JointEstimate
 from kinematify.model.build import build_model
 from kinematify.model.urdf import write_urdf
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.transforms import rotation_about
-from kinematify.topology.tree import KinematicTree
 from kinematify.validation.checks import CHECKS
 from kinematify.validation.finding import CheckResult, Finding
 from kinematify.validation.stage import Recorder, StageRequest

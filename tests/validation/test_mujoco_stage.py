@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.mechanism import Mechanism, sweep_rows
+from kinematify.robot.mechanism import LeaderMechanism, sweep_rows
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
@@ -317,7 +317,7 @@ def test_late_stage_says_what_it_left_out(tmp_path: Path) -> None:
 
 
 def test_sweep_moves_one_joint_at_a_time(tmp_path: Path) -> None:
-    mechanism = Mechanism(robot=read_robot(cabinet().write(tmp_path)))
+    mechanism = LeaderMechanism(robot=read_robot(cabinet().write(tmp_path)))
     rows = mechanism.sweep(5)
     assert rows.shape == (11, 2)
     np.testing.assert_array_equal(rows[sweep_rows(1, 5), 0], 0.0)

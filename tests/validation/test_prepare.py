@@ -19,10 +19,9 @@ from manifold3d import Manifold
 from trimesh.transformations import euler_matrix
 
 from kinematify.config.validation import ValidationSettings, load_settings
-from kinematify.geometry.boards import convex_chunks, taken_apart
 from kinematify.geometry.convex import ConvexPiece, convex_piece, surface_points
-from kinematify.geometry.cut import Concave, Surface, cut_worst_first, split
-from kinematify.geometry.cut_cache import cache_folder
+from kinematify.geometry.cut import Concave, CutSurface, cut_worst_first, split
+from kinematify.geometry.cut_cache import cache_folder, convex_chunks, taken_apart
 from kinematify.model.collision_pieces import Method
 from kinematify.model.masses import lifted
 from kinematify.robot.read import read_robot
@@ -227,22 +226,22 @@ def test_angles_are_those_of_the_matrix(angles: tuple[float, float, float], pitc
 # ---- pieces ----------------------------------------------------------------------------------------------------------
 
 
-def solid(shape: Manifold) -> Surface:
+def solid(shape: Manifold) -> CutSurface:
     data = shape.to_mesh()
-    return Surface(np.array(data.vert_properties[:, :3], dtype=float), np.array(data.tri_verts, dtype=np.int64))
+    return CutSurface(np.array(data.vert_properties[:, :3], dtype=float), np.array(data.tri_verts, dtype=np.int64))
 
 
 def board(size: tuple[float, float, float], at: tuple[float, float, float]) -> Manifold:
     return Manifold.cube(list(size), True).translate(list(at))
 
 
-def carcass() -> Surface:
+def carcass() -> CutSurface:
     """A cabinet in one closed mesh, open in front, with a shelf."""
     inside = board((0.96, 1.0, 0.96), (0, -0.04, 0))
     return solid(board((1, 1, 1), (0, 0, 0)) - inside + board((1, 0.96, 0.04), (0, -0.02, 0.1)))
 
 
-def chest() -> Surface:
+def chest() -> CutSurface:
     """A carcass in one closed mesh with six compartments: no single cut makes the largest hollow smaller."""
     shape = board((1, 0.5, 1.2), (0, 0, 0))
     for x in (-0.245, 0.245):
@@ -251,30 +250,30 @@ def chest() -> Surface:
     return solid(shape)
 
 
-def frame() -> Surface:
+def frame() -> CutSurface:
     """A ring of four bars: no single cut makes it less concave."""
     return solid(board((1, 0.05, 1), (0, 0, 0)) - board((0.8, 0.1, 0.8), (0, 0, 0)))
 
 
-def shell() -> Surface:
+def shell() -> CutSurface:
     """A tray of five sheets without thickness."""
     box = trimesh.creation.box((1.0, 0.6, 0.3))
     kept = box.triangles_center[:, 2] < 0.14
-    return Surface(np.asarray(box.vertices), np.asarray(box.faces)[kept])
+    return CutSurface(np.asarray(box.vertices), np.asarray(box.faces)[kept])
 
 
-def bowl() -> Surface:
+def bowl() -> CutSurface:
     """Half a hollow ball with many faces."""
     ball = Manifold.sphere(0.5, 96) - Manifold.sphere(0.42, 96)
     return solid(ball - board((2, 2, 1), (0, 0, 0.5)))
 
 
-def cuts(surface: Surface, most: int = 48, tolerance: float = 0.03) -> list[ConvexPiece]:
+def cuts(surface: CutSurface, most: int = 48, tolerance: float = 0.03) -> list[ConvexPiece]:
     body = Concave(surface=surface, tolerance=tolerance, thickness=1e-3)
     return [chunk.piece for chunk in cut_worst_first([body], most)[0]]
 
 
-def pieces_of(surface: Surface) -> list[ConvexPiece]:
+def pieces_of(surface: CutSurface) -> list[ConvexPiece]:
     body = Concave(surface=surface, tolerance=0.03, thickness=1e-3)
     return [chunk.piece for chunk in convex_chunks([body], 48)[0]]
 

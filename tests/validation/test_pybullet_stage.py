@@ -10,7 +10,7 @@ import pytest
 import trimesh
 
 from kinematify.config.validation import load_settings
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.simulation.configurations import agreement_configurations, link_poses, read_poses
 from kinematify.simulation.prepared import URDF_FILE, load_prepared, prepare
@@ -187,7 +187,7 @@ def test_more_joints_than_pybullet_has_room_for_are_not_given_to_it(tmp_path: Pa
 
 def test_contacts_do_not_depend_on_what_was_looked_at_before(tmp_path: Path) -> None:
     request = prepared_request(cabinet().with_part("drawer", axis=(-1.0, 0.0, 0.0)), tmp_path)
-    mechanism, prepared = Mechanism(robot=read_robot(request.urdf)), load_prepared(tmp_path)
+    mechanism, prepared = LeaderMechanism(robot=read_robot(request.urdf)), load_prepared(tmp_path)
     loaded = PybulletEngine(settings=load_settings().engines, log=tmp_path / "log").load(prepared, mechanism)
     values = mechanism.all_values(mechanism.sweep(15))
     forth, back = (loaded.contacts(rows) for rows in (values, values[::-1]))
@@ -211,7 +211,7 @@ def test_margin_of_hulls_is_not_counted(tmp_path: Path, offset: float, depth: fl
     model = read_robot(path)
     prepared = prepare(model, tmp_path, load_settings().prepare)
     engine = PybulletEngine(settings=load_settings().engines, log=tmp_path / "log")
-    contacts = engine.load(prepared, Mechanism(robot=model)).contacts(np.array([[offset]]))
+    contacts = engine.load(prepared, LeaderMechanism(robot=model)).contacts(np.array([[offset]]))
     assert np.max(contacts.depth, initial=0.0) == pytest.approx(depth, abs=2e-4)
 
 

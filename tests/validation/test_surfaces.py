@@ -15,7 +15,7 @@ from kinematify.generate.procedural.solids import box
 from kinematify.geometry.scene import read_scene
 from kinematify.model.urdf import write_urdf
 from kinematify.pipeline.generate import true_model
-from kinematify.robot.mechanism import Mechanism
+from kinematify.robot.mechanism import LeaderMechanism
 from kinematify.robot.read import read_robot
 from kinematify.validation.finding import Blame, Severity
 from kinematify.validation.geometry.surfaces import surfaces_meet
@@ -41,7 +41,7 @@ def slit(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_bar_is_stopped_by_the_end_of_its_slit_alone(slit: Path, depth: float, meet: bool) -> None:
     model = read_robot(slit)
     rows = np.linspace(0.0, depth, 20)[:, None]
-    assert Mechanism(robot=model).rest == 0.0
+    assert LeaderMechanism(robot=model).rest == 0.0
     assert surfaces_meet(read_scene(model, GEOMETRY), ("wall", "bar"), rows, tolerance=0.001) is meet
 
 

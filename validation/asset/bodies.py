@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from kinematify.geometry.convex import enclosed_volume, outermost
-from kinematify.geometry.hull import thickened
+from kinematify.geometry.convex import enclosed_volume, outermost, thickened
 from kinematify.robot.robot import forward_kinematics, rigid_groups
 from kinematify.validation.asset.loads import worst_loads
 

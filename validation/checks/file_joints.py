@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from kinematify.robot.urdf_document import JointElement
+    from kinematify.robot.urdf_numbers import JointElement
     from kinematify.validation.check import OpenCheck
     from kinematify.validation.precheck.urdf import Urdf
 

@@ -12,8 +12,8 @@ from kinematify.assembly.part import Assembly
 from kinematify.contact.build import build_contact_graph, exact_gap
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.geometry.surface import part_surfaces
+from kinematify.joints.bearings.fit import fit_edge, score_line
 from kinematify.joints.choice.edges import edge_qualities
-from kinematify.joints.hypotheses.bearing import fit_edge, score_line
 from kinematify.joints.measure.pins import find_pins
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kinematify.config import Config
     from kinematify.contact.graph import ContactGraph
     from kinematify.geometry.surface import PartSurface
-    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
-    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.bearings.line import Line
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
     from kinematify.robot.robot import Robot
 
 Pair = tuple[int, int]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.line import Line
+from kinematify.joints.bearings.line import Line
 from kinematify.robot.joint_type import JointType
 from kinematify.robot.robot import forward_kinematics, rest_configuration
 from kinematify.validation.evidence.opening import Contact

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kinematify.joints.bearings.line import Line
 from kinematify.joints.choice.decide import weigh_joints
-from kinematify.joints.hypotheses.line import Line
 from kinematify.joints.hypotheses.panels import GIVEN
 from kinematify.joints.measure.scene import part_frames
 from kinematify.joints.measure.workspace import PartCache
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kinematify.assembly.truth import TrueJoint
     from kinematify.config import JointsConfig
     from kinematify.config.validation import EvidenceSettings
-    from kinematify.joints.choice.weighed import WeighedJoints
+    from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.robot.arrays import FloatArray
     from kinematify.validation.evidence.bodies import Bodies, Pair
 

@@ -10,7 +10,7 @@ import numpy as np
 from kinematify.robot.transforms import joint_motion
 
 if TYPE_CHECKING:
-    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.bearings.line import Line
     from kinematify.joints.measure.workspace import PartCache
     from kinematify.robot.arrays import FloatArray
     from kinematify.robot.joint_type import JointType

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.robot.closed_chain import widest_opening
+from kinematify.robot.mechanism import widest_opening
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kinematify.joints.hypotheses.bearing_line import BearingLine
+    from kinematify.joints.bearings.scores import BearingLine
     from kinematify.robot.robot import Robot
     from kinematify.validation.evidence.bodies import Bodies
 

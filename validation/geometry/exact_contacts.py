@@ -11,12 +11,12 @@ from kinematify.simulation.configurations import EnginePoses, agreement_configur
 
 if TYPE_CHECKING:
     from kinematify.config.validation import ValidationSettings
-    from kinematify.geometry.overlap import Overlap
+    from kinematify.geometry.overlap import OverlapQueries
     from kinematify.geometry.scene import Scene
     from kinematify.robot.arrays import FloatArray, IntArray
 
 
-def exact_contacts(scene: Scene, overlap: Overlap, settings: ValidationSettings) -> EnginePoses:
+def exact_contacts(scene: Scene, overlap: OverlapQueries, settings: ValidationSettings) -> EnginePoses:
     """Look at every pair of bodies in every configuration.
 
     Returns:

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from kinematify.geometry.convex import outermost
-from kinematify.geometry.hull import thickened
+from kinematify.geometry.convex import outermost, thickened
 from kinematify.geometry.scene import inverse, relative
 
 if TYPE_CHECKING:
-    from kinematify.geometry.rest import Allowance
+    from kinematify.geometry.rest import DepthAllowance
     from kinematify.geometry.scene import Pair, Scene
     from kinematify.geometry.sweep import JointSweep, Sweeper
     from kinematify.robot.arrays import FloatArray
@@ -72,7 +71,7 @@ class _Hull:
 class HullView:
     """The bodies as engines see them."""
 
-    def __init__(self, scene: Scene, sweeper: Sweeper, allowance: Allowance) -> None:
+    def __init__(self, scene: Scene, sweeper: Sweeper, allowance: DepthAllowance) -> None:
         """Keep what is shared."""
         self._scene, self._sweeper, self._allowance = scene, sweeper, allowance
 

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap, boxes_meet
-from kinematify.geometry.rest import Allowance, Reason
+from kinematify.geometry.overlap import OverlapQueries, boxes_meet
+from kinematify.geometry.rest import DepthAllowance, Reason
 from kinematify.geometry.scene import read_scene, relative, simplified, transformed, visible_shapes
 from kinematify.geometry.sweep import Sweeper
 from kinematify.geometry.together import joint_pairs, looked_at, random_rows
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from kinematify.geometry.scene import Connection, Pair, Scene
     from kinematify.geometry.solid import Solid
-    from kinematify.geometry.sweep import JointSweep, Meeting, Side
-    from kinematify.geometry.together import Configurations, JointPair
+    from kinematify.geometry.sweep import JointSweep, Meeting, SweepSide
+    from kinematify.geometry.together import JointPair, JudgedConfigurations
     from kinematify.robot.arrays import FloatArray
 
 _NEARLY = 0.01
@@ -56,8 +56,8 @@ class GeometryLook:
             compare_visible: Measure the visual geometry as well where it is another one.
         """
         self.scene = scene
-        self.overlap = Overlap(scene)
-        self.allowance = Allowance(scene, self.overlap)
+        self.overlap = OverlapQueries(scene)
+        self.allowance = DepthAllowance(scene, self.overlap)
         self.sweeper = Sweeper(scene, self.overlap, self.allowance)
         self.in_time = in_time
         self._seed, self._compare_visible = seed, compare_visible
@@ -100,7 +100,7 @@ class GeometryLook:
         return [JointMotion(look=self, sweep=sweep) for sweep in self.sweeps]
 
     @cached_property
-    def random(self) -> Configurations | None:
+    def random(self) -> JudgedConfigurations | None:
         """Quasi-random configurations; None where no joint moves or time is up."""
         if not self.scene.travels or not self.in_time():
             return None
@@ -159,8 +159,8 @@ class GeometryLook:
         return read_scene(self.scene.model, self.scene.settings, by_link=True)
 
     @cached_property
-    def _overlap_of_links(self) -> Overlap:
-        return Overlap(self._links_apart)
+    def _overlap_of_links(self) -> OverlapQueries:
+        return OverlapQueries(self._links_apart)
 
     @cached_property
     def hulls(self) -> HullView:
@@ -194,7 +194,7 @@ class GeometryLook:
         )
 
 
-def allowed_pairs(scene: Scene, allowance: Allowance, random: Configurations | None) -> dict[Pair, Reason]:
+def allowed_pairs(scene: Scene, allowance: DepthAllowance, random: JudgedConfigurations | None) -> dict[Pair, Reason]:
     """Return pairs whose contact in motion does not count, with the reason."""
     reasons = {
         pair: Reason.ADJACENT if rest.joined else Reason.AT_REST
@@ -262,16 +262,16 @@ class JointMotion:
         firsts = {side.sign: self.own_first(side) for side in self.sweep.sides}
         return {sign: meeting for sign, meeting in firsts.items() if meeting is not None and meeting.inside}
 
-    def own_first(self, side: Side) -> Meeting | None:
+    def own_first(self, side: SweepSide) -> Meeting | None:
         """Where the child first meets its parent on a side, within the declared range or beyond."""
         return next((meeting for meeting in side.meetings if meeting.pair in self.sweep.own), None)
 
-    def free_way(self, side: Side) -> float:
+    def free_way(self, side: SweepSide) -> float:
         """How far the child goes to a side before it meets its parent [rad or m]."""
         meeting = self.own_first(side)
         return abs((side.reached if meeting is None else meeting.first) - self.sweep.travel.rest)
 
-    def early(self, side: Side) -> bool:
+    def early(self, side: SweepSide) -> bool:
         """Whether a side is blocked at once."""
         limit = self.scene.settings.early * self.sweep.travel.range
         return self.own_first(side) is not None and self.free_way(side) < limit
@@ -282,7 +282,7 @@ class JointMotion:
         permitted = abs(other.declared - travel.rest)
         return permitted < self.scene.settings.early * travel.range and self.free_way(other) >= 0.5 * travel.range
 
-    def side(self, sign: float) -> Side:
+    def side(self, sign: float) -> SweepSide:
         """The side of a sign."""
         return self.sweep.sides[0 if sign < 0 else 1]
 
@@ -312,7 +312,7 @@ class JointMotion:
         allowed = allowance.at_rest(meeting.pair) + allowance.tolerance(meeting.pair)
         return not meeting.passed and bool((overlap.depth(meeting.pair, T) <= allowed).any())
 
-    def guide(self, connection: Connection, side: Side) -> float:
+    def guide(self, connection: Connection, side: SweepSide) -> float:
         """Way after which the trailing end of the child has passed the leading end of the parent [m]."""
         scene = self.scene
         rows = np.tile(scene.mechanism.rest, (2, 1))

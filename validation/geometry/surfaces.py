@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.geometry.overlap import Overlap
+from kinematify.geometry.overlap import OverlapQueries
 from kinematify.geometry.scene import relative
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def surfaces_meet(scene: Scene, links: tuple[str, str], leaders: FloatArray, *, 
     two = replace(scene, bodies=tuple(body for body in scene.bodies if set(links) & set(body.links)))
     if len(two.bodies) != 2:
         return True
-    overlap, pair = Overlap(two), (0, 1)
+    overlap, pair = OverlapQueries(two), (0, 1)
     T = relative(two.poses(leaders), pair)
     depth = overlap.depth(pair, T)
     if float(np.max(depth - depth[0])) > tolerance:

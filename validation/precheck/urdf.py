@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kinematify.robot.urdf_document import UrdfDocument
+from kinematify.robot.urdf_numbers import UrdfDocument
 from kinematify.validation.finding import Blame
 
 if TYPE_CHECKING:

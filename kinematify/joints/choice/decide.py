@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from kinematify.joints.candidate import JointEstimate, JointType
-from kinematify.joints.choice.exact import with_exact_lines
-from kinematify.joints.choice.judge import judge
-from kinematify.joints.choice.kind import Siblings, decide_kind
+from kinematify.joints.bearings.line import Line
+from kinematify.joints.candidate import JointCandidate, JointEstimate, JointType
+from kinematify.joints.choice.judge import agreed, alike_edges, judge
+from kinematify.joints.choice.kind import Siblings, WeighedJoints, decide_kind
 from kinematify.joints.choice.limits import find_range
-from kinematify.joints.choice.twins import agreed, alike_edges
-from kinematify.joints.choice.weighed import WeighedJoints
 from kinematify.joints.hypotheses.panels import rank_turns
 from kinematify.joints.hypotheses.slides import rank_slides
 from kinematify.joints.measure.scene import joint_scene, part_frames
 from kinematify.joints.measure.workspace import PartCache
+from kinematify.robot.exact_faces import joined_faces
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,19 +25,19 @@ if TYPE_CHECKING:
     from kinematify.assembly.part import Assembly
     from kinematify.config import JointsConfig
     from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.choice.judge import Judgement
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
-    from kinematify.joints.hypotheses.frames import BoxFrame
-    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.measure.frames import BoxFrame
     from kinematify.joints.measure.scene import JointScene
-    from kinematify.joints.rooted_tree import RootedTree
     from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.exact_faces import ExactFaces
 
 
 def estimate_joints(
     assembly: Assembly,
     graph: ContactGraph,
-    tree: RootedTree,
+    tree: KinematicTree,
     bearings: Mapping[tuple[int, int], EdgeBearing],
     *,
     config: JointsConfig,
@@ -105,7 +105,7 @@ def _estimate(weighed: WeighedJoints, judged: Judgement, *, config: JointsConfig
 
 def weigh_joints(
     cache: PartCache,
-    tree: RootedTree,
+    tree: KinematicTree,
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearing: EdgeBearing | None,
@@ -138,7 +138,7 @@ def weigh_joints(
 # ---- twins ---------------------------------------------------------------------------------------------------------
 
 
-def leaf_twins(graph: ContactGraph, tree: RootedTree, edge: tuple[int, int]) -> tuple[int, ...]:
+def leaf_twins(graph: ContactGraph, tree: KinematicTree, edge: tuple[int, int]) -> tuple[int, ...]:
     """Congruent siblings of the child that carry nothing, without the child itself; none if it carries something."""
     parent, child = edge
     label = graph.cluster_of[child]
@@ -152,7 +152,7 @@ def leaf_twins(graph: ContactGraph, tree: RootedTree, edge: tuple[int, int]) -> 
 
 
 def describe_twins(
-    scene: JointScene, tree: RootedTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
+    scene: JointScene, tree: KinematicTree, frames: Mapping[int, BoxFrame], twins: tuple[int, ...]
 ) -> Siblings:
     """What the twins say about the type."""
     return Siblings(
@@ -162,7 +162,7 @@ def describe_twins(
     )
 
 
-def _gripping(scene: JointScene, tree: RootedTree, twin: BoxFrame) -> bool:
+def _gripping(scene: JointScene, tree: KinematicTree, twin: BoxFrame) -> bool:
     """Fingers: no bearing, no panel, standing out of the parent and apart from each other.
 
     At the end of a chain that is enough. On a base, where doors, legs and wheels are twins too, the pair must also be
@@ -195,3 +195,53 @@ def _twin_directions(scene: JointScene, frames: Mapping[int, BoxFrame], twins: t
     offsets = [frames[twin].centre - scene.centre for twin in twins]
     long_enough = [offset for offset in offsets if np.linalg.norm(offset) > 1e-6 * scene.diagonal]
     return np.array([offset / np.linalg.norm(offset) for offset in long_enough]).reshape(-1, 3)
+
+
+_Joint = TypeVar("_Joint", JointEstimate, JointCandidate)
+_NEAR = np.radians(1.0)
+"""A fitted direction within this angle of an exact one means it [rad]."""
+_BESIDE = 5e-3
+"""A fitted line within this share of the assembly's diagonal of an exact one means it."""
+
+
+def with_exact_lines(assembly: Assembly, joint: JointEstimate) -> JointEstimate:
+    """Return the joint with its line, and those of its candidates, on the nearest one that a file states.
+
+    What turns is put on the axis of a cylinder of either part, what slides along one or across a plane. Where nothing
+    that is stated is near, and for parts of meshes, the joint stays as it is.
+    """
+    stated = joined_faces([assembly.parts[part].exact for part in (joint.parent, joint.child)])
+    if stated is None:
+        return joint
+    alternatives = tuple(_exact(item, stated, assembly.diagonal) for item in joint.alternatives)
+    return replace(_exact(joint, stated, assembly.diagonal), alternatives=alternatives)
+
+
+def _exact(item: _Joint, stated: ExactFaces, diagonal: float) -> _Joint:
+    axes, points = stated.axes, stated.points
+    if item.kind is JointType.PRISMATIC:
+        direction = _nearest(np.concatenate([axes, stated.normals]), item.axis)
+        return item if direction is None else replace(item, axis=direction)
+    if not item.kind.turns:
+        return item
+    beside = lengths_of(np.cross(points - item.pivot, axes))
+    near = (_angles(axes, item.axis) < _NEAR) & (beside < _BESIDE * diagonal)
+    if not near.any():
+        return item
+    best = np.flatnonzero(near)[np.argmin(beside[near])]
+    axis = axes[best] * np.sign(axes[best] @ item.axis)
+    return replace(item, axis=axis, pivot=Line(axis=axis, point=points[best]).foot(item.pivot))
+
+
+def _nearest(directions: FloatArray, axis: FloatArray) -> FloatArray | None:
+    """The direction nearest to an axis, with its sign, if it is near."""
+    if not len(directions):
+        return None
+    angles = _angles(directions, axis)
+    best = int(np.argmin(angles))
+    return directions[best] * np.sign(directions[best] @ axis) if angles[best] < _NEAR else None
+
+
+def _angles(directions: FloatArray, axis: FloatArray) -> FloatArray:
+    """Between lines, shape (n,) [rad]; by the sine, since cosines near 1 are blunt."""
+    return np.asarray(np.arcsin(np.clip(lengths_of(np.cross(directions, axis)), 0.0, 1.0)))

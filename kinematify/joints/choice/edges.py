@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from kinematify.contact.graph import ContactEdge, ContactGraph, Pair
     from kinematify.geometry.part_stats import PartStats
-    from kinematify.joints.hypotheses.bearing_line import EdgeBearing
+    from kinematify.joints.bearings.scores import EdgeBearing
     from kinematify.joints.measure.pins import EdgePins
     from kinematify.robot.arrays import FloatArray, IntArray
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -9,19 +10,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.candidate import JointCandidate, JointType
-from kinematify.joints.choice.part_names import kind_said
-from kinematify.joints.choice.rigid import rigid_odds
+from kinematify.joints.choice.opening import rigid_odds
 from kinematify.joints.choice.scorer import shipped_scorer
-from kinematify.joints.measure.cloud import point_cloud
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN, Hypotheses, measure
+from kinematify.joints.measure.workspace import point_cloud
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Sequence
 
     from kinematify.config import ConfidenceConfig
-    from kinematify.joints.choice.weighed import WeighedJoints
+    from kinematify.contact.graph import ContactGraph
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.choice.kind import WeighedJoints
     from kinematify.joints.measure.measurements import Values
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+
 
 _SAME_COSINE = float(np.cos(np.radians(5.0)))
 _SAME_LINE = 0.02
@@ -97,14 +100,14 @@ class Judgement:
         return np.asarray(np.linalg.norm(np.cross(h.pivots[:, None] - h.pivots[None], h.axes[:, None]), axis=2))
 
     @cached_property
-    def _same(self) -> NDArray[np.bool_]:
+    def _same(self) -> BoolArray:
         """Which say the same: type, direction to 5 deg, and line to a fiftieth of the part, shape (h, h)."""
         h = self.hypotheses
         near = (self._apart < _SAME_LINE * self.size) | (h.kinds == SLIDE)[:, None]
         return np.asarray(self._agree & near & near.T)
 
     @cached_property
-    def _agree(self) -> NDArray[np.bool_]:
+    def _agree(self) -> BoolArray:
         """Which agree in type and, to 5 deg, in direction, shape (h, h)."""
         h = self.hypotheses
         return np.asarray((h.kinds[:, None] == h.kinds) & (np.abs(h.axes @ h.axes.T) > _SAME_COSINE))
@@ -240,3 +243,91 @@ def verdicts_of(weighed: WeighedJoints) -> Values:
         "rules_odds": np.concatenate([[0.0], np.full(n, -odds), np.full(m, odds)]),
         **{name: np.full(1 + n + m, value) for name, value in facts.items()},
     }
+
+
+_WORDS = {
+    SLIDE: "drawer tray slider slide button key keycap piston plunger carriage cartridge telescope",
+    TURN: (
+        "door flap hatch wheel handwheel tire tyre caster knob dial crank propeller prop rotor fan blade turntable "
+        "gate lever pedal valve tap faucet arm forearm upperarm elbow wrist shoulder hip knee thigh shin calf "
+        "ankle screen visor rudder aileron elevator tailgate trunk bonnet hood thruster pulley gear roller "
+        "drum needle pointer shutter"
+    ),
+    FIXED: (
+        "foot feet shelf shelves label logo badge sticker glass pane trim bracket rivet bumper backboard skirting "
+        "plinth mounting grille casing housing mirror headlight upholstery cushion"
+    ),
+}
+_KIND_OF = {word: kind for kind, words in _WORDS.items() for word in words.split()}
+_SILENT = frozenset(["handle", "grip", "frame", "hinge"])
+_LEAST_END = 4
+_TOKEN = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+
+
+def kind_said(name: str) -> int | None:
+    """FIXED, TURN or SLIDE where a word of the name says so, None where none does: a drawer slides, a door turns.
+
+    The last word that says something decides, as in "oven door" and "drawer_2". Names with a word such as "handle"
+    say nothing: those of doors turn, those of drawers are fixed.
+    """
+    said = None
+    for token in _TOKEN.findall(name):
+        word = token.lower()
+        if word.removesuffix("s") in _SILENT:
+            return None
+        said = _said_of(word, otherwise=said)
+    return said
+
+
+def _said_of(word: str, *, otherwise: int | None) -> int | None:
+    """Of a word, its singular, or what it ends with ("hingedoor")."""
+    for form in (word, word.removesuffix("s")):
+        if form in _KIND_OF:
+            return _KIND_OF[form]
+    ends = [known for known in _KIND_OF if len(known) >= _LEAST_END and word.endswith(known)]
+    return _KIND_OF[max(ends, key=len)] if ends else otherwise
+
+
+_LEAST = 1.0e-6  # probability of a type, so that one part alone cannot rule a type out for all
+
+
+def alike_edges(graph: ContactGraph, tree: KinematicTree) -> list[list[tuple[int, int]]]:
+    """Edges whose children are congruent, on one parent or on congruent ones, in groups of two or more.
+
+    Args:
+        graph: Contact graph with clusters of congruent parts.
+        tree: Parent of every part.
+
+    Returns:
+        Groups of (parent, child).
+    """
+    groups: dict[tuple[int, int, int], list[tuple[int, int]]] = {}
+    for parent, child in tree.edges():
+        cluster, above = graph.cluster_of[child], graph.cluster_of[parent]
+        if cluster >= 0:
+            groups.setdefault((cluster, above, parent if above < 0 else -1), []).append((parent, child))
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def agreed(kinds: Sequence[IntArray], likely: Sequence[FloatArray]) -> list[FloatArray]:
+    """Probabilities of the hypotheses of edges that are alike, after they have agreed on a type.
+
+    The probability of each type is the geometric mean over the edges; within a type nothing changes.
+
+    Args:
+        kinds: FIXED, TURN or SLIDE of the hypotheses of each edge, shape (h,) each.
+        likely: Their probabilities, sum 1, shape (h,) each.
+
+    Returns:
+        The new probabilities, sum 1, shape (h,) each.
+    """
+    of_types = [
+        [max(float(probability[kind == each].sum()), _LEAST) for each in (FIXED, TURN, SLIDE)]
+        for kind, probability in zip(kinds, likely, strict=True)
+    ]
+    logs = np.log(np.array(of_types))
+    lifted = [
+        probability * np.exp(logs.mean(axis=0) - own)[kind]
+        for kind, probability, own in zip(kinds, likely, logs, strict=True)
+    ]
+    return [np.asarray(probability / probability.sum()) for probability in lifted]

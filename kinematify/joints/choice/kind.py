@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
-from kinematify.joints.measure.clearance import contact_clearance
+from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import eccentricity, is_cap
-from kinematify.joints.measure.sweep import moving_points, sweep_slides, sweep_turns
+from kinematify.joints.measure.sweep import contact_clearance, moving_points, sweep_slides, sweep_turns
 from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -65,7 +64,11 @@ def decide_kind(
     cues = {
         **_room_cues(scene, turns, slides, config),
         **_shape_cues(scene, turns),
-        **_twin_cues(scene, siblings),
+        **{
+            "row": scene.smallness * float(siblings.count >= 3),
+            "gripper": float(siblings.gripping),
+            "sliding_pair": float(siblings.overlapping),
+        },
         **_clearance_cues(scene, turns, slides, config),
         "rail": scene.mechanism * _held_rail(scene, turns, slides, config),
     }
@@ -368,14 +371,6 @@ def _bridges_a_seam(scene: JointScene) -> bool:
     return any(part in scene.others and (cluster < 0 or graph.cluster_of[part] != cluster) for part in touched)
 
 
-def _twin_cues(scene: JointScene, siblings: Siblings) -> dict[str, float]:
-    return {
-        "row": scene.smallness * float(siblings.count >= 3),
-        "gripper": float(siblings.gripping),
-        "sliding_pair": float(siblings.overlapping),
-    }
-
-
 def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: JointsConfig) -> bool:
     """Neither turns nor slides are free: one rigid body that was cut in two.
 
@@ -401,3 +396,13 @@ def _stuck(scene: JointScene, turns: RankedTurns, slides: RankedSlides, config: 
 def _slide_room(scene: JointScene, free: FloatArray) -> float:
     """Largest free travel as a fraction of the child's own diagonal."""
     return float(free.max()) / max(scene.frame.diagonal, 1e-12)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WeighedJoints:
+    """Every joint that one tree edge may have, weighed, before one is chosen."""
+
+    scene: JointScene
+    turns: RankedTurns
+    slides: RankedSlides
+    decision: KindDecision

@@ -1,8 +1,12 @@
-"""Which way a turning joint opens: the fitted answer.
+"""Three fitted answers beside the choice: which way a turn opens, whether it has an end, and what is fixed.
 
 Gradient-boosted trees (Friedman 2001) read what is measured towards either side, as the difference of both and their
 mean. With f for their sum, the log odds that the axis opens as it is are f(difference) - f(-difference), so that an
-axis and its opposite get opposite answers.
+axis and its opposite get opposite answers. Conventions decide where neither side opens.
+
+Whether a turn goes round is read from what is measured of it alone, not from what else was proposed nor from cues.
+Whether a part is fixed to the one that carries it (handles, feet, shelves) is asked apart from which joint it is,
+because objects teach the two apart; it is read from the turn and the slide that cues rank first.
 """
 
 from __future__ import annotations
@@ -11,8 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinematify.joints.choice.scorer import shipped_opening
-from kinematify.joints.measure.opening_direction import customary_sign, measure_sides
+from kinematify.joints.choice.scorer import OPENING_WEIGHTS, RIGID_WEIGHTS, TURNING_WEIGHTS, shipped_scorer
+from kinematify.joints.measure.frames import UP
+from kinematify.joints.measure.measurements import GROUPS, SLIDE, TURN, Hypotheses, MeasuredHypotheses, measure
+from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,8 +27,148 @@ if TYPE_CHECKING:
 
     from kinematify.config import LimitsConfig
     from kinematify.joints.choice.scorer import Scorer
+    from kinematify.joints.measure.measurements import Values
     from kinematify.joints.measure.scene import JointScene
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import FloatArray, IntArray
+
+
+def measure_sides(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> Values:
+    """Everything that is measured of a turn, once towards either side.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        pivot: Point on the line [m], shape (3,).
+
+    Returns:
+        Name -> value of the turn about `axis` and of that about its opposite, shape (2,).
+    """
+    turns = Hypotheses(
+        kinds=np.array([TURN, TURN]),
+        axes=np.array([axis, -axis]),
+        pivots=np.array([pivot, pivot]),
+        sources=("forward", "backward"),
+    )
+    measured = MeasuredHypotheses(scene, turns, sided=True)
+    found = {name: value for group in GROUPS.values() for name, value in group(measured).items()}
+    return {**found, **_leads_to(measured)}
+
+
+def _leads_to(m: MeasuredHypotheses) -> Values:
+    """Where the first motion of the child and of its handle leads: out, up, or to the face on which the line lies."""
+    scene, frame = m.scene, m.scene.frame
+    way = _directions(m, scene.centre)
+    normal, thickness = frame.axes[frame.thin], max(float(frame.extents[frame.thin]), 1e-6 * m.unit)
+    off = float((m.hypotheses.pivots[0] - scene.centre) @ normal) / thickness
+    result = {
+        "side_hinge": off * (way @ normal),
+        "side_up": m.hypotheses.axes @ UP,
+        "side_parent": way @ (scene.centre - scene.parent_frame.centre) / m.unit,
+        "side_contact": way @ (scene.centre - m.anchor) / m.unit,
+    }
+    if scene.handle is not None:
+        pull = _directions(m, scene.handle.centre)
+        result["side_handle"] = pull @ (scene.handle.centre - scene.centre) / m.unit
+        result["side_handle_out"] = pull @ scene.outward
+    return result
+
+
+def _directions(m: MeasuredHypotheses, point: FloatArray) -> FloatArray:
+    """Unit directions in which each turn first moves a point, shape (h, 3); zero on its line."""
+    velocity = m.velocity(point[None])[:, 0]
+    return np.asarray(velocity / np.maximum(lengths_of(velocity), 1e-9 * m.unit)[:, None])
+
+
+# ---- conventions ---------------------------------------------------------------------------------------------------
+
+
+def customary_sign(
+    scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray, config: LimitsConfig
+) -> float:
+    """Of links in series and of what nothing stops: the freer way opens, else to its barrels, else the one that rises.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        pivot: Point on the axis [m], shape (3,).
+        free: Free angle towards + and - [rad], shape (2,).
+        config: What lies at a face of a panel.
+    """
+    if abs(free[0] - free[1]) > np.radians(10.0) and free.min() < np.radians(60.0):
+        return 1.0 if free[0] > free[1] else -1.0
+    beside = _hinge_side(scene, axis, pivot, config)
+    if beside != 0.0:
+        return beside
+    rises = float(np.cross(axis, scene.centre - pivot) @ UP)
+    if abs(rises) < 0.05 * scene.frame.diagonal:
+        return swing_sign(scene, axis, pivot)
+    return 1.0 if rises > 0.0 else -1.0
+
+
+def _hinge_side(scene: JointScene, axis: FloatArray, pivot: FloatArray, config: LimitsConfig) -> float:
+    """Sign of the turn towards the face of an upright panel at which its bearing lies, 0 without such a bearing.
+
+    Barrels stand on the side to which a door opens; on the other one its edge would run into what it hangs on.
+    """
+    normal = scene.frame.axes[scene.frame.thin]
+    off = float((pivot - scene.centre) @ normal)
+    aside = abs(off) > config.hinge_off * float(scene.frame.extents[scene.frame.thin])
+    if not (scene.has_bearing and scene.panel and scene.upright and aside):
+        return 0.0
+    return float(np.sign(off * (np.cross(axis, scene.centre - pivot) @ normal)))
+
+
+def swing_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray) -> float:
+    """Where neither way leads out of the parent or up: away from the middle of the object, else all to one side of it.
+
+    Knees and fingers that go both ways alike have no opening direction that could be seen; but those of two legs and
+    of all fingers have the same one, and hips that swing sideways have mirrored ones. The one side is that to which
+    small parts lie of large ones. What merely twists opens as knobs do.
+    """
+    parts = scene.cache.assembly.parts
+    centroids, areas = np.array([part.centroid for part in parts]), np.array([part.area for part in parts])
+    moving = np.setdiff1d(np.arange(len(parts)), (scene.parent, *scene.others))
+    limb = np.average(centroids[moving], axis=0, weights=areas[moving])
+    velocity = np.cross(axis, limb - pivot)
+    speed = float(np.linalg.norm(velocity))
+    if speed < 0.05 * scene.frame.diagonal:
+        return neutral_sign(scene, axis)
+    middle = np.average(centroids, axis=0, weights=areas)
+    apart = float((limb - middle) @ velocity) / speed
+    if abs(apart) > 0.05 * scene.diagonal:
+        return 1.0 if apart > 0.0 else -1.0
+    side = (centroids.mean(axis=0) - middle) * (1.0, 1.0, 0.0)  # up and down has been asked
+    towards = float(velocity @ side) / speed
+    if abs(towards) < 1e-5 * scene.diagonal:  # rounding would decide
+        return neutral_sign(scene, axis)
+    return 1.0 if towards > 0.0 else -1.0
+
+
+def neutral_sign(scene: JointScene, axis: FloatArray) -> float:
+    """Where neither way opens: the axis points from the parent to the child, else up, as knobs and arms have it."""
+    apart = float((scene.centre - scene.parent_frame.centre) @ axis)
+    if abs(apart) < 0.02 * scene.parent_frame.diagonal:
+        apart = float(axis @ UP) if abs(float(axis @ UP)) > 0.1 else apart
+    return 1.0 if apart >= 0.0 else -1.0
+
+
+def clockwise_sign(scene: JointScene, axis: FloatArray) -> float:
+    """Knobs turn up clockwise as seen by who turns them (IEC 60447): the axis points into the part that carries them.
+
+    Wheels, turntables and whole links have no face that somebody looks at; there the axis points to the child.
+    """
+    knob = scene.smallness > 0.0 or not (scene.plate and scene.flat)
+    if not knob or (scene.serial and scene.parent_moves):
+        return neutral_sign(scene, axis)
+    return -(_open_side(scene, axis) or neutral_sign(scene, axis))
+
+
+def _open_side(scene: JointScene, axis: FloatArray) -> float:
+    """Sign of the way along an axis on which the parent is not in front of the child; 0 where it is on both or none."""
+    steps = scene.cache.diagonal * np.array([axis, -axis])
+    blocked = np.isfinite(scene.cache.first_hits(scene.parent, np.tile(scene.centre, (2, 1)), steps))
+    return float(blocked[1]) - float(blocked[0])
+
 
 _UNDECIDED = 0.2  # log odds; noise of the samples decides below
 
@@ -44,7 +190,7 @@ def turn_sign(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: Floa
     if free.min() < stopped and free.max() > unstopped:
         return 1.0 if free[0] > free[1] else -1.0
     either = scene.serial or (scene.has_bearing and free.min() > unstopped)
-    odds = 0.0 if either else opening_odds(shipped_opening(), measure_sides(scene, axis, pivot))
+    odds = 0.0 if either else opening_odds(shipped_scorer(OPENING_WEIGHTS), measure_sides(scene, axis, pivot))
     return customary_sign(scene, axis, pivot, free, config) if abs(odds) < _UNDECIDED else float(np.sign(odds))
 
 
@@ -68,3 +214,59 @@ def side_columns(sides: Mapping[str, FloatArray], names: Sequence[str]) -> NDArr
     ahead = np.round(values - values[::-1], 6)  # rounding is no lead
     mean = np.broadcast_to(values.mean(axis=0), values.shape)
     return np.concatenate([ahead, mean], axis=1)
+
+
+_FREE = -0.5  # log odds beyond which what meets nothing goes round: both kinds are told about equally often
+_STOPPED = 1.0  # the same of what meets something on its way, as a tyre its mudguard
+
+
+def goes_round(scene: JointScene, axis: FloatArray, pivot: FloatArray, free: FloatArray) -> bool:
+    """Whether a turn has no end: wheels, knobs and propellers, but not links in series, of which each has its stops.
+
+    Args:
+        scene: The pair.
+        axis: Unit direction, shape (3,).
+        pivot: Point on the line [m], shape (3,).
+        free: Free angle towards + and - [rad], shape (2,).
+    """
+    if scene.serial and scene.smallness < 1.0 and not scene.rolls:
+        return False
+    turn = Hypotheses(kinds=np.array([TURN]), axes=axis[None], pivots=pivot[None], sources=("chosen",))
+    scorer = shipped_scorer(TURNING_WEIGHTS)
+    odds = scorer.sums(turning_columns(measure(scene, turn), 0, scorer.measurements)[None])[0] / scorer.temperature
+    return bool(odds > (_FREE if free.min() >= np.pi else _STOPPED))
+
+
+def turning_columns(measured: Mapping[str, FloatArray], row: int, names: Sequence[str]) -> NDArray[Any]:
+    """What the trees read of one hypothesis, shape (n,)."""
+    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
+    values: NDArray[Any] = np.array([measured[name][row] if name in measured else np.nan for name in names], np.float32)
+    values[~np.isfinite(values)] = np.nan
+    return values
+
+
+def rigid_odds(kinds: IntArray, measured: Mapping[str, FloatArray]) -> float:
+    """Log odds that the child of an edge is fixed to its parent, from its shapes alone.
+
+    Args:
+        kinds: FIXED, TURN or SLIDE of each hypothesis, shape (h,).
+        measured: Name -> values, shape (h,) each.
+    """
+    scorer = shipped_scorer(RIGID_WEIGHTS)
+    columns = rigid_columns(kinds, measured, scorer.measurements)
+    return float(scorer.sums(columns[None])[0] / scorer.temperature)
+
+
+def rigid_columns(kinds: IntArray, measured: Mapping[str, FloatArray], names: Sequence[str]) -> NDArray[Any]:
+    """What the trees read of one edge: of a turn, of a slide, and the number of hypotheses, shape (2 n + 1,)."""
+    support = np.nan_to_num(measured["rules_score"], nan=-np.inf)
+    missing = np.full(len(kinds), np.nan)
+    # In single precision, as they were fitted, so that what lies at a threshold goes the same way.
+    values: NDArray[Any] = np.stack([measured.get(name, missing) for name in names], axis=1).astype(np.float32)
+    values[~np.isfinite(values)] = np.nan
+    found: list[NDArray[Any]] = []
+    for kind in (TURN, SLIDE):
+        rows = np.flatnonzero(kinds == kind)
+        none = np.full(len(names), np.nan, dtype=np.float32)
+        found.append(values[rows[np.argmax(support[rows])]] if len(rows) else none)
+    return np.concatenate([*found, np.array([len(kinds)], dtype=np.float32)])

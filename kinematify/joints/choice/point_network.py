@@ -1,10 +1,14 @@
-"""The third voice of the fitted choice: a small network that looks at points of both parts, as each joint moves them.
+"""The two small networks of the fitted choice, evaluated in numpy; what fitted them is not needed.
 
-For every hypothesis the points of an edge (`joints.measure.cloud`) are put into the frame of its line, so that what is
-learned holds whichever way an object stands: along the line, out to the child's middle, aside. Each point is embedded
-on its own; mean and greatest of the child's points, of the parent's and of the rest make the hypothesis (PointNet, Qi
-et al. 2017), which is then scored beside the others of its edge as in `network.py`. Evaluated in numpy; what fitted it
-is not needed.
+The first reads what is measured of all hypotheses of an edge at once. Each is embedded on its own; the mean and the
+greatest of what all of them say stand beside it when it is scored (deep sets, Zaheer et al. 2017). It is asked twice,
+with what the weighted cues say and without, and several networks that began elsewhere are averaged, all in log
+probability.
+
+The second looks at points of both parts, as each joint moves them. For every hypothesis the points of an edge are put
+into the frame of its line, so that what is learned holds whichever way an object stands: along the line, out to the
+child's middle, aside. Each point is embedded on its own; mean and greatest of the child's points, of the parent's and
+of the rest make the hypothesis (PointNet, Qi et al. 2017), which is then scored beside the others as in the first.
 """
 
 from __future__ import annotations
@@ -15,18 +19,81 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import log_softmax
 
-from kinematify.joints.choice.network import swish
-from kinematify.joints.hypotheses.frames import UP
-from kinematify.joints.measure.cloud import CARRIED, CHILD, OTHER, PARENT
+from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
+from kinematify.joints.measure.workspace import CARRIED, CHILD, OTHER, PARENT
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kinematify.joints.measure.cloud import Cloud
     from kinematify.joints.measure.measurements import Hypotheses
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.joints.measure.workspace import Cloud
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scale:
+    """What the network reads of the columns: each spread evenly over [-1, 1], and which are missing."""
+
+    knots: NDArray[Any]
+    """Quantiles of each column, ascending and each once, then the last one repeated, shape (f, k)."""
+    counts: IntArray
+    """How many of them are a column's own; below two, nothing is read of it, shape (f,)."""
+    missing: IntArray
+    """Columns of which it is told whether they are missing, shape (m,)."""
+
+    def inputs(self, columns: NDArray[Any]) -> FloatArray:
+        """Columns (n, f) as inputs (n, f + m); what is missing is 0, the middle."""
+        spread = np.zeros(columns.shape)
+        for k in np.flatnonzero(self.counts > 1):
+            places = np.minimum(-1.0 + 2.0 * np.arange(self.knots.shape[1]) / (self.counts[k] - 1), 1.0)
+            spread[:, k] = np.interp(columns[:, k], self.knots[k], places)
+        absent = ~np.isfinite(columns)
+        spread[absent] = 0.0
+        return np.concatenate([spread, absent[:, self.missing]], axis=1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Network:
+    """Networks of one shape in arrays; s of them, n inputs, h hidden values, g that are shared among hypotheses."""
+
+    scale: Scale
+    verdicts: BoolArray
+    """Inputs that are hidden when it is asked without what the weighted cues say, shape (n,)."""
+    embed: FloatArray
+    """Shape (s, n, h)."""
+    embed_bias: FloatArray
+    """Shape (s, h)."""
+    share: FloatArray
+    """Shape (s, h, g)."""
+    share_bias: FloatArray
+    """Shape (s, g)."""
+    compare: FloatArray
+    """Shape (s, h + 2 g, h)."""
+    compare_bias: FloatArray
+    """Shape (s, h)."""
+    score: FloatArray
+    """Shape (s, h)."""
+
+    def log_probabilities(self, columns: NDArray[Any]) -> FloatArray:
+        """Mean log probability of each hypothesis of an edge, from its columns (h, f), shape (h,)."""
+        told = self.scale.inputs(columns)
+        untold = np.where(self.verdicts, 0.0, told)
+        asked = np.stack([told, untold])[:, None]
+        own = swish(asked @ self.embed + self.embed_bias[:, None])
+        shared = own @ self.share + self.share_bias[:, None]
+        of_all = np.concatenate([shared.mean(axis=2), shared.max(axis=2)], axis=2)[:, :, None]
+        beside = np.broadcast_to(of_all, (*own.shape[:3], of_all.shape[3]))
+        compared = swish(np.concatenate([own, beside], axis=3) @ self.compare + self.compare_bias[:, None])
+        scores = np.einsum("psnh,sh->psn", compared, self.score)
+        return np.asarray(log_softmax(scores, axis=2).mean(axis=(0, 1)))
+
+
+def swish(values: FloatArray) -> FloatArray:
+    """The activation x / (1 + exp(-x)) (Elfwing et al. 2018)."""
+    return np.asarray(values / (1.0 + np.exp(-values)))
+
 
 POINT_INPUTS, LINE_INPUTS = 20, 10
 _TOUCHING, _NEAR = 0.02, 0.1  # of the child's diagonal

@@ -1,7 +1,7 @@
 """The fitted choice: one score for every hypothesis of an edge, from what is measured of it.
 
-Gradient-boosted trees (Friedman 2001), a small network that reads the same (`network.py`) and one that looks at points
-of both parts (`point_network.py`), all fitted listwise: with scores s_i of the hypotheses of an edge, the probability
+Gradient-boosted trees (Friedman 2001), a small network that reads the same and one that looks at points of both parts
+(`point_network.py`) were fitted listwise: with scores s_i of the hypotheses of an edge, the probability
 of hypothesis i is exp(s_i) / sum_j exp(s_j), and the fit maximised the likelihood of the right ones. So type, line and
 confidence come out at once. Each errs where the others do not; the mean of their log probabilities is what counts.
 Evaluated in numpy; what fitted them is not needed.
@@ -19,8 +19,7 @@ import numpy as np
 from scipy.special import log_softmax, softmax
 
 from kinematify.errors import EnvironmentFault
-from kinematify.joints.choice.network import Network, Scale
-from kinematify.joints.choice.point_network import PointNetwork
+from kinematify.joints.choice.point_network import Network, PointNetwork, Scale
 from kinematify.joints.measure.measurements import FIXED, SLIDE, TURN
 
 if TYPE_CHECKING:
@@ -28,14 +27,20 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from kinematify.joints.measure.cloud import Cloud
     from kinematify.joints.measure.measurements import Hypotheses
+    from kinematify.joints.measure.workspace import Cloud
     from kinematify.robot.arrays import FloatArray, IntArray
 
 WEIGHTS = "weights.npz"
 RIGID_WEIGHTS = "rigid.npz"
 OPENING_WEIGHTS = "opening.npz"
 TURNING_WEIGHTS = "turning.npz"
+_SCORED = {
+    WEIGHTS: "the choice of joints",
+    RIGID_WEIGHTS: "what is fixed",
+    OPENING_WEIGHTS: "the opening direction",
+    TURNING_WEIGHTS: "what goes round",
+}
 NETWORK, POINTS = "network_", "points_"
 """Before the names of the arrays of either network in a file of weights."""
 POINTS_SHARE = 0.2
@@ -164,46 +169,12 @@ def _extreme(values: NDArray[Any], pick: np.ufunc) -> NDArray[Any]:
 
 
 @cache
-def shipped_scorer() -> Scorer:
-    """The scorer of hypotheses that comes with the package.
+def shipped_scorer(name: str = WEIGHTS) -> Scorer:
+    """A scorer that comes with the package, by its file; the one of hypotheses unless another is named.
 
     Raises:
         EnvironmentFault: Its file is missing, damaged or of another version.
     """
-    return _shipped(WEIGHTS, "the choice of joints")
-
-
-@cache
-def shipped_rigidity() -> Scorer:
-    """The scorer of whether a part is fixed that comes with the package.
-
-    Raises:
-        EnvironmentFault: Its file is missing, damaged or of another version.
-    """
-    return _shipped(RIGID_WEIGHTS, "what is fixed")
-
-
-@cache
-def shipped_opening() -> Scorer:
-    """The scorer of which way a turning joint opens that comes with the package.
-
-    Raises:
-        EnvironmentFault: Its file is missing, damaged or of another version.
-    """
-    return _shipped(OPENING_WEIGHTS, "the opening direction")
-
-
-@cache
-def shipped_turning() -> Scorer:
-    """The scorer of whether a turn goes round that comes with the package.
-
-    Raises:
-        EnvironmentFault: Its file is missing, damaged or of another version.
-    """
-    return _shipped(TURNING_WEIGHTS, "what goes round")
-
-
-def _shipped(name: str, of: str) -> Scorer:
     path = files("kinematify.joints.choice") / name
     remedy = "Install kinematify again, or write the weights with 'kinematify fit'."
     try:
@@ -212,11 +183,11 @@ def _shipped(name: str, of: str) -> Scorer:
             arrays = {key: stored[key] for key in _ARRAYS}
             network, points = _network(stored), _points(stored)
     except (OSError, ValueError, KeyError) as error:
-        raise EnvironmentFault(f"The weights of {of} ({name}) cannot be read. {remedy}") from error
+        raise EnvironmentFault(f"The weights of {_SCORED[name]} ({name}) cannot be read. {remedy}") from error
     if facts.get("format") != FORMAT:
         raise EnvironmentFault(
-            f"The weights of {of} ({name}) have format {facts.get('format')}; this version of kinematify reads format "
-            f"{FORMAT}. {remedy}"
+            f"The weights of {_SCORED[name]} ({name}) have format {facts.get('format')}; this version of "
+            f"kinematify reads format {FORMAT}. {remedy}"
         )
     return Scorer(
         measurements=tuple(facts["measurements"]),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.frames import UP
 
 if TYPE_CHECKING:
     from kinematify.joints.measure.scene import JointScene

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kinematify.joints.hypotheses.centres import centre_lines
-from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.sweep import moving_points, turn_paths
 from kinematify.robot.vectors import crossed, lengths_of
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kinematify.config import JointsConfig
-    from kinematify.joints.hypotheses.line import Line
+    from kinematify.joints.bearings.line import Line
     from kinematify.joints.measure.scene import JointScene
     from kinematify.joints.measure.sweep import Sweep
     from kinematify.robot.arrays import FloatArray, IntArray

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
 from kinematify.joints.hypotheses.panels import GIVEN
+from kinematify.joints.measure.frames import UP
 from kinematify.joints.measure.scene import is_cap
 from kinematify.joints.measure.sweep import moving_points, sweep_slides
 

@@ -1,6 +1,6 @@
 """Journals: a pin in a bore, a barrel in its knuckles, a shaft in its boss; hinge hardware where it is modelled.
 
-A bearing (`joints.bearing`) asks for round surface on both parts, which two round outlines that merely lie on each
+A bearing (`joints.bearings`) asks for round surface on both parts, which two round outlines that merely lie on each
 other have as well: a seat on its bowl, a porthole on its mouth. A journal asks for more: the two round surfaces must
 *face* each other across the clearance, nearly all around one line. However small it is beside the part, it holds it.
 """
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from kinematify.joints.hypotheses.bearing_fit import across_axis
+from kinematify.joints.bearings.refine import across_axis
 
 if TYPE_CHECKING:
     from kinematify.config import JournalConfig

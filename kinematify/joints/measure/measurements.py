@@ -13,18 +13,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.frames import UP
+from kinematify.joints.measure.frames import UP
 from kinematify.robot.vectors import crossed, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from kinematify.joints.measure.scene import JointScene
-    from kinematify.robot.arrays import FloatArray, IntArray
+    from kinematify.robot.arrays import BoolArray, FloatArray, IntArray
 
-    BoolArray = NDArray[np.bool_]
 
 FIXED, TURN, SLIDE = range(3)
 
@@ -57,7 +54,7 @@ class Hypotheses:
         return len(self.kinds)
 
 
-class Measured:
+class MeasuredHypotheses:
     """One edge with its hypotheses, and what several measurements share."""
 
     def __init__(self, scene: JointScene, hypotheses: Hypotheses, *, sided: bool = False) -> None:
@@ -201,7 +198,7 @@ class Measured:
 Values = dict[str, "FloatArray"]
 
 
-def motion(m: Measured) -> Values:
+def motion(m: MeasuredHypotheses) -> Values:
     """Free travel each way, by what newly overlaps: the parent, the rest, and the parent's own points in the child."""
     rows = np.arange(len(m.hypotheses))
     result: Values = {}
@@ -213,7 +210,7 @@ def motion(m: Measured) -> Values:
     return result
 
 
-def contact_motion(m: Measured) -> Values:
+def contact_motion(m: MeasuredHypotheses) -> Values:
     """How much of the contact is kept, and what gap opens, after a small and a larger step either way."""
     h, scene = m.hypotheses, m.scene
     own = m.child.points[m.few]
@@ -240,7 +237,7 @@ def contact_motion(m: Measured) -> Values:
     return result
 
 
-def sliding_surface(m: Measured) -> Values:
+def sliding_surface(m: MeasuredHypotheses) -> Values:
     """Share of the contact, and of the whole child, that slides along itself under the first motion."""
     contact = m.scene.contact
     everything = m.child
@@ -266,7 +263,7 @@ def sliding_surface(m: Measured) -> Values:
     }
 
 
-def _slips(m: Measured, name: str, points: FloatArray, normals: FloatArray, weights: FloatArray) -> Values:
+def _slips(m: MeasuredHypotheses, name: str, points: FloatArray, normals: FloatArray, weights: FloatArray) -> Values:
     if len(points) == 0:
         return {f"slip_{name}": np.ones(len(m.hypotheses)), f"slide_share_{name}": np.zeros(len(m.hypotheses))}
     if len(points) > 400:
@@ -284,7 +281,7 @@ def _slips(m: Measured, name: str, points: FloatArray, normals: FloatArray, weig
     return {f"slip_{name}": rms, f"slide_share_{name}": share, f"lateral_{name}": round_share}
 
 
-def bearing(m: Measured) -> Values:
+def bearing(m: MeasuredHypotheses) -> Values:
     """Support of the bearing that proposed the line, or lies nearest to it, and of the rail along it."""
     h, scene = m.hypotheses, m.scene
     count = len(h)
@@ -321,7 +318,7 @@ def bearing(m: Measured) -> Values:
     }
 
 
-def place(m: Measured) -> Values:
+def place(m: MeasuredHypotheses) -> Values:
     """The line in the boxes of child and parent: along which side, how far from the middle, near what."""
     h, scene = m.hypotheses, m.scene
     frame = scene.frame
@@ -371,7 +368,7 @@ def place(m: Measured) -> Values:
     return result
 
 
-def contact_place(m: Measured) -> Values:
+def contact_place(m: MeasuredHypotheses) -> Values:
     """Where the contact lies about the line."""
     h, contact = m.hypotheses, m.scene.contact
     count = len(h)
@@ -400,7 +397,7 @@ def contact_place(m: Measured) -> Values:
     }
 
 
-def child_shape(m: Measured) -> Values:
+def child_shape(m: MeasuredHypotheses) -> Values:
     """Sides of the child, how boxy and how round it is, and its size beside parent and whole."""
     scene, count = m.scene, len(m.hypotheses)
     sides = np.sort(scene.frame.extents)
@@ -432,7 +429,7 @@ def _gap(scene: JointScene) -> float:
     return scene.diagonal if edge is None else edge.gap
 
 
-def where(m: Measured) -> Values:
+def where(m: MeasuredHypotheses) -> Values:
     """The child in its parent and in the whole: inside, in front, on top, covered, overlapping, facing up."""
     scene, h = m.scene, m.hypotheses
     count = len(h)
@@ -473,7 +470,7 @@ def where(m: Measured) -> Values:
     return result
 
 
-def symmetry(m: Measured) -> Values:
+def symmetry(m: MeasuredHypotheses) -> Values:
     """What the child is carried onto by its motion: itself all around, by a fold of the circle, or along the way.
 
     Distances of moved points to the surface at rest, in shares of the reach; 0 for a disc about its axle, small after a
@@ -502,7 +499,7 @@ def symmetry(m: Measured) -> Values:
     }
 
 
-def _outline(m: Measured, points: FloatArray) -> Values:
+def _outline(m: MeasuredHypotheses, points: FloatArray) -> Values:
     """How round the outline about each line is: least over largest radius of twelve sectors, and their spread."""
     h = m.hypotheses
     first, second = _across_pair(h.axes)
@@ -527,7 +524,7 @@ def _across_pair(axes: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, np.cross(axes, first)
 
 
-def _twist(m: Measured, points: FloatArray, normals: FloatArray) -> FloatArray:
+def _twist(m: MeasuredHypotheses, points: FloatArray, normals: FloatArray) -> FloatArray:
     """How much the surface winds about each line, as the blades of a propeller do, in [0, 1], shape (h,)."""
     h = m.hypotheses
     along = normals @ h.axes.T
@@ -538,7 +535,7 @@ def _twist(m: Measured, points: FloatArray, normals: FloatArray) -> FloatArray:
     return np.where(h.kinds == TURN, wound, np.nan)
 
 
-def axle(m: Measured) -> Values:
+def axle(m: MeasuredHypotheses) -> Values:
     """Whether the line is an axle: how high above the floor beside its reach, what it meets on either side."""
     h, scene = m.hypotheses, m.scene
     radius = np.maximum(m.radii(m.child.points[m.few]).max(axis=1), 0.02 * m.unit)
@@ -560,7 +557,7 @@ def axle(m: Measured) -> Values:
     }
 
 
-def standing_in(m: Measured) -> Values:
+def standing_in(m: MeasuredHypotheses) -> Values:
     """Where the solids stand in each other at rest: how far from the line, and how far along it."""
     scene, h = m.scene, m.hypotheses
     points = np.concatenate(m.shared)
@@ -583,7 +580,7 @@ def standing_in(m: Measured) -> Values:
     }
 
 
-def mirror(m: Measured) -> Values:
+def mirror(m: MeasuredHypotheses) -> Values:
     """Whether a joint is as symmetric as what it moves: a drawer and its handle do not say on which side to hinge.
 
     Planes through the child's centre along its box. Where the child, its contact and the parent around it are alike on
@@ -620,7 +617,7 @@ def mirror(m: Measured) -> Values:
     }
 
 
-def _mirrored_gap(m: Measured, part: int, points: FloatArray, normal: FloatArray) -> float:
+def _mirrored_gap(m: MeasuredHypotheses, part: int, points: FloatArray, normal: FloatArray) -> float:
     """Mean distance of points (n, 3), mirrored at the child's centre, from a part, in diagonals of the child."""
     if len(points) == 0:
         return 1.0
@@ -630,7 +627,7 @@ def _mirrored_gap(m: Measured, part: int, points: FloatArray, normal: FloatArray
     return float(np.abs(m.scene.cache.distances(part, images) - before).mean() / m.unit)
 
 
-def hollow(m: Measured) -> Values:
+def hollow(m: MeasuredHypotheses) -> Values:
     """What of the child is around its own centre: a drawer is open above, a cap below, a ring along its line."""
     h, scene = m.hypotheses, m.scene
     reach = 2.0 * m.unit
@@ -652,7 +649,7 @@ def hollow(m: Measured) -> Values:
     }
 
 
-def around(m: Measured) -> Values:
+def around(m: MeasuredHypotheses) -> Values:
     """How far around the line the contact reaches, and the child within that reach: an axle is held on all sides."""
     return {
         "contact_around": _around(m, m.scene.contact.points[m.few_contact]),
@@ -660,7 +657,7 @@ def around(m: Measured) -> Values:
     }
 
 
-def _around(m: Measured, points: FloatArray) -> FloatArray:
+def _around(m: MeasuredHypotheses, points: FloatArray) -> FloatArray:
     """Share of twelve sectors about each line that hold one of the points (n, 3), shape (h,); NaN without points."""
     h = m.hypotheses
     if len(points) == 0:
@@ -674,7 +671,7 @@ def _around(m: Measured, points: FloatArray) -> FloatArray:
     return np.where(h.kinds == TURN, met.mean(axis=1), np.nan)
 
 
-def gravity(m: Measured) -> Values:
+def gravity(m: MeasuredHypotheses) -> Values:
     """Where the line lies above or below the child, and whether the free motion lifts it."""
     arms = -m.arms
     length = np.maximum(lengths_of(arms), 1e-9 * m.unit)
@@ -696,7 +693,7 @@ def gravity(m: Measured) -> Values:
     }
 
 
-def handle(m: Measured) -> Values:
+def handle(m: MeasuredHypotheses) -> Values:
     """Where a hand pulls: far from the line, and along what it moves."""
     h, held = m.hypotheses, m.scene.handle
     if held is None:
@@ -718,7 +715,7 @@ def handle(m: Measured) -> Values:
     }
 
 
-def opening(m: Measured) -> Values:
+def opening(m: MeasuredHypotheses) -> Values:
     """What the motion is for: how much more of the child, and of what it covers, can be seen from outside."""
     scene, h = m.scene, m.hypotheses
     rng = np.random.default_rng(11)
@@ -763,7 +760,9 @@ def _outward_rays(
     return starts.reshape(-1, 3), directions.reshape(-1, 3)
 
 
-def _blocked(m: Measured, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float) -> BoolArray:
+def _blocked(
+    m: MeasuredHypotheses, parts: Sequence[int], starts: FloatArray, ends: FloatArray, reach: float
+) -> BoolArray:
     """Whether rays from starts through ends (c, n, 3 each) meet any of the parts within `reach` [m], shape (c, n)."""
     result = np.zeros(starts.shape[:2], dtype=bool)
     flat, steps = starts.reshape(-1, 3), (ends - starts).reshape(-1, 3) * reach
@@ -775,7 +774,7 @@ def _blocked(m: Measured, parts: Sequence[int], starts: FloatArray, ends: FloatA
     return result
 
 
-def neighbours(m: Measured) -> Values:
+def neighbours(m: MeasuredHypotheses) -> Values:
     """Congruent parts, in which direction they stand, and what else the child touches or carries."""
     scene, h = m.scene, m.hypotheses
     graph, count = scene.cache.graph, len(h)
@@ -814,11 +813,11 @@ def measure(scene: JointScene, hypotheses: Hypotheses) -> Values:
 
 def measure_groups(scene: JointScene, hypotheses: Hypotheses) -> dict[str, Values]:
     """The same by the group that measures it."""
-    measured = Measured(scene, hypotheses)
+    measured = MeasuredHypotheses(scene, hypotheses)
     return {name: group(measured) for name, group in GROUPS.items()}
 
 
-GROUPS: dict[str, Callable[[Measured], Values]] = {
+GROUPS: dict[str, Callable[[MeasuredHypotheses], Values]] = {
     "motion": motion,
     "contact_motion": contact_motion,
     "sliding_surface": sliding_surface,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,16 +11,20 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from kinematify.contact.graph import pair
-from kinematify.joints.measure.edge_tests import journal_pairs, leaf_pairs, passing_pairs
+from kinematify.joints.bearings.refine import across_axis
+from kinematify.joints.measure.journal import facing_faces, find_journal
+from kinematify.joints.measure.sweep import moving_points, sweep_turns
 from kinematify.joints.measure.workspace import PartCache
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from collections.abc import Set as AbstractSet
 
     from kinematify.assembly.part import Assembly
-    from kinematify.config import Config
+    from kinematify.config import Config, JointsConfig
     from kinematify.contact.graph import ContactGraph, Pair
-    from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
+    from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
+    from kinematify.robot.arrays import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,3 +111,111 @@ def coaxial_carriers(lines: Mapping[Pair, BearingLine], *, angle: float, distanc
         if carriers:
             found[a, b] = carriers
     return found
+
+
+def journal_pairs(cache: PartCache, pairs: Iterable[Pair], config: JointsConfig) -> frozenset[Pair]:
+    """Those contacts in which a pin, barrel or shaft of one part sits in the other.
+
+    Leaves that lie edge to edge, fingers and drawers touch as well as a hinge does, but nothing of one goes round the
+    other.
+
+    Args:
+        cache: The parts.
+        pairs: Contacts (a, b) with a < b that are asked about.
+        config: Band of a contact and tolerances of journals.
+    """
+    return frozenset(pair for pair in pairs if _has_journal(cache, pair, config))
+
+
+def _has_journal(cache: PartCache, pair: Pair, config: JointsConfig) -> bool:
+    """Whether a journal is found, looking from the smaller part."""
+    small, large = _by_size(cache, pair)
+    reach = cache.graph.by_pair[pair].gap + config.contact_band * cache.diagonal
+    facing = facing_faces(cache, large, small, reach, config.journal)
+    size = float(np.ptp(cache.assembly.parts[small].bounds, axis=0).max())
+    return find_journal(facing, size, config.journal, np.random.default_rng([*pair])) is not None
+
+
+def passing_pairs(cache: PartCache, lines: Mapping[Pair, BearingLine], config: JointsConfig) -> frozenset[Pair]:
+    """Those pairs of which one part turns all around a line without meeting the other.
+
+    Args:
+        cache: The parts.
+        lines: The line of each pair (a, b), a < b, that is asked about.
+        config: Of the sweep.
+    """
+    return frozenset(pair for pair, line in lines.items() if _passes(cache, pair, line, config))
+
+
+def _passes(cache: PartCache, pair: Pair, line: BearingLine, config: JointsConfig) -> bool:
+    small, large = _by_size(cache, pair)
+    points = moving_points(cache, small, config.sweep)
+    swept = sweep_turns(cache, points, line.axis[None], line.pivot[None], (large,), limit=np.pi, config=config.sweep)
+    return bool(swept.free(config.sweep.share).min() >= np.pi)
+
+
+def _by_size(cache: PartCache, pair: Pair) -> Pair:
+    small, large = sorted(pair, key=lambda part: (cache.assembly.parts[part].diagonal, part))
+    return small, large
+
+
+def middle_leaf(
+    centroids: Mapping[int, FloatArray], line: BearingLine, reach: Mapping[int, float], config: JointsConfig
+) -> int | None:
+    """Which of three parts on one pin lies between the other two, as leaves of a book do; None where they do not.
+
+    Args:
+        centroids: Of the three parts, world frame [m], shape (3,) each.
+        line: The pin.
+        reach: Largest distance of each part from the line [m].
+        config: What counts as a leaf.
+    """
+    basis = across_axis(line.axis)
+    flat = {part: basis @ (centroid - line.pivot) for part, centroid in centroids.items()}
+    if any(float(np.linalg.norm(place)) < config.limits.even * reach[part] for part, place in flat.items()):
+        return None  # a shaft, which lies about the line on all sides
+    mean = np.sum([place / np.linalg.norm(place) for place in flat.values()], axis=0)
+    if np.linalg.norm(mean) < 1.0:
+        return None  # all around
+    turned = {part: float(np.arctan2(mean[0] * p[1] - mean[1] * p[0], mean @ p)) for part, p in flat.items()}
+    return sorted(turned, key=turned.__getitem__)[1]
+
+
+def leaf_pairs(
+    cache: PartCache,
+    triples: Iterable[tuple[int, ...]],
+    lines: Mapping[Pair, BearingLine],
+    passing: AbstractSet[Pair],
+    config: JointsConfig,
+) -> tuple[frozenset[Pair], frozenset[Pair]]:
+    """Of parts on one pin: pairs next to each other, and pairs with a third part between them.
+
+    The magazine of a stapler lies between base and arm: the arm rests on it and pushes it down, so that the outer
+    leaf moves with the middle one and not with what lies beyond.
+
+    Args:
+        cache: The parts.
+        triples: Parts all of which turn on one line.
+        lines: Best line of each contact (a, b), a < b.
+        passing: Contacts whose parts turn past each other.
+        config: What counts as a leaf.
+
+    Returns:
+        Pairs (a, b), a < b: next to each other, and skipping one.
+    """
+    adjacent: set[Pair] = set()
+    skipping: set[Pair] = set()
+    for triple in triples:
+        pairs = [(min(pair), max(pair)) for pair in combinations(triple, 2)]
+        line = lines[pairs[0]]
+        points = {part: cache.samples(part).points for part in triple}
+        reach = {
+            part: float(np.linalg.norm(np.cross(own - line.pivot, line.axis), axis=1).max())
+            for part, own in points.items()
+        }
+        middle = middle_leaf({part: own.mean(axis=0) for part, own in points.items()}, line, reach, config)
+        beside = {pair for pair in pairs if middle in pair}
+        if middle is not None and not beside & passing:
+            adjacent |= beside
+            skipping |= set(pairs) - beside
+    return frozenset(adjacent), frozenset(skipping)

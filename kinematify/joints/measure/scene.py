@@ -7,24 +7,65 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.bearing_line import BearingLine, EdgeBearing
-from kinematify.joints.hypotheses.frames import UP, body_axes, box_frame
-from kinematify.joints.measure.front_cues import foot_side, front_of, is_level_plate
+from kinematify.joints.bearings.scores import BearingLine, EdgeBearing
+from kinematify.joints.measure.frames import UP, body_axes, box_frame, find_fold
 from kinematify.joints.measure.journal import facing_faces, find_journal
-from kinematify.joints.measure.rockers import find_fold
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
-    from kinematify.config import JointsConfig, RailsConfig
-    from kinematify.joints.hypotheses.frames import BoxFrame
+    from kinematify.config import FrontCuesConfig, JointsConfig, RailsConfig
+    from kinematify.contact.tree import KinematicTree
+    from kinematify.joints.measure.frames import BoxFrame, Fold
     from kinematify.joints.measure.journal import Journal
-    from kinematify.joints.measure.rockers import Fold
     from kinematify.joints.measure.workspace import ContactView, PartCache
-    from kinematify.joints.rooted_tree import RootedTree
-    from kinematify.robot.arrays import FloatArray
+    from kinematify.robot.arrays import BoolArray, FloatArray
+
+
+def foot_side(part: BoxFrame, body: FloatArray, config: FrontCuesConfig) -> FloatArray:
+    """Unit level direction from the middle of a body to a small part at one side of its foot, else zero, shape (3,).
+
+    A pedal is where the user's foot is, in front. A bin on two wheels is tipped back onto them, so they are behind.
+
+    Args:
+        part: Box frame of the part.
+        body: Bounds of the body in the world frame [m], shape (2, 3).
+        config: What counts as small, low and on one side.
+    """
+    extents = body[1] - body[0]
+    middle = 0.5 * (part.lower + part.upper) @ part.axes
+    offset = (middle - body.mean(axis=0)) * (1.0, 1.0, 0.0)
+    distance = float(np.linalg.norm(offset))
+    small = part.diagonal < config.small * float(np.linalg.norm(extents))
+    low = middle[2] - body[0, 2] < config.low * extents[2]
+    aside = distance > config.aside * 0.5 * float(extents[:2].min())
+    return np.asarray(offset / distance) if small and low and aside else np.zeros(3)
+
+
+def front_of(
+    body: FloatArray, frames: Sequence[BoxFrame], rolling: Sequence[bool], config: FrontCuesConfig
+) -> FloatArray:
+    """The level direction in which the front of a body looks, zero where nothing at its foot says so, shape (3,).
+
+    Args:
+        body: Bounds of the body in the world frame [m], shape (2, 3).
+        frames: Box frames of the parts that it carries.
+        rolling: Which of them are wheels.
+        config: What counts as small, low and on one side.
+    """
+    front = np.zeros(3)
+    for frame, rolls in zip(frames, rolling, strict=True):
+        if rolls or is_level_plate(frame):
+            front += foot_side(frame, body, config) * (-1.0 if rolls else 1.0)
+    length = float(np.linalg.norm(front))
+    # Feet or castors all around cancel out.
+    return front / length if length > config.agreeing else np.zeros(3)
+
+
+def is_level_plate(frame: BoxFrame) -> bool:
+    """Whether a part is thin upwards, as what is trodden on."""
+    sides = np.sort(frame.extents)
+    return bool(abs(float(frame.axes[frame.thin] @ UP)) > np.cos(np.radians(30.0)) and sides[0] < 0.5 * sides[1])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,7 +183,7 @@ def _prismatic_score(bearing: EdgeBearing | None, config: RailsConfig) -> float:
     return float(strong * leading)
 
 
-def part_frames(cache: PartCache, tree: RootedTree, config: JointsConfig) -> dict[int, BoxFrame]:
+def part_frames(cache: PartCache, tree: KinematicTree, config: JointsConfig) -> dict[int, BoxFrame]:
     """Box frame of every part, parents before children; the root prefers the upright frame of the body."""
     root = cache.samples(tree.root)
     body = body_axes(root.normals, root.areas)
@@ -156,7 +197,7 @@ def part_frames(cache: PartCache, tree: RootedTree, config: JointsConfig) -> dic
 
 def joint_scene(
     cache: PartCache,
-    tree: RootedTree,
+    tree: KinematicTree,
     frames: Mapping[int, BoxFrame],
     edge: tuple[int, int],
     bearing: EdgeBearing | None,
@@ -352,7 +393,7 @@ def _stands(cache: PartCache, part: int, config: JointsConfig) -> bool:
 
 
 def _front(
-    cache: PartCache, tree: RootedTree, body: int, frames: Mapping[int, BoxFrame], config: JointsConfig
+    cache: PartCache, tree: KinematicTree, body: int, frames: Mapping[int, BoxFrame], config: JointsConfig
 ) -> FloatArray:
     if not _stands(cache, body, config):
         return np.zeros(3)
@@ -375,7 +416,7 @@ def _is_plate(sides: FloatArray, upright: bool, config: JointsConfig) -> bool:
     return bool(upright and thick and sides[0] < config.panel_thinness * np.sqrt(sides[1] * sides[2]))
 
 
-def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> NDArray[np.bool_]:
+def _walls(cache: PartCache, parent: int, frame: BoxFrame) -> BoolArray:
     """Whether the parent stands in the way from the child's centre along +x, +y, +z, -x, -y, -z of its frame, (6,)."""
     steps = cache.diagonal * np.concatenate([frame.axes, -frame.axes])
     hits = cache.first_hits(parent, np.tile(frame.centre, (6, 1)), steps)
@@ -388,7 +429,7 @@ def _inside(cache: PartCache, child: int, frame: BoxFrame, body_box: FloatArray)
     return float(np.all((local > body_box[0] + margin) & (local < body_box[1] - margin), axis=1).mean())
 
 
-def _subtree(tree: RootedTree, part: int) -> set[int]:
+def _subtree(tree: KinematicTree, part: int) -> set[int]:
     found, queue = {part}, [part]
     for node in queue:
         found.update(tree.children[node])
@@ -411,7 +452,7 @@ def _outward(frame: BoxFrame, body_box: FloatArray) -> FloatArray:
     return np.asarray(frame.axes[k] * (1.0 if to_upper < to_lower else -1.0))
 
 
-def _handle(cache: PartCache, tree: RootedTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
+def _handle(cache: PartCache, tree: KinematicTree, child: int, frame: BoxFrame, outward: FloatArray) -> Handle | None:
     """Bump beyond the slab (on the outer side if that is known), else the parts that hang on the child."""
     points = cache.samples(child).points
     local = frame.local(points)

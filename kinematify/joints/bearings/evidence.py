@@ -1,6 +1,6 @@
 """What either part of a contact shows near the other one: surface samples, feature edges and circles, with weights.
 
-Bearings (`joints.bearing`) and rails (`joints.rail`) are fitted to the same evidence.
+Bearings and rails (`scores.py`) are fitted to the same evidence.
 """
 
 from __future__ import annotations

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kinematify.joints.hypotheses.bearing_scores import OCTAGON, across_axes
-from kinematify.joints.hypotheses.line import Line, Lines
+from kinematify.joints.bearings.line import Line, Lines
+from kinematify.joints.bearings.scores import OCTAGON, across_axes
 from kinematify.robot.vectors import lengths_of
 
 if TYPE_CHECKING:
     from kinematify.config import BearingConfig
-    from kinematify.joints.hypotheses.bearing_evidence import BearingSide, Sides
+    from kinematify.joints.bearings.evidence import BearingSide, Sides
     from kinematify.robot.arrays import FloatArray
 
 _LONGEST_STEP = 0.1  # in rad and in spreads: farther, the linear model means nothing

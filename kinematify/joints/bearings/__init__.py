@@ -1,0 +1,1 @@
+"""Lines about which a contact turns and along which it slides, fitted to both parts."""
