@@ -15,6 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchmarks.fit.broken_off import with_pieces_broken_off
+from benchmarks.fit.composed import compose
+from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
+from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
+from benchmarks.fit.modelling import WAYS, remodelled
+from benchmarks.recipes import OBJECTS, drawn_object
 from kinematify.assembly.erase import erase
 from kinematify.assembly.part import Assembly
 from kinematify.batch.engine import TaskFailure
@@ -22,26 +28,20 @@ from kinematify.batch.pool import run_tasks
 from kinematify.batch.processes import Processes
 from kinematify.config import load_config
 from kinematify.errors import EnvironmentFault, InputError, KinematifyError
-from benchmarks.fit.broken_off import with_pieces_broken_off
-from benchmarks.fit.composed import compose
-from benchmarks.fit.edges import read_tree_examples, tree_example, write_tree_examples
-from benchmarks.fit.examples import content_key, examples_of, read_examples, write_examples
-from benchmarks.fit.modelling import WAYS, remodelled
-from benchmarks.recipes import OBJECTS, drawn_object
 from kinematify.generate.described import known_families
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.truth import ground_truth
 from kinematify.robot.read import read_robot
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kinematify.assembly.part import Part
-    from kinematify.assembly.truth import GroundTruth
     from benchmarks.fit.edges import TreeExample
     from benchmarks.fit.examples import Example
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.assembly.part import Part
+    from kinematify.assembly.truth import GroundTruth
+    from kinematify.generate.procedural.blueprint import Blueprint
 
 FAMILY, DESCRIBED, PROGRAMMED, COMPOSED = GENERATED = "family", "described", "programmed", "composed"
 _RESEARCH = ("partnet", "shapenet", "research", "non-commercial")

@@ -25,20 +25,20 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
+from benchmarks.expectations import load_sentences
+from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.datasets import CONDITIONS, find_objects
-from benchmarks.expectations import load_sentences
 from kinematify.evaluation.job import erased_item, shown_parts
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, among, explained
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.formats.fix import fix_urdf
 from kinematify.generate.composer.compose import compose, draw_composition
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.model.simulable import simulable_model
 from kinematify.model.urdf import write_model
 from kinematify.pipeline import infer
@@ -52,11 +52,11 @@ from kinematify.versions import package_versions
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.config import Config
     from kinematify.evaluation.datasets import BenchObject
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
     from kinematify.validation.finding import CheckResult, Finding

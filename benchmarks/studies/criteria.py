@@ -17,16 +17,16 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import minimize
 
+from benchmarks.study import Options, Study, explained
 from kinematify.assembly.part import Assembly
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.axis_metrics import axis_angle
 from kinematify.evaluation.datasets import CONDITIONS, BenchObject, find_objects
 from kinematify.evaluation.job import erased_item
 from kinematify.evaluation.record import table
-from benchmarks.study import Options, Study, explained
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
-from kinematify.generate.procedural.truth import ground_truth
 from kinematify.paper.sdf_grid import exact_distance
 from kinematify.pipeline import infer
 from kinematify.refinement.candidates import CandidateJoints, is_same
@@ -38,10 +38,10 @@ from kinematify.robot.transforms import joint_motion
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.assembly.truth import GroundTruth
     from kinematify.contact.graph import ContactGraph
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
     from kinematify.joints.candidate import JointEstimate
     from kinematify.pipeline import Inference
     from kinematify.robot.arrays import FloatArray

@@ -20,16 +20,16 @@ from typing import TYPE_CHECKING
 import yaml
 from pydantic import Field, TypeAdapter
 
+from benchmarks.study import Options, Study, explained
 from kinematify import evaluation
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.errors import InputError
 from kinematify.evaluation.job import JobResult
 from kinematify.evaluation.record import grouped, number, table
-from benchmarks.study import Options, Study, explained
 from kinematify.evaluation.summary import median_seconds, summarise
 from kinematify.evaluation.truth import score_blueprint
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.model.output import MODEL_FILE
 from kinematify.pipeline import infer
 from kinematify.pipeline.record import write_inference_files
@@ -40,9 +40,9 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.evaluation.record import Report
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.pipeline import Inference
     from kinematify.validation.finding import Finding
 

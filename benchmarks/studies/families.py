@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
+from benchmarks.study import Options, Study, among, explained
 from kinematify.config import load_config
 from kinematify.config.validation import load_settings
 from kinematify.evaluation.record import grouped, table
-from benchmarks.study import Options, Study, among, explained
 from kinematify.evaluation.truth import score_blueprint
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
@@ -36,10 +36,10 @@ from kinematify.validation.run import validate
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from benchmarks.study import Measured, Record, Work
     from kinematify.config.validation import ValidationSettings
     from kinematify.evaluation.record import Report
-    from benchmarks.study import Measured, Record, Work
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.model.kinematic_model import KinematicModel
     from kinematify.pipeline import Inference
 

@@ -29,17 +29,17 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from kinematify.errors import InputError
 from benchmarks.expectations import SETS, broken_expectations, load_sentences
-from kinematify.evaluation.record import grouped, table
 from benchmarks.study import Options, Study, explained
-from kinematify.generate.procedural.request import from_text
+from kinematify.errors import InputError
+from kinematify.evaluation.record import grouped, table
+from kinematify.generate.request import from_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 RIGHT, REFUSED, WRONG = "right", "refused", "wrong"
 

@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from kinematify.errors import EnvironmentFault
 from benchmarks.browser import open_browser
-from kinematify.evaluation.record import grouped, table
 from benchmarks.study import Options, Study, explained
-from kinematify.generate.procedural.request import from_text
+from kinematify.errors import EnvironmentFault
+from kinematify.evaluation.record import grouped, table
+from kinematify.generate.request import from_text
 from kinematify.pipeline import infer, write_inference
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
     from playwright.sync_api import Page, WebSocket
 
-    from kinematify.evaluation.record import Report
     from benchmarks.study import Measured, Record, Work
+    from kinematify.evaluation.record import Report
 
 SENTENCE = "a kitchen cabinet with three doors above six drawers, 80 cm wide"
 GOALS = {"picture": 2.0, "answer": 0.05}

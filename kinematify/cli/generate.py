@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from kinematify.cli.generation import Generation, Requested
     from kinematify.cli.provided import ProvidedGeneration
-    from kinematify.generate.composer.bodies import Body
-    from kinematify.generate.composer.mechanisms import Mechanism
+    from kinematify.generate.composer.bodies import BodyKind
+    from kinematify.generate.composer.mechanisms import MechanismKind
 
 
 @click.command(
@@ -220,7 +220,7 @@ def _requested(
     text: str | None, category: str | None, settings: tuple[str, ...], blueprint: Path | None, *, lenient: bool
 ) -> Requested:
     from kinematify.generate.blueprint_file import WrittenBlueprint
-    from kinematify.generate.procedural.request import from_category, from_text
+    from kinematify.generate.request import from_category, from_text
 
     if blueprint is not None:
         return WrittenBlueprint(blueprint)
@@ -295,7 +295,7 @@ def _listing(category: str | None) -> dict[str, Any]:
     from kinematify.generate.composer.bodies import BODIES
     from kinematify.generate.composer.mechanisms import MECHANISMS
     from kinematify.generate.described import known_families
-    from kinematify.generate.procedural.request import find_family
+    from kinematify.generate.request import find_family
 
     families = [find_family(category)] if category else list(known_families().values())
     return {
@@ -324,13 +324,13 @@ def _listing(category: str | None) -> dict[str, Any]:
     }
 
 
-def _named(kinds: Sequence[Body] | Sequence[Mechanism]) -> str:
+def _named(kinds: Sequence[BodyKind] | Sequence[MechanismKind]) -> str:
     return ", ".join(kind.words[0] for kind in kinds)
 
 
 def _parameters(category: str) -> str:
-    from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
-    from kinematify.generate.procedural.request import find_family
+    from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
+    from kinematify.generate.request import find_family
 
     family = find_family(category)
     table = format_table(PARAMETER_HEADINGS, parameter_rows(family.all_parameters))

@@ -15,7 +15,7 @@ from kinematify.config import load_config
 from kinematify.generate.blueprint_file import WrittenBlueprint
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.language_model import BLUEPRINT_FILE
-from kinematify.generate.providers.prompt import check_prompt
+from kinematify.generate.providers.source import check_prompt
 from kinematify.model.output import MODEL_FILE
 from kinematify.pipeline.generate import write_blueprint
 from kinematify.validation.finding import Severity
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from kinematify.cli.progress import Reporter
     from kinematify.cli.provided import ProvidedOptions
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.providers.language_model import LanguageModel, Written
 
 _MOST_FINDINGS = 10  # that are told in one round

@@ -16,9 +16,8 @@ from kinematify.config import load_config
 from kinematify.generate.providers.command import CommandSource
 from kinematify.generate.providers.job import open_job
 from kinematify.generate.providers.language_model import LanguageModel, language_model
-from kinematify.generate.providers.prompt import check_prompt
-from kinematify.generate.providers.recorded import RecordingSource, ReplayedSource
-from kinematify.generate.providers.rodin.source import RodinSource
+from kinematify.generate.providers.rodin import RodinSource
+from kinematify.generate.providers.source import RecordingSource, ReplayedSource, check_prompt
 from kinematify.model.output import check_output, write_model_folder
 from kinematify.pipeline import infer
 from kinematify.pipeline.record import write_inference_files

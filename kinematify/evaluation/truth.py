@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from kinematify.evaluation.metrics import score_object
 from kinematify.evaluation.prediction import prediction_of
-from kinematify.generate.procedural.truth import ground_truth
+from kinematify.generate.procedural.blueprint import ground_truth
 
 if TYPE_CHECKING:
     from kinematify.evaluation.metrics import ObjectScore
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.pipeline import Inference
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from kinematify.config import load_config
 from kinematify.errors import OutputError
 from kinematify.generate.procedural.family import COMMON, build
-from kinematify.generate.procedural.listing import PARAMETER_HEADINGS, parameter_rows
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
+from kinematify.generate.request import from_text
 from kinematify.model.preview import draw_pair, draw_steps
 from kinematify.model.scene import moving_joints
 from kinematify.pipeline.generate import true_model
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import PreviewConfig
-    from kinematify.generate.blueprint import Blueprint
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.model.kinematic_model import KinematicModel

@@ -12,8 +12,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kinematify.config import load_config
-from kinematify.errors import EnvironmentFault
 from benchmarks.fit.edges import (
     TreeExample,
     edge_recipe_key,
@@ -24,10 +22,12 @@ from benchmarks.fit.edges import (
     write_edge_weights,
     write_tree_examples,
 )
+from kinematify.config import load_config
+from kinematify.errors import EnvironmentFault
+from kinematify.generate.procedural.blueprint import ground_truth
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
 from kinematify.generate.procedural.solids import bore, box, cylinder
-from kinematify.generate.procedural.truth import ground_truth
 from kinematify.geometry.part_stats import assembly_stats
 from kinematify.joints.choice import edges
 from kinematify.joints.choice.edges import (

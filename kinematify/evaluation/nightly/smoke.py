@@ -7,7 +7,7 @@ import shutil
 from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.pipeline.generate import write_blueprint
 
 if TYPE_CHECKING:

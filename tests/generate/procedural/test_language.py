@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinematify.errors import InputError
 from benchmarks.expectations import SETS, broken_expectations, load_sentences
 from benchmarks.studies.sentences import RIGHT, WRONG, outcome
+from kinematify.errors import InputError
 from kinematify.generate.described import known_families
 from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import build
@@ -15,7 +15,7 @@ from kinematify.generate.procedural.language.understand import _bare, _family, _
 from kinematify.generate.procedural.language.words import tokens_of
 from kinematify.generate.procedural.layout import parse_layout
 from kinematify.generate.procedural.materials import COLORS, MATERIALS
-from kinematify.generate.procedural.request import from_text
+from kinematify.generate.request import from_text
 from kinematify.robot.joint_type import JointType
 
 EXACT_SHARE = 0.9

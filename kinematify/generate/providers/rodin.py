@@ -14,18 +14,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kinematify.errors import EnvironmentFault, InputError
-from kinematify.generate.providers.found_parts import found_parts
 from kinematify.generate.providers.job import ACCEPTED, DONE, FAILED
 from kinematify.generate.providers.service import LinkExpired, NotTaken, Service
-from kinematify.generate.providers.source import Generated, Provenance
+from kinematify.generate.providers.source import Generated, Provenance, found_parts
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kinematify.config import RodinConfig
-    from kinematify.generate.providers.job import Job
-    from kinematify.generate.providers.prompt import Prompt
-    from kinematify.generate.providers.source import Progress
+    from kinematify.generate.providers.job import PaidJob
+    from kinematify.generate.providers.source import Progress, Prompt
 
 KEY, ADDRESS = "RODIN_API_KEY", "RODIN_API_URL"
 OUTPUT_FOLDER = "made"
@@ -54,13 +52,13 @@ class RodinSource:
             "strength": chosen.strength,
         }
 
-    def generate(self, prompt: Prompt, job: Job, progress: Progress) -> Generated:
+    def generate(self, prompt: Prompt, job: PaidJob, progress: Progress) -> Generated:
         """See `PartSource`."""
         out = job.folder / OUTPUT_FOLDER
         if job.state(_FILES) != DONE:
             self._check_budget(job)
             with closing(_service(self.settings)) as service:
-                _Run(service, self.settings, prompt, job, progress).all(out)
+                _RodinRun(service, self.settings, prompt, job, progress).all(out)
         path, labels = found_parts(out)
         shape, parts = job.facts(_SHAPE), job.facts(_PARTS)
         return Generated(
@@ -78,7 +76,7 @@ class RodinSource:
             ),
         )
 
-    def _check_budget(self, job: Job) -> None:
+    def _check_budget(self, job: PaidJob) -> None:
         costs = {_SHAPE: self.settings.shape_credits, _PARTS: self.settings.parts_credits}
         ahead = sum(cost for step, cost in costs.items() if job.state(step) not in (ACCEPTED, DONE))
         if self.budget is not None and ahead > self.budget:
@@ -100,13 +98,13 @@ def _service(settings: RodinConfig) -> Service:
 
 
 @dataclass(frozen=True)
-class _Run:
+class _RodinRun:
     """One call."""
 
     service: Service
     settings: RodinConfig
     prompt: Prompt
-    job: Job
+    job: PaidJob
     progress: Progress
 
     def all(self, out: Path) -> None:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from kinematify.assembly.part import Part
-    from kinematify.generate.blueprint import Blueprint
     from kinematify.generate.composer.compose import Composition
+    from kinematify.generate.procedural.blueprint import Blueprint
     from kinematify.generate.procedural.family import Family
     from kinematify.generate.procedural.parameter import Value
     from kinematify.robot.arrays import FloatArray

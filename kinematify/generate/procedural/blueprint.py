@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from kinematify.assembly.part import Assembly, Part
+from kinematify.assembly.truth import GroundTruth, TrueJoint
 from kinematify.robot.appearance import joined as joined_appearances
 from kinematify.robot.arrays import read_only
 from kinematify.robot.joint_type import JointType
@@ -221,3 +222,35 @@ class Blueprint:
 
 def _placed(part: Part, transform: FloatArray) -> Part:
     return replace(part, vertices=part.vertices @ transform[:3, :3].T + transform[:3, 3])
+
+
+def ground_truth(blueprint: Blueprint) -> GroundTruth:
+    """Return the truth about the parts of a blueprint, in their order and under their names."""
+    index = {part.name: k for k, part in enumerate(blueprint.parts)}
+    seed = blueprint.parameters.get("seed")
+    return GroundTruth(
+        name=blueprint.name,
+        part_names=tuple(index),
+        part_links=tuple((name,) for name in index),
+        joints=tuple(
+            TrueJoint(
+                name=f"{joint.child}_joint",
+                source=f"{joint.child}_joint",
+                kind=joint.kind,
+                parent=index[joint.parent],
+                child=index[joint.child],
+                axis=joint.axis,
+                pivot=joint.pivot,
+                lower=joint.lower,
+                upper=joint.upper,
+                value=joint.value,
+                mimic=joint.mimic and replace(joint.mimic, joint=f"{joint.mimic.joint}_joint"),
+            )
+            for joint in blueprint.joints
+        ),
+        dropped=(),
+        configuration={},
+        pose="rest",
+        seed=seed if isinstance(seed, int) else 0,
+        yaw_deg=0.0,
+    )
