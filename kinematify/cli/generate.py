@@ -34,7 +34,6 @@ if TYPE_CHECKING:
         "kinematify generate --blueprint toolbox.yaml -o out/toolbox",
         "kinematify generate --list",
         "kinematify generate --list --category cabinet",
-        "kinematify generate --gallery docs",
         "kinematify generate --corpus 100 --seed 1 -o corpus",
         "kinematify generate --image robot.jpg --source rodin --budget 2 -o out/robot",
         'kinematify generate --text "a cantilever toolbox" --source llm --budget 60000 -o out/box',
@@ -61,12 +60,6 @@ if TYPE_CHECKING:
 )
 @click.option("--seed", type=int, help="Draw what is not asked for; without it the defaults are taken.")
 @click.option("--list", "listing", is_flag=True, help="Show the categories, or the parameters of --category.")
-@click.option(
-    "--gallery",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Make a page with pictures of composed objects and of every category with its parameters.",
-)
 @click.option(
     "--image",
     "images",
@@ -117,7 +110,6 @@ def command(
     composed: bool,
     seed: int | None,
     listing: bool,
-    gallery: Path | None,
     images: tuple[Path, ...],
     source: str | None,
     program: str | None,
@@ -162,9 +154,6 @@ def command(
 
     if listing:
         _list(category, json_to)
-        return 0
-    if gallery is not None:
-        _write_gallery(gallery)
         return 0
     if corpus is not None:
         _write_corpus(corpus, seed or 0, _needed(out), text or category, composed=composed)
@@ -278,8 +267,7 @@ def _categories() -> str:
     return (
         f"{table}\n\nWhat no category builds is composed, as in --text 'a cart with four casters and two drawers':\n"
         f"bodies: {_named(BODIES)}\nmechanisms: {_named(MECHANISMS)}\n\n"
-        "Parameters with units and ranges: kinematify generate --list --category NAME\n"
-        "A page with a picture of each: kinematify generate --gallery DIR"
+        "Parameters with units and ranges: kinematify generate --list --category NAME"
     )
 
 
@@ -348,16 +336,3 @@ def _write_corpus(count: int, seed: int, out: Path, only: str | None, *, compose
             out, count, seed=seed, progress=progress, workers=os.cpu_count() or 1, composed=composed
         )
     click.echo(f"{count} objects: {manifest}\nNext: kinematify bench {out} -o results --name corpus")
-
-
-def _write_gallery(folder: Path) -> None:
-    from kinematify.generate.composer.examples import SENTENCES
-    from kinematify.generate.described import known_families
-    from kinematify.generate.procedural.families import FAMILIES
-    from kinematify.pipeline.gallery import write_gallery
-
-    described = {name: family for name, family in known_families().items() if name not in FAMILIES}
-    command = f"kinematify generate --gallery {folder.as_posix()}"
-    with progress_reporter() as progress:
-        page = write_gallery(folder, FAMILIES, SENTENCES, described, command=command, progress=progress)
-    click.echo(f"{len(SENTENCES)} sentences, {len(described)} described objects, {len(FAMILIES)} categories: {page}")

@@ -1,12 +1,16 @@
-"""A page with all that the generator knows: pictures at rest and moved, and what can be asked for."""
+"""`python -m tools.draw_gallery DIR`: a page with all that the generator knows, with pictures at rest and moved."""
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kinematify.config import load_config
 from kinematify.errors import OutputError
+from kinematify.generate.described import known_families
+from kinematify.generate.procedural.families import FAMILIES
 from kinematify.generate.procedural.family import COMMON, build
 from kinematify.generate.procedural.parameter import PARAMETER_HEADINGS, parameter_rows
 from kinematify.generate.request import from_text
@@ -17,7 +21,6 @@ from kinematify.robot.joint_type import JointType
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-    from pathlib import Path
 
     from kinematify.config import PreviewConfig
     from kinematify.generate.procedural.blueprint import Blueprint
@@ -25,6 +28,39 @@ if TYPE_CHECKING:
     from kinematify.generate.procedural.parameter import Parameter
     from kinematify.model.kinematic_model import KinematicModel
 
+SENTENCES = (
+    "a walnut tool cart with four casters, a push handle, three drawers, a glass door, a turntable and brass handles",
+    "a red toolbox with two cantilever trays and a carrying handle",
+    "a green scissor lift on four wheels",
+    "a dark red pickup truck",
+    "a control box with a crank, a gauge needle and nine buttons",
+    "an oak cabinet with two glass doors and three drawers and golden handles",
+    "a pine folding table with four legs",
+    "a white refrigerator with two doors and two drawers",
+    "a yellow mobile robot with four wheels and an arm",
+    "a blue crate with a lid and a carrying handle",
+    "an oak cabinet with a glass sliding door on the left and two drawers",
+    "a steel workbench with four drawers and a crank on the right side",
+    "a grey control panel with twelve red buttons, two levers and three dials",
+    "a copper drum with a lid and a black hand wheel",
+    "a column with a folding arm and a black hand wheel",
+    "an orange car with four wheels and two doors",
+    "a walnut tv stand with two flaps and two drawers",
+    "a black printer with a scanner lid and two white paper trays",
+    "a green trolley with four casters, a push handle and a glass lid",
+    "an oak table with a drawer and a white turntable",
+    "a pine wardrobe with three mirror doors and two drawers",
+    "a vending machine with a glass door, six yellow buttons and a flap",
+    "a platform with four black wheels and a telescopic mast",
+    "a blue filing cabinet with four drawers, four casters and chrome handles",
+    "a cabinet with three brass hooks, a door and a pedal",
+    "a steel pedestal with a gripper",
+    "a grey housing with two black fans and a red lever",
+    "a doorway with two walnut doors and brass handles",
+    "a turquoise locker with two doors and six hooks",
+    "a purple toy truck with six wheels and a tailgate",
+)
+"""What is shown of composed objects."""
 PAGE = "gallery.md"
 PICTURES = "gallery"
 OPENING = "opening.webp"
@@ -179,3 +215,19 @@ def _joints(family: Family, blueprint: Blueprint) -> str:
 def _table(parameters: Sequence[Parameter]) -> str:
     rows = [PARAMETER_HEADINGS, ("---",) * len(PARAMETER_HEADINGS), *parameter_rows(parameters)]
     return "\n".join(f"| {' | '.join(cell.replace('|', _BAR) for cell in row)} |" for row in rows)
+
+
+def main() -> None:
+    """Draw the page of all sentences, described objects and families."""
+    folder = Path(sys.argv[1])
+    described = {name: family for name, family in known_families().items() if name not in FAMILIES}
+    command = f"python -m tools.draw_gallery {folder.as_posix()}"
+
+    def told(name: str, done: float) -> None:
+        sys.stderr.write(f"{done:4.0%} {name}\n")
+
+    sys.stdout.write(f"{write_gallery(folder, FAMILIES, SENTENCES, described, command=command, progress=told)}\n")
+
+
+if __name__ == "__main__":
+    main()
